@@ -1,0 +1,20 @@
+"""Diagnostics: rules, findings, the sink that collects them, and coverage."""
+
+from sysmlc.diagnostics.coverage import Coverage, FileCoverage, Verdict
+from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
+from sysmlc.diagnostics.rule import Rule, Severity, catalogue, rule
+from sysmlc.diagnostics.sink import Sink
+
+__all__ = [
+    "Coverage",
+    "Diagnostic",
+    "FileCoverage",
+    "Place",
+    "Rule",
+    "Severity",
+    "Sink",
+    "Subject",
+    "Verdict",
+    "catalogue",
+    "rule",
+]

@@ -1,0 +1,47 @@
+"""Findings: a rule, the element it is about, and where that element stands."""
+
+from dataclasses import dataclass
+
+from sysmlc.diagnostics.rule import Rule, Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something stands in an input.
+
+    XML elements are found by ``ordinal`` (number of the start tag in document order, from 0),
+    because parsers' line numbers stop at 65,535; text by ``offset`` (bytes from 0). Line and
+    column, where they are known already, count characters from 1. -1 and 0 mean unknown.
+    """
+
+    file: str
+    ordinal: int = -1
+    offset: int = -1
+    line: int = 0
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What a finding is about: its qualified name, its id in the graph, its place."""
+
+    name: str = ""
+    id: str = ""
+    place: Place | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding, ready to be shown."""
+
+    rule: Rule
+    severity: Severity
+    message: str
+    subject: Subject
+    notes: tuple[str, ...] = ()
+    help: str = ""
+
+    @property
+    def is_error(self) -> bool:
+        """Whether it makes the model wrong."""
+        return self.severity is Severity.ERROR

@@ -1,0 +1,56 @@
+"""The sink that takes the findings of one compilation."""
+
+from collections.abc import Iterator, Mapping
+
+from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
+from sysmlc.diagnostics.rule import Rule, Severity
+
+
+class Sink:
+    """Collects findings; the same finding about the same element is kept once.
+
+    ``severities`` maps a rule's code or name to the severity that the project chose, or to
+    None to silence the rule.
+    """
+
+    def __init__(self, severities: Mapping[str, Severity | None] | None = None) -> None:
+        self._severities = dict(severities or {})
+        self._found: dict[tuple[str, str, Subject], Diagnostic] = {}
+
+    def report(
+        self,
+        rule: Rule,
+        subject: Subject,
+        *,
+        notes: tuple[str, ...] = (),
+        help: str = "",
+        **facts: object,
+    ) -> None:
+        """Report ``rule`` about ``subject``; ``facts`` fill the rule's phrase and its help."""
+        severity = self._severity(rule)
+        if severity is None:
+            return
+        message = rule.phrase.format(**facts)
+        advice = (help or rule.help).format(**facts)
+        found = Diagnostic(rule, severity, message, subject, notes, advice)
+        self._found.setdefault((rule.code, message, subject), found)
+
+    def _severity(self, rule: Rule) -> Severity | None:
+        for key in (rule.code, rule.name):
+            if key in self._severities:
+                return self._severities[key]
+        return rule.severity
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self._found.values())
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def has_errors(self) -> bool:
+        """Whether any finding makes the model wrong."""
+        return any(found.is_error for found in self)
+
+    def erroneous_ids(self) -> frozenset[str]:
+        """Ids of the elements that errors are about."""
+        return frozenset(found.subject.id for found in self if found.is_error)

@@ -1,0 +1,1 @@
+"""Front ends: each reads one family of files into the graph."""

@@ -1,0 +1,24 @@
+"""What a front end is: it recognises its files and reads them into the graph."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.ir import Graph
+from sysmlc.sources import Source
+
+
+class Frontend(Protocol):
+    """Reads one family of source languages.
+
+    All files of a compile unit come in one call, because an id is kept only when it is unique
+    in the unit. Local references may stay in ``graph.pending`` for the pass ``resolve``.
+    """
+
+    name: str
+
+    def detect(self, source: Source) -> float:
+        """How sure it is, from 0 to 1 and by content, that it can read this source."""
+
+    def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+        """Read the files into the graph and account for every element of them."""

@@ -1,0 +1,1 @@
+"""Passes: each refines the graph in place; ``pipeline`` knows their order."""

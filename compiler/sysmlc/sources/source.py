@@ -1,0 +1,22 @@
+"""One input file, or one entry of an archive, as bytes."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True)
+class Source:
+    """Bytes and the name that diagnostics and outputs use for them.
+
+    ``name`` is relative to the root of the compile unit, with ``/`` and in NFC; an entry of an
+    archive is ``archive.mdzip!entry``.
+    """
+
+    name: str
+    data: bytes
+
+    @cached_property
+    def sha256(self) -> str:
+        """SHA-256 of the bytes, in hex."""
+        return hashlib.sha256(self.data).hexdigest()
