@@ -119,6 +119,8 @@ class Kind(StrEnum):
     LIFELINE = "Lifeline"
     # Communication between two lifelines.
     MESSAGE = "Message"
+    # Client-supplier relation; its role (satisfy, allocate, ...) comes from its stereotype.
+    DEPENDENCY = "Dependency"
     # Text attached to elements.
     COMMENT = "Comment"
     # External document that the model refers to.
@@ -216,6 +218,12 @@ class Edge(StrEnum):
     REQUIRES = "requires"
     # From a package to a profile that it applies.
     APPLIES = "applies"
+    # From a dependency to its client.
+    CLIENT = "client"
+    # From a dependency to its supplier.
+    SUPPLIER = "supplier"
+    # From a class to the behaviour that its instances run.
+    CLASSIFIER_BEHAVIOR = "classifier-behavior"
     # From a use case to one it includes.
     INCLUDES = "includes"
     # From a stereotype to its metaclass, or a use case to one it extends.

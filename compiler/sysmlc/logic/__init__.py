@@ -1,0 +1,1 @@
+"""Logic: formulas, contracts, the expression grammar and the semantics of behaviour."""

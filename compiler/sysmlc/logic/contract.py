@@ -1,0 +1,86 @@
+"""Assume/guarantee contracts: variables with owners and domains, classified conjuncts.
+
+Thesis section 2.2.1; the neutral JSON form is the one of corpus/gr1 (design, section 6).
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from sysmlc.logic.formula import Formula
+
+
+class Owner(StrEnum):
+    """Who decides the value of a variable."""
+
+    ENVIRONMENT = "env"
+    SYSTEM = "sys"
+
+
+@dataclass(frozen=True, slots=True)
+class BooleanDomain:
+    """true and false."""
+
+
+@dataclass(frozen=True, slots=True)
+class IntegerDomain:
+    """Integers from ``low`` to ``high``, both included."""
+
+    low: int
+    high: int
+
+
+@dataclass(frozen=True, slots=True)
+class EnumerationDomain:
+    """Names of literals, in declaration order."""
+
+    literals: tuple[str, ...]
+
+
+Domain = BooleanDomain | IntegerDomain | EnumerationDomain
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable of a contract; ``origin`` is the id of the element it stands for."""
+
+    name: str
+    owner: Owner
+    domain: Domain
+    origin: str = ""
+
+
+class Class(StrEnum):
+    """Class of a conjunct.
+
+    ``init`` holds in the first step and has no primes; ``safety`` holds in every step (G) and
+    may prime variables; ``liveness`` holds infinitely often (GF). The temporal operators of
+    safety and liveness are implied, not written in the formula; ``other`` is general LTL,
+    written in full.
+    """
+
+    INIT = "init"
+    SAFETY = "safety"
+    LIVENESS = "liveness"
+    OTHER = "other"
+
+
+@dataclass(frozen=True, slots=True)
+class Conjunct:
+    """One conjunct with the element (id) that it comes from and what it says in words."""
+
+    formula: Formula
+    class_: Class
+    origin: str
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Contract:
+    """Contract of one component: the guarantees hold as long as the assumptions do."""
+
+    component: str
+    """Qualified name of the component (design, section 6)."""
+    origin: str
+    variables: tuple[Variable, ...]
+    assumptions: tuple[Conjunct, ...]
+    guarantees: tuple[Conjunct, ...]

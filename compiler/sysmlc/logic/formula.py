@@ -1,0 +1,166 @@
+"""Linear temporal logic over variables with finite domains, as immutable values.
+
+A formula is built by the small functions at the end (``var``, ``eq``, ``both``, ``always`` ...),
+never by calling the classes from outside: they keep operands flat and constants folded.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+Literal = bool | int | str
+"""A value of a variable: Boolean, integer, or the name of an enumeration literal."""
+
+
+class Op(StrEnum):
+    """Operators: Boolean, comparison, arithmetic, temporal."""
+
+    NOT = "!"
+    AND = "&"
+    OR = "|"
+    IMPLIES = "->"
+    IFF = "<->"
+    EQ = "="
+    NE = "!="
+    LT = "<"
+    LE = "<="
+    GT = ">"
+    GE = ">="
+    ADD = "+"
+    SUB = "-"
+    MUL = "*"
+    DIV = "/"
+    MOD = "mod"
+    NEXT = "X"
+    ALWAYS = "G"
+    EVENTUALLY = "F"
+    UNTIL = "U"
+    RELEASE = "R"
+    WEAK_UNTIL = "W"
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A literal value."""
+
+    value: Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Var:
+    """A variable; ``primed`` means its value in the next step."""
+
+    name: str
+    primed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """An operator applied to one or more operands."""
+
+    op: Op
+    args: tuple["Formula", ...]
+
+
+Formula = Const | Var | Apply
+
+TRUE = Const(True)
+FALSE = Const(False)
+
+
+def const(value: Literal) -> Const:
+    """A literal."""
+    return Const(value)
+
+
+def var(name: str) -> Var:
+    """A variable in the present step."""
+    return Var(name)
+
+
+def primed(formula: Formula) -> Formula:
+    """The formula about the next step: every variable primed."""
+    match formula:
+        case Var(name):
+            return Var(name, primed=True)
+        case Apply(op, args):
+            return Apply(op, tuple(primed(arg) for arg in args))
+        case _:
+            return formula
+
+
+def negate(formula: Formula) -> Formula:
+    """Not; a double negation falls away."""
+    match formula:
+        case Const(bool(value)):
+            return Const(not value)
+        case Apply(Op.NOT, (inner,)):
+            return inner
+        case _:
+            return Apply(Op.NOT, (formula,))
+
+
+def both(*formulas: Formula) -> Formula:
+    """Conjunction, flat, without true; true when there is nothing to join."""
+    return _flat(Op.AND, formulas, unit=TRUE, zero=FALSE)
+
+
+def either(*formulas: Formula) -> Formula:
+    """Disjunction, flat, without false; false when there is nothing to join."""
+    return _flat(Op.OR, formulas, unit=FALSE, zero=TRUE)
+
+
+def implies(left: Formula, right: Formula) -> Formula:
+    """Implication."""
+    if left == TRUE:
+        return right
+    if left == FALSE or right == TRUE:
+        return TRUE
+    return negate(left) if right == FALSE else Apply(Op.IMPLIES, (left, right))
+
+
+def iff(left: Formula, right: Formula) -> Formula:
+    """Equivalence of two Booleans."""
+    return Apply(Op.IFF, (left, right))
+
+
+def compare(op: Op, left: Formula, right: Formula) -> Formula:
+    """Comparison of two values."""
+    return Apply(op, (left, right))
+
+
+def eq(left: Formula, right: Formula) -> Formula:
+    """Equality of two values."""
+    return Apply(Op.EQ, (left, right))
+
+
+def always(formula: Formula) -> Formula:
+    """In every step from now on."""
+    return Apply(Op.ALWAYS, (formula,))
+
+
+def eventually(formula: Formula) -> Formula:
+    """In some step from now on."""
+    return Apply(Op.EVENTUALLY, (formula,))
+
+
+def variables(formula: Formula) -> Iterator[Var]:
+    """Every variable of the formula, with repetitions, from left to right."""
+    match formula:
+        case Var():
+            yield formula
+        case Apply(_, args):
+            for arg in args:
+                yield from variables(arg)
+
+
+def _flat(op: Op, formulas: Iterable[Formula], unit: Const, zero: Const) -> Formula:
+    parts: dict[Formula, None] = {}
+    for formula in formulas:
+        inner = formula.args if isinstance(formula, Apply) and formula.op is op else (formula,)
+        parts.update(dict.fromkeys(part for part in inner if part != unit))
+    if zero in parts:
+        return zero
+    if len(parts) <= 1:
+        return next(iter(parts), unit)
+    return Apply(op, tuple(parts))
