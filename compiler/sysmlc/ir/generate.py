@@ -1,9 +1,11 @@
 """Generate ``kinds.py`` from ``metamodels/ir.ecore``: ``python -m sysmlc.ir.generate``."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any
+
+from pyecore.ecore import EModelElement
+from pyecore.resources import ResourceSet
 
 from sysmlc import resources
 
@@ -18,8 +20,6 @@ from enum import StrEnum
 
 def generate() -> str:
     """Text of ``kinds.py`` for the metamodel as it is now."""
-    from pyecore.resources import ResourceSet
-
     metamodel = ResourceSet().get_resource(str(resources.path("metamodels", "ir.ecore")))
     package = metamodel.contents[0]
     base = package.getEClassifier("Element")
@@ -31,17 +31,18 @@ def generate() -> str:
     )
 
 
-def _enum(name: str, doc: str, members: Iterable[Any], spell: Any) -> Iterator[str]:
+def _enum(
+    name: str, doc: str, members: Iterable[EModelElement], spell: Callable[[str], str]
+) -> Iterator[str]:
     yield f"\nclass {name}(StrEnum):"
     yield f'    """{doc}"""\n'
     for member in members:
         value = spell(member.name)
-        for line in _comment(_documentation(member)):
-            yield line
+        yield from _comment(_documentation(member))
         yield f'    {_identifier(value)} = "{value}"'
 
 
-def _documentation(member: Any) -> str:
+def _documentation(member: EModelElement) -> str:
     return str(member.eAnnotations[0].details["documentation"])
 
 

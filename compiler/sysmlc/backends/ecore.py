@@ -1,0 +1,167 @@
+"""Back end ``ecore``: the graph as EMF XMI after ``metamodels/ir.ecore``, and its reader.
+
+The XMI is written with lxml (pyecore costs 25 times the CPU); tests load it back with pyecore
+and compare.
+"""
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sysmlc import resources
+from sysmlc.backends.base import EmitOptions
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.output import Output
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Node
+    from pyecore.ecore import EObject
+
+_XMI = "http://www.omg.org/XMI"
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+_IR = "urn:sysmlc:ir:1"
+
+
+@dataclass(frozen=True, slots=True)
+class EcoreBackend:
+    """Writes ``graph.xmi``, an instance of our own metamodel."""
+
+    name: str = "ecore"
+    summary: str = "the refined graph as EMF XMI of metamodels/ir.ecore, graph.xmi"
+    is_default: bool = False
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add ``graph.xmi``."""
+        output.add("graph.xmi", to_xmi(graph), backend=self.name)
+
+
+BACKEND = EcoreBackend()
+
+
+def feature_name(edge: Edge) -> str:
+    """Name of the Ecore reference that holds edges of this kind: ``typed-by`` -> ``typedBy``."""
+    return re.sub(r"-(\w)", lambda match: match[1].upper(), edge)
+
+
+# -- writing -----------------------------------------------------------------------------------
+
+
+def to_xmi(graph: Graph) -> str:
+    """The graph as EMF XMI; ids become ``xmi:id``-free attributes that EMF resolves by path."""
+    from lxml import etree
+
+    root = etree.Element(etree.QName(_IR, "Graph"), nsmap={"ir": _IR, "xmi": _XMI, "xsi": _XSI})
+    root.set(etree.QName(_XMI, "version"), "2.0")
+    paths: dict[str, str] = {}
+    nodes: list[tuple[Element, Node]] = []
+    for number, element in enumerate(graph.roots()):
+        _write(graph, element, root, f"//@roots.{number}", "roots", paths, nodes)
+    for element, node in nodes:
+        _write_edges(graph, element, node, paths)
+    etree.indent(root, " ")
+    return etree.tostring(root, encoding="unicode") + "\n"
+
+
+def _write(
+    graph: Graph,
+    top: Element,
+    parent: "Node",
+    path: str,
+    feature: str,
+    paths: dict[str, str],
+    nodes: list[tuple[Element, "Node"]],
+) -> None:
+    stack = [(top, parent, path, feature)]
+    while stack:
+        element, above, at, name = stack.pop()
+        node = _node(element, above, name)
+        paths[element.id] = at
+        nodes.append((element, node))
+        children = list(enumerate(graph.owned(element)))
+        stack.extend((c, node, f"{at}/@owns.{n}", "owns") for n, c in reversed(children))
+
+
+def _node(element: Element, parent: "Node", feature: str) -> "Node":
+    from lxml import etree
+
+    node = etree.SubElement(parent, feature)
+    node.set(etree.QName(_XSI, "type"), f"ir:{element.kind}")
+    node.set("id", _escaped(element.id))
+    node.set("name", _escaped(element.name))
+    node.set("source", _escaped(element.source))
+    node.set("ordinal", str(element.ordinal))
+    for key in sorted(element.attrs):
+        value = json.dumps(element.attrs[key])
+        etree.SubElement(node, "attrs", key=_escaped(key), value=value)
+    return node
+
+
+def _write_edges(graph: Graph, element: Element, node: "Node", paths: dict[str, str]) -> None:
+    for edge in Edge:
+        targets = graph.targets(element, edge)
+        if targets and edge is not Edge.OWNS:
+            node.set(feature_name(edge), " ".join(paths[target.id] for target in targets))
+
+
+def _escaped(text: str) -> str:
+    """JSON without its quotes, so that control characters survive in XML attributes."""
+    return json.dumps(text)[1:-1]
+
+
+def _unescaped(text: str | None) -> str:
+    return str(json.loads(f'"{text or ""}"'))
+
+
+# -- reading -----------------------------------------------------------------------------------
+
+
+def from_xmi(path: str) -> Graph:
+    """Read a saved graph with pyecore; the inverse of ``to_xmi``."""
+    from pyecore.resources import ResourceSet
+
+    files = ResourceSet()
+    metamodel = files.get_resource(str(resources.path("metamodels", "ir.ecore"))).contents[0]
+    files.metamodel_registry[metamodel.nsURI] = metamodel
+    graph = Graph()
+    objects = list(_objects(files.get_resource(path).contents[0]))
+    for obj, owner in objects:
+        graph.add(_read(obj, owner))
+    for obj, _ in objects:
+        for edge in Edge:
+            if edge is not Edge.OWNS:
+                for target in getattr(obj, feature_name(edge)):
+                    graph.connect(edge, _unescaped(obj.id), _unescaped(target.id))
+    return graph
+
+
+def _objects(root: "EObject") -> "Iterator[tuple[EObject, str | None]]":
+    stack: list[tuple[EObject, str | None]] = [(top, None) for top in reversed(root.roots)]
+    while stack:
+        obj, owner = stack.pop()
+        yield obj, owner
+        stack.extend((child, _unescaped(obj.id)) for child in reversed(obj.owns))
+
+
+def _read(obj: "EObject", owner: str | None) -> Element:
+    attrs: dict[str, AttrValue] = {
+        _unescaped(pair.key): _tuples(json.loads(pair.value)) for pair in obj.attrs
+    }
+    return Element(
+        _unescaped(obj.id),
+        Kind(obj.eClass.name),
+        _unescaped(obj.name),
+        owner,
+        obj.ordinal,
+        _unescaped(obj.source),
+        attrs,
+    )
+
+
+def _tuples(value: object) -> AttrValue:
+    if isinstance(value, list):
+        return tuple(_tuples(item) for item in value)
+    assert value is None or isinstance(value, str | int | float | bool)
+    return value

@@ -1,0 +1,57 @@
+"""Back end ``graph``: the whole graph as ``graph.json``, for other programs."""
+
+import json
+from dataclasses import dataclass
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Element, Graph
+from sysmlc.output import Output
+
+
+@dataclass(frozen=True, slots=True)
+class GraphBackend:
+    """Writes elements sorted by qualified name and ordinal, and edges in their order."""
+
+    name: str = "graph"
+    summary: str = "the refined graph as graph.json"
+    is_default: bool = False
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add ``graph.json`` (design, section 6)."""
+        names = {element.id: graph.qualified_name(element) for element in graph}
+        ordered = sorted(graph, key=lambda e: (names[e.id], e.ordinal, e.id))
+        rank = {element.id: number for number, element in enumerate(ordered)}
+        content = {
+            "elements": [_element(graph, element, names[element.id]) for element in ordered],
+            "edges": [
+                {"kind": kind, "from": source, "to": target}
+                for kind, source, target in sorted(
+                    graph.edges(), key=lambda edge: (rank[edge[1]], edge[0])
+                )
+            ],
+        }
+        text = json.dumps(content, ensure_ascii=False, indent=1) + "\n"
+        output.add("graph.json", text, trace=(), backend=self.name)
+
+
+def _element(graph: Graph, element: Element, qualified_name: str) -> dict[str, object]:
+    return {
+        "id": element.id,
+        "kind": outward_kind(element),
+        "name": element.name,
+        "qualified_name": qualified_name,
+        "owner": element.owner,
+        "source": {"file": element.source, "ordinal": element.ordinal},
+        "attrs": dict(sorted(element.attrs.items())),
+    }
+
+
+def outward_kind(element: Element) -> str:
+    """The role in CamelCase where there is one (``Block``, ``FullPort``), else the kind."""
+    return "".join(word.capitalize() for word in element.role.split()) or str(element.kind)
+
+
+BACKEND = GraphBackend()
+
+__all__ = ["BACKEND", "GraphBackend", "outward_kind"]

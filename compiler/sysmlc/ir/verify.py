@@ -1,0 +1,63 @@
+"""What must hold for every graph, before and after each pass."""
+
+from collections.abc import Iterator
+
+from sysmlc.ir.element import Element
+from sysmlc.ir.graph import Graph
+from sysmlc.ir.kinds import Edge, Kind
+
+_EXACTLY_ONE: dict[Kind, tuple[Edge, ...]] = {
+    Kind.CONTROL_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.OBJECT_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.TRANSITION: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+}
+_OWNERS: dict[Kind, frozenset[Kind]] = {
+    Kind.REGION: frozenset({Kind.STATE_MACHINE, Kind.STATE}),
+    Kind.STATE: frozenset({Kind.REGION}),
+    Kind.FINAL_STATE: frozenset({Kind.REGION}),
+    Kind.CONNECTOR_END: frozenset({Kind.CONNECTOR}),
+    Kind.ENUMERATION_LITERAL: frozenset({Kind.ENUMERATION}),
+    Kind.SLOT: frozenset({Kind.INSTANCE}),
+}
+
+
+def verify(graph: Graph) -> list[str]:
+    """Violations, one sentence each; an empty list means that the graph is valid.
+
+    These are faults of a front end or a pass, not of the model: ownership is a forest, edges
+    connect elements, flows have at most one source and one target, and derived elements name
+    an origin that exists.
+    """
+    return [*_ownership(graph), *_flows(graph), *_origins(graph)]
+
+
+def _ownership(graph: Graph) -> Iterator[str]:
+    reached = {element.id for root in graph.roots() for element in graph.subtree(root)}
+    for element in graph:
+        if element.id not in reached:
+            yield f"{element!r} ({element.id}) is not below a root"
+        yield from _owner(graph, element)
+
+
+def _owner(graph: Graph, element: Element) -> Iterator[str]:
+    owner = graph.owner(element)
+    if graph.source(element, Edge.OWNS) is not owner:
+        yield f"{element!r} ({element.id}) is not owned by its owner {owner!r}"
+    allowed = _OWNERS.get(element.kind)
+    if owner is not None and allowed is not None and owner.kind not in allowed:
+        yield f"{element!r} ({element.id}) must not be owned by {owner!r}"
+
+
+def _flows(graph: Graph) -> Iterator[str]:
+    for kind, edges in _EXACTLY_ONE.items():
+        for element in graph.of_kind(kind):
+            for edge in edges:
+                if len(graph.targets(element, edge)) > 1:
+                    yield f"{element!r} ({element.id}) has several {edge} edges"
+
+
+def _origins(graph: Graph) -> Iterator[str]:
+    for element in graph:
+        origin = element.attrs.get("origin")
+        if origin is not None and graph.get(str(origin)) is None:
+            yield f"{element!r} ({element.id}) names an origin that does not exist"
