@@ -97,7 +97,7 @@ class _Parser:
     _links: list[tuple[int, Edge, str, str]] = field(default_factory=list)
 
     def graph(self) -> Graph:
-        for number, line in enumerate(self.text.splitlines(), 1):
+        for number, line in enumerate(self.text.split("\n"), 1):
             if line.strip() and not line.lstrip().startswith("//"):
                 self._line(number, line)
         for number, edge, source, target in self._links:
