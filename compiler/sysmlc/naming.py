@@ -27,8 +27,7 @@ def file_names(qualified_names: Iterable[str]) -> dict[str, str]:
 
 
 def _plain(name: str) -> str:
-    encoded = quote(name.replace("::", "."), safe="-_.+,=@() ")
-    encoded = encoded.replace(" ", "_").strip(".") or "_"
+    encoded = quote(name.replace("::", "."), safe="-_.").replace("~", "%7E").strip(".") or "_"
     if encoded.split(".")[0].lower() in _RESERVED:
         encoded = f"_{encoded}"
     return encoded if len(encoded) <= _LIMIT else _distinct(encoded, name)

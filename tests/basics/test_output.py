@@ -1,0 +1,46 @@
+"""Outputs reach the disk whole, and only when their bytes change."""
+
+import os
+
+import pytest
+
+from sysmlc.output import Output, write_if_changed
+
+
+def test_a_file_with_the_same_bytes_is_not_touched(tmp_path):
+    target = tmp_path / "deep" / "a.txt"
+    assert write_if_changed(target, "één\n")
+    os.utime(target, ns=(1, 1))
+    assert not write_if_changed(target, "één\n")
+    assert target.stat().st_mtime_ns == 1
+
+
+def test_a_failing_write_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):
+    target = tmp_path / "a.txt"
+    write_if_changed(target, "old")
+    monkeypatch.setattr("pathlib.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
+    with pytest.raises(OSError, match="full"):
+        write_if_changed(target, "new")
+    assert target.read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_artefacts_come_sorted_and_their_traces_without_repetition():
+    output = Output()
+    output.add("b.txt", "", trace=["x", "y", "x"])
+    output.add("a.txt", "")
+    assert [a.path for a in output.artefacts()] == ["a.txt", "b.txt"]
+    assert output.artefacts()[1].trace == ("x", "y")
+
+
+@pytest.mark.parametrize("path", ["/etc/passwd", "../a", "a/../../b"])
+def test_no_artefact_leaves_the_output_folder(path):
+    with pytest.raises(ValueError, match="leaves the output folder"):
+        Output().add(path, "")
+
+
+def test_two_artefacts_never_share_a_path():
+    output = Output()
+    output.add("a", "")
+    with pytest.raises(ValueError, match="written twice"):
+        output.add("a", "")
