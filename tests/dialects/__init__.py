@@ -1,0 +1,1 @@
+"""Writers of models in the dialects of the tools, and models at random, for the tests."""
