@@ -1,0 +1,281 @@
+"""Expressions and effects as modellers write them: values, reader and printer.
+
+The grammar is grammars/expression.lark. Printing and reading again gives the same value.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING, TypeVar
+
+from sysmlc import resources
+
+if TYPE_CHECKING:
+    from lark import Lark, Token, Tree
+    from lark.exceptions import UnexpectedInput
+
+_T = TypeVar("_T")
+_WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
+KEYWORDS = frozenset(_WORDS.split(" "))
+
+
+class ExpressionError(ValueError):
+    """Text that is no expression; ``offset`` counts its characters from 0."""
+
+    def __init__(self, message: str, offset: int) -> None:
+        super().__init__(message)
+        self.offset = offset
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A Boolean, an integer, a real number, or a string."""
+
+    value: bool | int | float | str
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A name with the namespaces that qualify it, outermost first (``A::B``)."""
+
+    path: tuple[str, ...]
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A feature of what the base denotes (``a.b``)."""
+
+    base: "Expression"
+    name: str
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``not``, ``-`` or ``+`` before its operand."""
+
+    op: str
+    operand: "Expression"
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Operators: implies or xor and == != < <= > >= + - * / %."""
+
+    op: str
+    left: "Expression"
+    right: "Expression"
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """``if condition ? then else otherwise``."""
+
+    condition: "Expression"
+    then: "Expression"
+    otherwise: "Expression"
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function or an operation applied to arguments."""
+
+    function: "Expression"
+    args: tuple["Expression", ...]
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """One value of a sequence (``xs#(i)``, ``xs[i]``)."""
+
+    base: "Expression"
+    index: "Expression"
+    offset: int = field(default=0, compare=False)
+
+
+Expression = Literal | Name | Member | Unary | Binary | Conditional | Call | Index
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """``target := value``."""
+
+    target: Expression
+    value: Expression
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    """``send signal(args) to receiver``."""
+
+    signal: Name
+    args: tuple[Expression, ...] = ()
+    receiver: Expression | None = None
+    offset: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Invocation:
+    """A call, or the name of something that is done."""
+
+    call: Expression
+    offset: int = field(default=0, compare=False)
+
+
+Statement = Assignment | Send | Invocation
+
+
+def parse_expression(text: str) -> Expression:
+    """The expression that the text is. Raises ExpressionError."""
+    from sysmlc.logic._expression_tree import to_expression
+
+    return _read(text, "expression", to_expression)
+
+
+def parse_effect(text: str) -> tuple[Statement, ...]:
+    """The statements of an effect, separated by semicolons. Raises ExpressionError."""
+    from sysmlc.logic._expression_tree import to_statements
+
+    return _read(text, "effect", to_statements)
+
+
+def _read(text: str, start: str, build: "Callable[[Tree[Token]], _T]") -> _T:
+    from lark.exceptions import UnexpectedInput
+
+    try:
+        return build(_parser(start).parse(text))
+    except UnexpectedInput as error:
+        offset = _place(error, text)
+        raise ExpressionError(_complaint(text, offset), offset) from None
+    except RecursionError:
+        raise ExpressionError("the expression is nested too deeply", 0) from None
+
+
+def _place(error: "UnexpectedInput", text: str) -> int:
+    token = getattr(error, "token", None)
+    at_end = token is not None and token.type == "$END"
+    return len(text) if at_end or error.pos_in_stream is None else error.pos_in_stream
+
+
+def _complaint(text: str, offset: int) -> str:
+    rest = text[offset:].split()
+    return f"'{rest[0][:20]}' is not expected here" if rest else "the text ends too early"
+
+
+@cache
+def _parser(start: str) -> "Lark":
+    from lark import Lark
+
+    return Lark(
+        resources.text("grammars", "expression.lark"),
+        parser="lalr",
+        start=start,
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
+# -- printing ----------------------------------------------------------------------------------
+
+_STRENGTH = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
+    **dict.fromkeys(("<", "<=", ">", ">="), 7),
+    **dict.fromkeys("+-", 8),
+    **dict.fromkeys("*/%", 9),
+}
+_UNARY, _POSTFIX = 10, 11
+
+
+def print_expression(expression: Expression) -> str:
+    """The expression in KerML's spelling, with the parentheses that it needs."""
+    return _print(expression, 0)
+
+
+def print_statement(statement: Statement) -> str:
+    """One statement of an effect."""
+    match statement:
+        case Assignment(target, value):
+            return f"{_print(target, _POSTFIX)} := {_print(value, 0)}"
+        case Send(signal, args, receiver):
+            arguments = f"({_commas(args)})" if args else ""
+            end = "" if receiver is None else f" to {_print(receiver, _POSTFIX)}"
+            return f"send {_print(signal, _POSTFIX)}{arguments}{end}"
+        case Invocation(call):
+            return _print(call, _POSTFIX)
+
+
+def print_effect(statements: tuple[Statement, ...]) -> str:
+    """Statements separated by semicolons."""
+    return "; ".join(print_statement(statement) for statement in statements)
+
+
+def dotted(expression: Expression) -> str | None:
+    """The name that a chain of features is (``a.b``, ``A::B``), or None for anything else."""
+    match expression:
+        case Name(path):
+            return "::".join(path)
+        case Member(base, name):
+            before = dotted(base)
+            return None if before is None else f"{before}.{name}"
+        case _:
+            return None
+
+
+def _print(expression: Expression, strength: int) -> str:
+    text, own = _printed(expression)
+    return f"({text})" if own < strength else text
+
+
+def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
+    match expression:
+        case Literal(value):
+            return _print_literal(value), _POSTFIX
+        case Name(path):
+            return "::".join(map(_print_name, path)), _POSTFIX
+        case Member(base, name):
+            return f"{_print(base, _POSTFIX)}.{_print_name(name)}", _POSTFIX
+        case Call(function, args):
+            return f"{_print(function, _POSTFIX)}({_commas(args)})", _POSTFIX
+        case Index(base, index):
+            return f"{_print(base, _POSTFIX)}#({_print(index, 0)})", _POSTFIX
+        case Unary(op, operand):
+            return f"{op}{' ' * (op == 'not')}{_print(operand, _UNARY)}", _UNARY
+        case Binary():
+            return _print_binary(expression)
+        case Conditional(condition, then, otherwise):
+            parts = _print(condition, 2), _print(then, 0), _print(otherwise, 0)
+            return "if {} ? {} else {}".format(*parts), 0
+
+
+def _print_binary(expression: Binary) -> tuple[str, int]:
+    own = _STRENGTH[expression.op]
+    to_the_right = expression.op == "implies"
+    left = _print(expression.left, own + to_the_right)
+    right = _print(expression.right, own + (not to_the_right))
+    return f"{left} {expression.op} {right}", own
+
+
+def _commas(args: tuple[Expression, ...]) -> str:
+    return ", ".join(_print(arg, 0) for arg in args)
+
+
+def _print_name(name: str) -> str:
+    plain = name.isidentifier() and name not in KEYWORDS
+    return name if plain else _quoted(name, "'")
+
+
+def _print_literal(value: bool | float | str) -> str:
+    if isinstance(value, str):
+        return _quoted(value, '"')
+    return str(value).lower()
+
+
+def _quoted(text: str, quote: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace("\n", "\\n").replace(quote, f"\\{quote}")
+    return f"{quote}{escaped}{quote}"

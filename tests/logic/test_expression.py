@@ -1,0 +1,152 @@
+"""The expression grammar: what modellers write, what it means, and that printing loses nothing."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sysmlc.logic.expression import (
+    Assignment,
+    Binary,
+    Call,
+    Conditional,
+    ExpressionError,
+    Index,
+    Invocation,
+    Literal,
+    Member,
+    Name,
+    Send,
+    Unary,
+    dotted,
+    parse_effect,
+    parse_expression,
+    print_effect,
+    print_expression,
+)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("a && b || !c", "a and b or not c"),
+        ("a & b | c", "a and b or c"),
+        ("x = 3", "x == 3"),
+        ("x<>3", "x != 3"),
+        ("a AND NOT b", "a and not b"),
+        ("a implies b implies c", "a implies b implies c"),
+        ("(a implies b) implies c", "(a implies b) implies c"),
+        ("1 - (2 - 3) - 4", "1 - (2 - 3) - 4"),
+        ("(a or b) and c xor d", "(a or b) and c xor d"),
+        ("if x > 0 ? x else -x", "if x > 0 ? x else -x"),
+        ("Modes::auto", "Modes::auto"),
+        ("gate.sensor.value >= 2.5", "gate.sensor.value >= 2.5"),
+        ("xs[i + 1]", "xs#(i + 1)"),
+        ("xs#(1)", "xs#(1)"),
+        ("isFree(bay, 2)", "isFree(bay, 2)"),
+        ('\'bay number\' == "A \\"1\\""', '\'bay number\' == "A \\"1\\""'),
+        ("iff or android", "iff or android"),
+        ("not(a)", "not a"),
+        ("a // remark\n and b", "a and b"),
+    ],
+)
+def test_spellings(written, meant):
+    assert print_expression(parse_expression(written)) == meant
+
+
+def test_equality_binds_weaker_than_comparison_and_stronger_than_and():
+    assert parse_expression("a == b < c and d") == Binary(
+        "and",
+        Binary("==", Name(("a",)), Binary("<", Name(("b",)), Name(("c",)))),
+        Name(("d",)),
+    )
+
+
+def test_offsets_count_characters():
+    comparison = parse_expression("free and bay == 3").right
+    assert (comparison.offset, comparison.right.offset) == (9, 16)
+
+
+@pytest.mark.parametrize(
+    ("text", "offset"), [("a and", 5), ("a b", 2), ("", 0), ("x > 3 °C", 6), ("((a)", 4)]
+)
+def test_what_is_no_expression_is_refused_with_its_place(text, offset):
+    with pytest.raises(ExpressionError) as caught:
+        parse_expression(text)
+    assert caught.value.offset == offset
+
+
+def test_deep_nesting_is_no_crash():
+    assert parse_expression("(" * 20_000 + "a" + ")" * 20_000) == Name(("a",))
+    with pytest.raises(ExpressionError, match="nested too deeply"):
+        parse_expression("not " * 20_000 + "a")
+
+
+def test_effects():
+    assert parse_effect("x := x + 1; open = true; beep(2); send done(x) to gate; stop;") == (
+        Assignment(Name(("x",)), Binary("+", Name(("x",)), Literal(1))),
+        Assignment(Name(("open",)), Literal(True)),
+        Invocation(Call(Name(("beep",)), (Literal(2),))),
+        Send(Name(("done",)), (Name(("x",)),), Name(("gate",))),
+        Invocation(Name(("stop",))),
+    )
+    assert parse_effect("") == ()
+    assert parse_effect(";;") == ()
+
+
+@pytest.mark.parametrize("text", ["f(x) := 2", "3", "x > 2"])
+def test_what_does_nothing_is_no_effect(text):
+    with pytest.raises(ExpressionError):
+        parse_effect(text)
+
+
+def test_dotted_names():
+    assert dotted(parse_expression("A::b.c")) == "A::b.c"
+    assert dotted(parse_expression("f(x).c")) is None
+
+
+_names = st.sampled_from(["a", "b", "bay number", "if", "größe", "it's", "back\\slash", "x\ny"])
+_literals = st.builds(
+    Literal,
+    st.booleans()
+    | st.integers(0, 10**12)
+    | st.floats(0, 1e9, allow_nan=False).map(abs)
+    | st.text("ab \"\\\n'", max_size=5),
+)
+_atoms = _literals | st.builds(Name, st.lists(_names, min_size=1, max_size=3).map(tuple))
+
+
+_OPERATORS = tuple("implies or xor and == != < <= > >= + - * / %".split(" "))
+
+
+def _compound(inner):
+    return st.one_of(
+        st.builds(Binary, st.sampled_from(_OPERATORS), inner, inner),
+        st.builds(Unary, st.sampled_from(["not", "-", "+"]), inner),
+        st.builds(Conditional, inner, inner, inner),
+        st.builds(Member, inner, _names),
+        st.builds(Call, inner, st.lists(inner, max_size=2).map(tuple)),
+        st.builds(Index, inner, inner),
+    )
+
+
+expressions = st.recursive(_atoms, _compound, max_leaves=12)
+
+
+@given(expressions)
+@settings(max_examples=150, deadline=None)
+def test_printing_and_reading_again_gives_the_same(expression):
+    assert parse_expression(print_expression(expression)) == expression
+
+
+_features = st.builds(Name, st.lists(_names, min_size=1, max_size=2).map(tuple))
+_statements = st.one_of(
+    st.builds(Assignment, _features, expressions),
+    st.builds(Send, _features, st.lists(expressions, max_size=2).map(tuple), st.none() | _features),
+    st.builds(Invocation, st.builds(Call, _features, st.lists(expressions, max_size=2).map(tuple))),
+)
+
+
+@given(st.lists(_statements, max_size=3).map(tuple))
+@settings(max_examples=60, deadline=None)
+def test_effects_survive_printing(effect):
+    assert parse_effect(print_effect(effect)) == effect
