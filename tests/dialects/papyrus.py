@@ -167,7 +167,7 @@ class PapyrusDocument:
         return id_
 
 
-_BASES = {"Block": "Class", "TestCase": "Behavior"}
+_BASES = {"TestCase": "Behavior", "ValueType": "DataType"}
 """Stereotypes whose base property names a general metaclass."""
 
 
