@@ -1,0 +1,276 @@
+"""Writes a Papyrus document again as MagicDraw 19 saves the same model (XML, and .mdzip).
+
+The differences are those of the dialect table in the project's notes on XMI: no xmi:version, OMG
+namespaces, lists of references as child elements, ids of 41 characters, one SysML namespace with
+capital Id and Text, bounds of pins and parameters inside extensions, flows not repeated at their
+nodes, a path on nearly every connector end, readable names beside references to other files, and
+diagrams.
+"""
+
+import hashlib
+import io
+import zipfile
+from collections.abc import Iterator
+
+from lxml import etree
+
+from dialects.papyrus import SYSML as PAPYRUS_SYSML
+from dialects.papyrus import UML as PAPYRUS_UML
+from dialects.papyrus import XMI, Element, id_of
+
+UML = "http://www.omg.org/spec/UML/20131001"
+SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
+PROFILE = "http://www.omg.org/spec/UML/20131001/MagicDrawProfile"
+DIAGRAM = "http://www.nomagic.com/ns/magicdraw/core/diagram/1.0"
+EXTENDER = "MagicDraw UML 19.0"
+ROOT_ID = "eee_1045467100313_135436_1"
+MODEL_ENTRY = "com.nomagic.magicdraw.uml_model.model"
+
+_LISTS = frozenset(
+    (
+        "annotatedElement",
+        "bodyPart",
+        "client",
+        "constrainedElement",
+        "conveyed",
+        "covered",
+        "inPartition",
+        "informationSource",
+        "informationTarget",
+        "memberEnd",
+        "method",
+        "navigableOwnedEnd",
+        "raisedException",
+        "realizingConnector",
+        "redefinedOperation",
+        "redefinedPort",
+        "redefinedProperty",
+        "setupPart",
+        "subsettedProperty",
+        "supplier",
+        "test",
+    )
+)
+"""Features that hold several references: MagicDraw writes each reference as a child."""
+
+_NOT_SAVED = frozenset({"incoming", "outgoing", "partition", "base_NamedElement"})
+"""What Papyrus saves and MagicDraw derives."""
+
+_LISTS_OF = {
+    "uml:ActivityPartition": {"node", "edge"},
+    "uml:InstanceSpecification": {"classifier"},
+    "uml:InterruptibleActivityRegion": {"node", "interruptingEdge"},
+}
+"""Features that are lists of references in these metaclasses only."""
+
+_CAPITAL = {("Requirement", "id"): "Id", ("Requirement", "text"): "Text"}
+
+_BOUNDED_IN_EXTENSION = frozenset(
+    {"uml:Parameter", "uml:InputPin", "uml:OutputPin", "uml:ValuePin"}
+)
+
+_PRIMITIVES = "pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#"
+_LIBRARY = "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML."
+_SYSML_PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#"
+
+
+def write_xml(papyrus: bytes) -> bytes:
+    """The document as MagicDraw saves it in one XML file."""
+    source = etree.fromstring(papyrus)
+    writer = _Writer(source)
+    etree.indent(writer.root, space="\t")
+    return etree.tostring(writer.root, xml_declaration=True, encoding="UTF-8")
+
+
+def write_mdzip(papyrus: bytes) -> bytes:
+    """The document as a MagicDraw project: a zip with the model among other entries."""
+    buffer = io.BytesIO()
+    entries = {
+        "PROJECT-5d0cf1f2-3c61-4a8a-a4c1-2b4c27c0f3aa": b"",
+        "Records.properties": b"#records\n",
+        "BINARY-004d58df-51cf-4b9f-bdd8-b12336862a99": b"<diagram xmi:id='unbound prefix'/>",
+        MODEL_ENTRY: write_xml(papyrus),
+    }
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in entries.items():
+            archive.writestr(zipfile.ZipInfo(name, (2021, 3, 31, 9, 38, 0)), data)
+    return buffer.getvalue()
+
+
+class _Writer:
+    """One document on its way from Papyrus to MagicDraw."""
+
+    def __init__(self, source: Element) -> None:
+        self._ids = {id_of(element): _magicdraw_id(id_of(element)) for element in _with_id(source)}
+        own = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
+        self.root = etree.Element(
+            f"{{{XMI}}}XMI",
+            nsmap={"uml": UML, "xmi": XMI, "sysml": SYSML, "MagicDraw_Profile": PROFILE, **own},
+        )
+        self._head()
+        for element in source:
+            if element.tag == f"{{{PAPYRUS_UML}}}Model":
+                self._ids[id_of(element)] = ROOT_ID
+                self._model(element)
+            else:
+                self._application(element)
+        self._end_paths(source)
+
+    def _head(self) -> None:
+        documentation = etree.SubElement(self.root, f"{{{XMI}}}Documentation")
+        etree.SubElement(documentation, f"{{{XMI}}}exporter").text = "MagicDraw UML"
+        etree.SubElement(documentation, f"{{{XMI}}}exporterVersion").text = "19.0 v9"
+        extension = _extension(self.root)
+        etree.SubElement(extension, "plugin", pluginName="SysML", pluginVersion="19.0")
+
+    def _model(self, source: Element) -> None:
+        model = etree.SubElement(self.root, f"{{{UML}}}Model", {f"{{{XMI}}}type": "uml:Model"})
+        self._copy_content(source, model)
+        self._diagram(model)
+
+    def _copy(self, source: Element, owner: Element) -> None:
+        tag = etree.QName(source).localname
+        if tag == "eAnnotations" or _is_package_of_sysml(source):
+            return
+        if "href" in source.attrib:
+            _outside_reference(source, etree.SubElement(owner, tag))
+        elif tag in ("lowerValue", "upperValue") and _type(owner) in _BOUNDED_IN_EXTENSION:
+            box = etree.SubElement(_extension(owner), "modelExtension")
+            self._copy_content(source, etree.SubElement(box, tag))
+        else:
+            self._copy_content(source, etree.SubElement(owner, tag))
+
+    def _copy_content(self, source: Element, made: Element) -> None:
+        type_ = f"{{{XMI}}}type"
+        if type_ in source.attrib:
+            made.set(type_, source.attrib[type_])
+        for name, value in source.attrib.items():
+            if name != type_ and name not in _NOT_SAVED:
+                self._feature(made, str(name), str(value))
+        for child in source:
+            self._copy(child, made)
+        _text(source, made)
+
+    def _feature(self, made: Element, name: str, value: str) -> None:
+        ids = value.split()
+        if name == f"{{{XMI}}}id":
+            made.set(name, self._ids[value])
+        elif name in _LISTS or name in _LISTS_OF.get(_type(made), ()):
+            for id_ in ids:
+                etree.SubElement(made, name, {f"{{{XMI}}}idref": self._ids.get(id_, id_)})
+        elif name not in ("name", "value", "body") and all(id_ in self._ids for id_ in ids):
+            made.set(name, " ".join(self._ids[id_] for id_ in ids))
+        else:
+            made.set(name, value)
+
+    def _application(self, source: Element) -> None:
+        qualified = etree.QName(source)
+        namespace = SYSML if str(qualified.namespace).startswith(PAPYRUS_SYSML) else None
+        tag = f"{{{namespace or qualified.namespace}}}{qualified.localname}"
+        made = etree.SubElement(self.root, tag)
+        for name, value in source.attrib.items():
+            if name not in _NOT_SAVED:
+                capital = _CAPITAL.get((qualified.localname, str(name)), str(name))
+                self._tag(made, capital, str(value))
+        for child in source:
+            etree.SubElement(made, etree.QName(child).localname).text = child.text
+
+    def _tag(self, made: Element, name: str, value: str) -> None:
+        if name in ("Id", "Text"):
+            made.set(name, value)
+            return
+        words = value.split(" ")
+        made.set(name, " ".join(self._ids.get(word, word) for word in words))
+
+    def _end_paths(self, source: Element) -> None:
+        """MagicDraw notes the path of nearly every connector end, also where it is one part."""
+        told = {str(e.get("base_ConnectorEnd")) for e in source if "base_ConnectorEnd" in e.attrib}
+        for end in source.iter("end"):
+            if "partWithPort" in end.attrib and id_of(end) not in told:
+                path = etree.SubElement(self.root, f"{{{SYSML}}}NestedConnectorEnd")
+                path.set(f"{{{XMI}}}id", _magicdraw_id(id_of(end) + "path"))
+                path.set("base_ConnectorEnd", self._ids[id_of(end)])
+                path.set("propertyPath", self._ids[str(end.get("partWithPort"))])
+
+    def _diagram(self, model: Element) -> None:
+        box = etree.SubElement(_extension(model), "modelExtension")
+        kept = etree.SubElement(box, "ownedDiagram", {f"{{{XMI}}}type": "uml:Diagram"})
+        kept.set(f"{{{XMI}}}id", _magicdraw_id("diagram"))
+        kept.set("name", "Overview")
+        kept.set("ownerOfDiagram", ROOT_ID)
+        shown = etree.SubElement(_extension(kept), "diagramRepresentation")
+        drawn = etree.SubElement(
+            shown, f"{{{DIAGRAM}}}DiagramRepresentationObject", nsmap={"diagram": DIAGRAM}
+        )
+        drawn.set("ID", _magicdraw_id("drawn"))
+        drawn.set("diagramProperties", "3c 3f 78 6d 6c")
+        for element in list(model.iter("packagedElement"))[:5]:
+            etree.SubElement(drawn, "usedObjects", href="#" + id_of(element))
+            etree.SubElement(drawn, "usedElements").text = id_of(element)
+        model.insert(0, box.getparent())
+
+
+def _with_id(source: Element) -> Iterator[Element]:
+    return (element for element in source.iter() if id_of(element))
+
+
+def _magicdraw_id(id_: str) -> str:
+    number = int(hashlib.sha256(id_.encode()).hexdigest(), 16)
+    stamp, rest = 1_600_000_000_000 + number % 20_000_000_000, number // 20_000_000_000
+    return f"_19_0_4_25dc056a_{stamp}_{rest % 1_000_000:06}_{rest // 1_000_000 % 100_000:05}"
+
+
+def _is_custom(uri: str) -> bool:
+    known = (PAPYRUS_SYSML, PAPYRUS_UML, XMI, "http://www.w3.org", "http://www.eclipse.org/emf")
+    return not uri.startswith(known)
+
+
+def _is_package_of_sysml(source: Element) -> bool:
+    """Papyrus applies SysML package by package; MagicDraw applies it once."""
+    profile = source.find("appliedProfile")
+    if profile is None or not str(profile.get("href")).startswith(_SYSML_PROFILE):
+        return False
+    earlier = source.itersiblings(source.tag, preceding=True)
+    return any(_SYSML_PROFILE in etree.tostring(one, encoding="unicode") for one in earlier)
+
+
+def _type(element: Element) -> str:
+    return element.get(f"{{{XMI}}}type", "")
+
+
+def _extension(owner: Element) -> Element:
+    return etree.SubElement(owner, f"{{{XMI}}}Extension", extender=EXTENDER)
+
+
+def _text(source: Element, made: Element) -> None:
+    if source.text and source.text.strip():
+        made.text = source.text
+    if _type(source) == "uml:Comment":
+        body = made.find("body")
+        if body is not None:
+            made.set("body", body.text or "")
+            made.remove(body)
+
+
+def _outside_reference(source: Element, made: Element) -> None:
+    """A reference to another file, with the readable path that MagicDraw puts beside it."""
+    href, path = _standard(str(source.get("href")))
+    made.set("href", href)
+    detail = {"referentPath": path, "referentType": _type(source).removeprefix("uml:")}
+    etree.SubElement(_extension(made), "referenceExtension", detail)
+
+
+def _standard(href: str) -> tuple[str, str]:
+    """What MagicDraw calls an element of the standards' files: where it is, and its path."""
+    primitives = "UML Standard Profile::UML2 Metamodel::PrimitiveTypes"
+    if href.startswith(_PRIMITIVES):
+        name = href.removeprefix(_PRIMITIVES)
+        path = primitives if name == "_0" else f"{primitives}::{name}"
+        return f"{UML}/PrimitiveTypes.xmi#{name}", path
+    if href.startswith(_LIBRARY):
+        names = [step.rpartition("_")[2] for step in href.removeprefix(_LIBRARY).split(".")]
+        steps = "-".join(f"{name}_PackageableElement" for name in names)
+        return f"{SYSML}.xmi#_SysML_{steps}", "::".join(["SysML", *names])
+    if href.startswith(_SYSML_PROFILE):
+        return f"{SYSML}.xmi#_SysML__0", "SysML"
+    return href, href.rpartition("#")[2]
