@@ -1,0 +1,287 @@
+"""Questions that passes and back ends ask of a graph, answered without changing it."""
+
+from collections.abc import Callable, Iterable, Iterator
+
+from sysmlc.ir.element import AttrValue, Element
+from sysmlc.ir.graph import Graph
+from sysmlc.ir.kinds import Edge, Kind
+
+CLASSIFIERS = (
+    Kind.CLASS,
+    Kind.COMPONENT,
+    Kind.INTERFACE,
+    Kind.DATA_TYPE,
+    Kind.ENUMERATION,
+    Kind.SIGNAL,
+    Kind.ASSOCIATION,
+    Kind.STEREOTYPE,
+    Kind.REQUIREMENT,
+    Kind.TEST_CASE,
+    Kind.USE_CASE,
+    Kind.ACTOR,
+    Kind.VIEW,
+    Kind.ITEM,
+    Kind.UNIT,
+    Kind.QUANTITY_KIND,
+    Kind.ACTIVITY,
+    Kind.STATE_MACHINE,
+    Kind.INTERACTION,
+)
+"""Kinds of UML classifiers (UML 2.5.1 clause 9.9.4); behaviours are classes."""
+
+BEHAVIORS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION)
+STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
+
+_OPPOSITE = {"in": "out", "out": "in"}
+
+
+# -- stereotypes -------------------------------------------------------------------------------
+
+
+def applications(graph: Graph, element: Element) -> list[Element]:
+    """Stereotype applications on the element, in order."""
+    found = graph.sources(element, Edge.SUBJECT)
+    return [one for one in found if one.kind is Kind.APPLICATION]
+
+
+def lineage(application: Element) -> tuple[str, ...]:
+    """Local names from the applied stereotype to the most general one.
+
+    Before ``classify`` has run it is the applied stereotype's name alone.
+    """
+    names = application.attrs.get("lineage")
+    if isinstance(names, tuple):
+        return tuple(str(name) for name in names)
+    return (str(application.attrs.get("stereotype", "")),)
+
+
+def stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
+    """Local names of the stereotypes that apply, general ones included, each once."""
+    names = (name for one in applications(graph, element) for name in lineage(one))
+    return tuple(dict.fromkeys(names))
+
+
+def has_stereotype(graph: Graph, element: Element, *names: str) -> bool:
+    """Whether one of the stereotypes, or one that specialises it, applies."""
+    return not set(names).isdisjoint(stereotypes(graph, element))
+
+
+def tag(graph: Graph, element: Element, name: str) -> AttrValue:
+    """First tagged value of this name on the element, or None; an exact name goes first.
+
+    MagicDraw writes ``Text`` and ``Id`` where Papyrus writes ``text`` and ``id``, so that case
+    is ignored when no name fits exactly.
+    """
+    found = applications(graph, element)
+    for application in found:
+        if f"tag.{name}" in application.attrs:
+            return application.attrs[f"tag.{name}"]
+    for application in found:
+        for key, value in application.attrs.items():
+            if key.lower() == f"tag.{name.lower()}":
+                return value
+    return None
+
+
+# -- classifiers and features ------------------------------------------------------------------
+
+
+def generals(graph: Graph, classifier: Element) -> list[Element]:
+    """Everything that the classifier specialises, nearest first; cycles do no harm."""
+    found: dict[str, Element] = {}
+    level = [classifier]
+    while level:
+        level = [up for one in level for up in graph.targets(one, Edge.SPECIALIZES)]
+        level = [up for up in dict.fromkeys(level) if up.id not in found]
+        found.update((up.id, up) for up in level)
+    found.pop(classifier.id, None)
+    return list(found.values())
+
+
+def conforms(graph: Graph, specific: Element, general: Element) -> bool:
+    """Whether the first classifier is the second, specialises it or realises it."""
+    if specific is general:
+        return True
+    family = [specific, *generals(graph, specific)]
+    realised = [up for one in family for up in graph.targets(one, Edge.REALIZES)]
+    return general in family or general in realised
+
+
+def features(graph: Graph, classifier: Element) -> list[Element]:
+    """Effective features: what ``inherit`` found, or the own ones before it has run."""
+    found = graph.targets(classifier, Edge.FEATURE)
+    return found or [one for one in graph.owned(classifier) if one.kind in FEATURES]
+
+
+def type_of(graph: Graph, element: Element) -> Element | None:
+    """Type of a typed element; a feature without one has that of the feature it redefines."""
+    return _through_redefinition(graph, element, lambda one: graph.target(one, Edge.TYPED_BY))
+
+
+def _through_redefinition(
+    graph: Graph, feature: Element, ask: Callable[[Element], Element | None]
+) -> Element | None:
+    seen: dict[str, Element] = {}
+    level = [feature]
+    while level:
+        for one in level:
+            answer = ask(one)
+            if answer is not None:
+                return answer
+        seen.update((one.id, one) for one in level)
+        level = [up for one in level for up in graph.targets(one, Edge.REDEFINES)]
+        level = [up for up in dict.fromkeys(level) if up.id not in seen]
+    return None
+
+
+def parts(graph: Graph, block: Element) -> list[Element]:
+    """Effective parts of a block: composite properties typed by a class."""
+    return [one for one in features(graph, block) if one.role == "part"]
+
+
+def ports(graph: Graph, block: Element) -> list[Element]:
+    """Effective ports of a block."""
+    return [one for one in features(graph, block) if one.kind is Kind.PORT]
+
+
+def flow_properties(graph: Graph, type_: Element) -> list[Element]:
+    """Effective flow properties of the type of a port."""
+    return [one for one in features(graph, type_) if is_flow_property(one)]
+
+
+def is_flow_property(feature: Element) -> bool:
+    """Whether the feature says what flows and in which direction (SysML 1.6 clause 9.3.2.7)."""
+    return feature.kind is Kind.FLOW_PROPERTY or feature.role == "flow property"
+
+
+def parameters(graph: Graph, owner: Element, *directions: str) -> list[Element]:
+    """Parameters of an operation or behaviour with one of the directions (all when none given).
+
+    A parameter without a direction is ``in`` (UML 2.5.1 clause 9.9.12).
+    """
+    found = [one for one in graph.owned(owner) if one.kind is Kind.PARAMETER]
+    return [one for one in found if not directions or direction_of(one) in directions]
+
+
+def direction_of(parameter: Element) -> str:
+    """Direction of a parameter, with UML's default."""
+    return str(parameter.attrs.get("direction", "in"))
+
+
+def classifier_behavior(graph: Graph, classifier: Element) -> Element | None:
+    """The classifier behaviour, its own or else the nearest inherited one."""
+    for one in (classifier, *generals(graph, classifier)):
+        found = graph.target(one, Edge.CLASSIFIER_BEHAVIOR)
+        if found is not None:
+            return found
+    return None
+
+
+# -- relations ---------------------------------------------------------------------------------
+
+
+def flow_source(graph: Graph, flow: Element) -> Element | None:
+    """Where a flow or transition starts."""
+    return graph.target(flow, Edge.FLOW_SOURCE)
+
+
+def flow_target(graph: Graph, flow: Element) -> Element | None:
+    """Where a flow or transition ends."""
+    return graph.target(flow, Edge.FLOW_TARGET)
+
+
+def incoming(graph: Graph, node: Element, *kinds: Kind) -> list[Element]:
+    """Flows (of these kinds) or transitions that end at the node."""
+    return _of(graph.sources(node, Edge.FLOW_TARGET), kinds)
+
+
+def outgoing(graph: Graph, node: Element, *kinds: Kind) -> list[Element]:
+    """Flows (of these kinds) or transitions that start at the node."""
+    return _of(graph.sources(node, Edge.FLOW_SOURCE), kinds)
+
+
+def _of(elements: Iterable[Element], kinds: tuple[Kind, ...]) -> list[Element]:
+    return [one for one in elements if not kinds or one.kind in kinds]
+
+
+def ends(graph: Graph, relation: Element) -> list[Element]:
+    """Ends of a connector or association, in order."""
+    return graph.targets(relation, Edge.END)
+
+
+def opposite_end(graph: Graph, relation: Element, end: Element) -> Element | None:
+    """The other end of a binary connector or association, or None."""
+    others = [one for one in ends(graph, relation) if one is not end]
+    return others[0] if len(others) == 1 else None
+
+
+def role_of(graph: Graph, end: Element) -> Element | None:
+    """The part or port that a connector end is attached to."""
+    return graph.target(end, Edge.ROLE)
+
+
+def is_boundary(graph: Graph, end: Element) -> bool:
+    """Whether a connector end is a port of the connector's own classifier, not of a part."""
+    role = role_of(graph, end)
+    is_port = role is not None and role.kind is Kind.PORT
+    return is_port and not graph.targets(end, Edge.PATH)
+
+
+def connectors_of(graph: Graph, role: Element) -> Iterator[Element]:
+    """Connectors that have an end at the part or port."""
+    for end in graph.sources(role, Edge.ROLE):
+        connector = graph.source(end, Edge.END)
+        if connector is not None:
+            yield connector
+
+
+def opposite(direction: str | None) -> str | None:
+    """The direction seen from the other side; ``inout`` and None stay."""
+    return None if direction is None else _OPPOSITE.get(direction, direction)
+
+
+# -- names and bounds --------------------------------------------------------------------------
+
+
+def component_name(graph: Graph, element: Element) -> str:
+    """Qualified name of the component that a behaviour or requirement belongs to.
+
+    A classifier behaviour is its classifier, another behaviour ``<Owner>.<behaviour>``, one
+    that a package owns stands alone, a requirement is its subject (design, section 6).
+    """
+    if element.kind in BEHAVIORS:
+        return _behavior_name(graph, element)
+    subject = _satisfier(graph, element) if element.role == "requirement" else None
+    return graph.qualified_name(subject or element)
+
+
+def _behavior_name(graph: Graph, behavior: Element) -> str:
+    owner = graph.owner(behavior)
+    if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
+        return graph.qualified_name(behavior)
+    above = component_name(graph, owner)
+    if behavior in graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
+        return above
+    return f"{above}.{behavior.name or f'<{behavior.kind}>'}"
+
+
+def _satisfier(graph: Graph, requirement: Element) -> Element | None:
+    return graph.target(requirement, Edge.SUBJECT) or graph.source(requirement, Edge.SATISFIES)
+
+
+def bounds(multiplicity: AttrValue) -> tuple[int, int | None] | None:
+    """Lower and upper bound of a multiplicity; upper None is unlimited.
+
+    Absent means exactly 1. The result is None when the text is not numbers.
+    """
+    lower, dots, upper = str("1" if multiplicity is None else multiplicity).partition("..")
+    if not dots:
+        lower, upper = ("0", "*") if lower == "*" else (lower, lower)
+    if not _is_number(lower) or not (upper == "*" or _is_number(upper)):
+        return None
+    return int(lower), None if upper == "*" else int(upper)
+
+
+def _is_number(text: str) -> bool:
+    return text.isascii() and text.isdecimal()
