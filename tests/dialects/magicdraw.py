@@ -267,10 +267,13 @@ def _standard(href: str) -> tuple[str, str]:
         name = href.removeprefix(_PRIMITIVES)
         path = primitives if name == "_0" else f"{primitives}::{name}"
         return f"{UML}/PrimitiveTypes.xmi#{name}", path
+    names = [step.rpartition("_")[2] for step in href.rpartition("#")[2].split(".")[1:]]
     if href.startswith(_LIBRARY):
-        names = [step.rpartition("_")[2] for step in href.removeprefix(_LIBRARY).split(".")]
         steps = "-".join(f"{name}_PackageableElement" for name in names)
         return f"{SYSML}.xmi#_SysML_{steps}", "::".join(["SysML", *names])
+    if href.startswith(_SYSML_PROFILE) and len(names) > 1:
+        number = _magicdraw_id(names[-1]).removeprefix("_19_0_4")
+        return f"{SYSML}.xmi#_11_5EAPbeta{number}", "::".join(["SysML", *names])
     if href.startswith(_SYSML_PROFILE):
         return f"{SYSML}.xmi#_SysML__0", "SysML"
     return href, href.rpartition("#")[2]
