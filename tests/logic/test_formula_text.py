@@ -1,0 +1,110 @@
+"""Formulas as text: reading what was printed gives the same formula; the corpus can be read."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.ltl import FormulaError, parse_formula
+from sysmlc.logic.printing import print_formula
+
+VARIABLES = {
+    "p": BooleanDomain(),
+    "q": BooleanDomain(),
+    "n": IntegerDomain(-2, 7),
+    "m": IntegerDomain(0, 3),
+    "mode": EnumerationDomain(("idle", "busy", "p")),
+}
+
+_numbers = st.recursive(
+    st.sampled_from([Const(3), Const(-2), Var("n"), Var("m"), Var("n", primed=True)]),
+    lambda inner: st.builds(
+        f.compare, st.sampled_from([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD]), inner, inner
+    ),
+    max_leaves=4,
+)
+_orders = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
+_atoms = st.one_of(
+    st.sampled_from([Var("p"), Var("q"), Var("q", primed=True), f.TRUE, f.FALSE]),
+    st.builds(f.compare, _orders, _numbers, _numbers),
+    st.builds(f.eq, st.sampled_from([Var("mode"), Var("mode", True)]), st.just(Const("p"))),
+)
+formulas = st.recursive(
+    _atoms,
+    lambda inner: st.one_of(
+        st.builds(f.negate, inner),
+        st.builds(f.both, inner, inner, inner),
+        st.builds(f.either, inner, inner),
+        st.builds(f.implies, inner, inner),
+        st.builds(f.iff, inner, inner),
+        st.builds(
+            lambda op, a: Apply(op, (a,)),
+            st.sampled_from([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY]),
+            inner,
+        ),
+        st.builds(
+            lambda op, a, b: Apply(op, (a, b)),
+            st.sampled_from([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL]),
+            inner,
+            inner,
+        ),
+    ),
+    max_leaves=10,
+)
+
+
+@given(formulas)
+@settings(max_examples=200, deadline=None)
+def test_printing_and_reading_again_gives_the_same(formula):
+    assert parse_formula(print_formula(formula), VARIABLES) == formula
+
+
+@pytest.mark.parametrize(
+    ("text", "neutral"),
+    [
+        ("[](p -> <>q)", "G (p -> F q)"),
+        ("p && {n==3} || !q", "p & n=3 | !q"),
+        ("mode=p & p", "mode=p & p"),
+        ("n'=n+1 -> X p", "n'=n + 1 -> X p"),
+        ("(p U q) V q", "(p U q) R q"),
+    ],
+)
+def test_spellings(text, neutral):
+    assert print_formula(parse_formula(text, VARIABLES)) == neutral
+
+
+@pytest.mark.parametrize("text", ["p &", "r", "mode", "n + 1", "mode=idle -> n", "p -> (", "3"])
+def test_what_is_no_formula_is_refused(text):
+    with pytest.raises(FormulaError):
+        parse_formula(text, VARIABLES)
+
+
+@pytest.mark.corpus
+def test_all_din_8580_contracts_can_be_read_and_printed():
+    corpus = os.environ.get("SYSMLC_CORPUS")
+    if not corpus:
+        pytest.skip("SYSMLC_CORPUS is not set")
+    files = sorted(Path(corpus, "gr1", "din8580").glob("*.json"))
+    assert len(files) == 33
+    for file in files:
+        contract = json.loads(file.read_text(encoding="utf-8"))
+        domains = {name: _domain(v["type"]) for name, v in contract["variables"].items()}
+        for side in ("assumptions", "guarantees"):
+            for texts in contract[side].values():
+                for text in texts:
+                    formula = parse_formula(text, domains)
+                    assert parse_formula(print_formula(formula), domains) == formula
+
+
+def _domain(type_):
+    if type_ == "bool":
+        return BooleanDomain()
+    if isinstance(type_[0], int):
+        return IntegerDomain(*type_)
+    return EnumerationDomain(tuple(type_))
