@@ -1,0 +1,121 @@
+"""Lines and columns of places, found only when something is to be shown."""
+
+import codecs
+import re
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+from sysmlc.diagnostics.diagnostic import Place
+from sysmlc.sources import Source, SourceError
+from sysmlc.sources.xml import parse, parser
+
+_DECLARED = re.compile(rb"""^<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
+_NEWLINE = re.compile("\r\n|\r|\n")
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """Where something stands: line and column count characters from 1; ``text`` is the line."""
+
+    line: int
+    column: int
+    text: str
+
+
+def locate(sources: Iterable[Source], places: Iterable[Place]) -> dict[Place, Location]:
+    """Locations of the places that can be found; each file is parsed at most once."""
+    wanted: dict[str, list[Place]] = {}
+    for place in places:
+        wanted.setdefault(place.file, []).append(place)
+    found: dict[Place, Location] = {}
+    for source in sources:
+        if source.name in wanted:
+            found.update(_in_file(source, wanted[source.name]))
+    return found
+
+
+def _in_file(source: Source, places: Sequence[Place]) -> dict[Place, Location]:
+    offsets = _offsets(source, {place.ordinal for place in places if place.ordinal >= 0})
+    exact = [(_offset(place, offsets), place) for place in places]
+    known = sorted(((o, p) for o, p in exact if o >= 0), key=lambda pair: pair[0])
+    text = _Text(source)
+    found = {place: text.location(offset) for offset, place in known}
+    return found | {p: text.line(p) for o, p in exact if o < 0 and p.line > 0}
+
+
+def _offset(place: Place, offsets: dict[int, int]) -> int:
+    return offsets.get(place.ordinal, -1) if place.ordinal >= 0 else place.offset
+
+
+def _offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
+    if not ordinals:
+        return {}
+    found: dict[int, int] = {}
+    made = parser()
+    last = max(ordinals)
+    seen = iter(range(last + 1))
+
+    def start(_name: str, _attributes: dict[str, str]) -> None:
+        ordinal = next(seen, -1)
+        if ordinal in ordinals:
+            found[ordinal] = made.CurrentByteIndex
+        if ordinal == last:
+            made.StartElementHandler = None
+
+    made.StartElementHandler = start
+    with suppress(SourceError):
+        parse(source, made)
+    return found
+
+
+class _Text:
+    """The source's text; offsets must be asked for in ascending order."""
+
+    def __init__(self, source: Source) -> None:
+        mark, self._encoding = _encoding(source.data)
+        self._data = source.data
+        self._offset = mark
+        self._before = 0
+        self._text = self._decode(source.data[mark:])
+        self._starts = [0, *(found.end() for found in _NEWLINE.finditer(self._text))]
+
+    def location(self, offset: int) -> Location:
+        """Location of a byte."""
+        if offset > self._offset:
+            self._before += len(self._decode(self._data[self._offset : offset]))
+            self._offset = offset
+        line = bisect_right(self._starts, self._before)
+        return Location(line, self._before - self._starts[line - 1] + 1, self._show(line))
+
+    def line(self, place: Place) -> Location:
+        """Location of a place whose line is known already."""
+        return Location(place.line, max(place.column, 1), self._show(place.line))
+
+    def _decode(self, data: bytes) -> str:
+        return data.decode(self._encoding, "replace")
+
+    def _show(self, line: int) -> str:
+        if line > len(self._starts):
+            return ""
+        end = self._starts[line] if line < len(self._starts) else len(self._text)
+        return self._text[self._starts[line - 1] : end].rstrip("\r\n")
+
+
+def _encoding(data: bytes) -> tuple[int, str]:
+    """Length of the byte order mark, and the encoding."""
+    for mark, name in _BOMS:
+        if data.startswith(mark):
+            return len(mark), name
+    declared = _DECLARED.match(data)
+    name = declared[1].decode("ascii") if declared else "utf-8"
+    try:
+        return 0, codecs.lookup(name).name
+    except LookupError:
+        return 0, "latin-1"

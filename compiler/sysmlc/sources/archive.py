@@ -1,0 +1,90 @@
+"""Archives (.mdzip, .kpar, .amlx) read entry by entry, with caps and without touching the disk."""
+
+import io
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from typing import IO
+
+from sysmlc.sources.error import Fault, SourceError
+from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
+from sysmlc.sources.source import Source
+
+_MAGIC = b"PK\x03\x04"
+_CHUNK = 1 << 20
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+
+
+def is_archive(data: bytes) -> bool:
+    """Whether the bytes start as a zip archive does."""
+    return data.startswith(_MAGIC)
+
+
+def entries(
+    archive: Source, wanted: Callable[[str], bool], limits: Limits = DEFAULT_LIMITS
+) -> list[Source]:
+    """The entries whose names are wanted, by name, as ``archive!entry``.
+
+    Sizes are counted while reading: what the archive says about itself is not believed.
+    Raises SourceError for a damaged archive, names that are absolute, lead upwards or occur
+    twice, other methods than stored and deflate, encryption, and what exceeds the limits.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
+            return list(_read_all(archive.name, opened, wanted, limits))
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, ValueError) as problem:
+        raise SourceError(f"damaged archive: {problem}", archive.name) from None
+
+
+def _read_all(
+    name: str, opened: zipfile.ZipFile, wanted: Callable[[str], bool], limits: Limits
+) -> Iterator[Source]:
+    infos = opened.infolist()
+    _check_names(name, infos, limits)
+    left = limits.total_size
+    for info in sorted(infos, key=lambda entry: entry.filename):
+        if info.is_dir() or not wanted(info.filename):
+            continue
+        _check_method(name, info)
+        with opened.open(info) as stream:
+            data = _read(f"{name}!{info.filename}", stream, info, left, limits)
+        left -= len(data)
+        yield Source(f"{name}!{info.filename}", data)
+
+
+def _check_names(name: str, infos: list[zipfile.ZipInfo], limits: Limits) -> None:
+    if len(infos) > limits.entries:
+        raise SourceError(f"more than {limits.entries} entries", name, fault=Fault.LIMIT)
+    seen: set[str] = set()
+    for info in infos:
+        if info.orig_filename in seen or info.filename in seen:
+            raise SourceError(f"two entries are named '{info.filename}'", name)
+        seen.add(info.filename)
+        if _leads_out(info.orig_filename) or _leads_out(info.filename):
+            message = f"the name of entry '{info.filename}' leads out of the archive"
+            raise SourceError(message, name, fault=Fault.REFUSED)
+
+
+def _leads_out(entry: str) -> bool:
+    path = entry.replace("\\", "/")
+    return path.startswith("/") or path[1:2] == ":" or ".." in path.split("/") or "\0" in path
+
+
+def _check_method(name: str, info: zipfile.ZipInfo) -> None:
+    if info.compress_type not in _METHODS:
+        message = f"entry '{info.filename}' is neither stored nor deflated"
+        raise SourceError(message, name, fault=Fault.REFUSED)
+    if info.flag_bits & 0x1:
+        raise SourceError(f"entry '{info.filename}' is encrypted", name, fault=Fault.REFUSED)
+
+
+def _read(name: str, stream: IO[bytes], info: zipfile.ZipInfo, left: int, limits: Limits) -> bytes:
+    cap = min(left, max(info.compress_size * limits.ratio, _CHUNK), limits.file_size)
+    pieces: list[bytes] = []
+    size = 0
+    while piece := stream.read(_CHUNK):
+        size += len(piece)
+        if size > cap:
+            raise SourceError("unpacks to more than the limits allow", name, fault=Fault.LIMIT)
+        pieces.append(piece)
+    return b"".join(pieces)

@@ -1,0 +1,21 @@
+"""How large an input may be."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits of one input; sizes in bytes. Real archives stay below a ratio of 18."""
+
+    file_size: int = 2 << 30
+    depth: int = 2_000
+    """Nesting of XML elements; expat alone accepts a million."""
+    entries: int = 10_000
+    """Entries of an archive."""
+    total_size: int = 2 << 30
+    """What all entries of an archive hold when unpacked."""
+    ratio: int = 200
+    """Unpacked to packed size of one entry, above the first megabyte."""
+
+
+DEFAULT_LIMITS = Limits()

@@ -1,0 +1,33 @@
+"""Which files a reference in a model may reach."""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import unquote
+
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
+
+
+@dataclass(frozen=True, slots=True)
+class Roots:
+    """Folders that references may lead into; nothing outside them is ever opened."""
+
+    folders: tuple[Path, ...]
+
+    def resolve(self, base: Path, href: str) -> Path | None:
+        """The file that ``href`` in the file ``base`` names, if it is there and allowed.
+
+        Anything with a scheme (http, pathmap, platform) is never followed; symbolic links
+        count as where they lead.
+        """
+        path = unquote(href.partition("#")[0])
+        if not path or _SCHEME.match(path) or "\0" in path:
+            return None
+        target = Path(os.path.realpath(base.parent / path))
+        return target if self.allows(target) and target.is_file() else None
+
+    def allows(self, path: Path) -> bool:
+        """Whether the real place of the path is inside one of the folders."""
+        real = Path(os.path.realpath(path))
+        return any(real.is_relative_to(os.path.realpath(folder)) for folder in self.folders)
