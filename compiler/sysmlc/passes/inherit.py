@@ -1,0 +1,338 @@
+"""Pass ``inherit``: effective features of every classifier, and rules of inheritance."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import CLASSIFIERS, FEATURES, bounds, conforms, generals
+from sysmlc.ir.views import networkx
+
+GENERALIZATION_CYCLE = rule(
+    "SM200",
+    "generalization-cycle",
+    Severity.ERROR,
+    "'{element}' specialises itself: {cycle}",
+    why="A classifier cannot be more special than itself (UML 2.5.1 clause 9.9.4), so what it "
+    "inherits is not defined.",
+    help="remove one generalization of the circle",
+    wrong="""\
+Class a "Gate"
+  -> specializes b
+Class b "Slow gate"
+  -> specializes a
+""",
+    right="""\
+Class a "Gate"
+Class b "Slow gate"
+  -> specializes a
+""",
+)
+GENERALIZATION_KIND = rule(
+    "SM201",
+    "generalization-kind",
+    Severity.WARNING,
+    "{kind} '{element}' specialises {general_kind} '{general}'",
+    why="A classifier specialises classifiers of its own kind (UML 2.5.1 clause 9.9.4, "
+    "maySpecializeType).",
+    help="use a realization, or make both the same kind of element",
+    wrong="""\
+Class a "Gate"
+  -> specializes b
+DataType b "Position"
+""",
+    right="""\
+Component a "Gate"
+  -> specializes b
+Class b "Position"
+""",
+)
+REDEFINES_STRANGER = rule(
+    "SM202",
+    "redefines-stranger",
+    Severity.WARNING,
+    "'{element}' {relation} '{other}', which it does not inherit",
+    why="Only inherited features can be redefined or subsetted from outside (UML 2.5.1 clause "
+    "9.9.17), so the feature is kept beside the other one.",
+    help="add the generalization that is missing, or remove the relation",
+    wrong="""\
+Class gate "Gate"
+  Property gate.motor "motor"
+Class slow "Slow gate"
+  Property slow.motor "motor"
+    -> redefines gate.motor
+""",
+    right="""\
+Class gate "Gate"
+  Property gate.motor "motor"
+Class slow "Slow gate"
+  -> specializes gate
+  Property slow.motor "motor"
+    -> redefines gate.motor
+""",
+)
+TYPE_NOT_NARROWER = rule(
+    "SM203",
+    "type-not-narrower",
+    Severity.WARNING,
+    "'{element}' {relation} '{other}' but its type '{type}' is no kind of '{other_type}'",
+    why="Whoever uses the general feature relies on its type (UML 2.5.1 clause 9.9.17, "
+    "isConsistentWith).",
+    help="let '{type}' specialise '{other_type}'",
+    wrong="""\
+Class motor "Motor"
+Class valve "Valve"
+Class gate "Gate"
+  Property gate.drive "drive"
+    -> typed-by motor
+Class slow "Slow gate"
+  -> specializes gate
+  Property slow.drive "drive"
+    -> typed-by valve
+    -> redefines gate.drive
+""",
+    right="""\
+Class motor "Motor"
+Class servo "Servo"
+  -> specializes motor
+Class gate "Gate"
+  Property gate.drive "drive"
+    -> typed-by motor
+Class slow "Slow gate"
+  -> specializes gate
+  Property slow.drive "drive"
+    -> typed-by servo
+    -> redefines gate.drive
+""",
+)
+MULTIPLICITY_WIDER = rule(
+    "SM204",
+    "multiplicity-wider",
+    Severity.WARNING,
+    "'{element}' with multiplicity {multiplicity} {relation} '{other}' with {other_multiplicity}",
+    why="A redefining or subsetting feature cannot allow more values than the general one "
+    "(UML 2.5.1 clause 9.9.17).",
+    help="narrow the multiplicity of '{element}'",
+    wrong="""\
+Class gate "Gate"
+  Property gate.motor "motor" multiplicity="0..2"
+Class slow "Slow gate"
+  -> specializes gate
+  Property slow.motor "motor" multiplicity="0..*"
+    -> redefines gate.motor
+""",
+    right="""\
+Class gate "Gate"
+  Property gate.motor "motor" multiplicity="0..2"
+Class slow "Slow gate"
+  -> specializes gate
+  Property slow.motor "motor"
+    -> redefines gate.motor
+""",
+)
+
+_CLASSES = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY, Kind.STATE_MACHINE})
+_RELATIONS = {Edge.REDEFINES: "redefines", Edge.SUBSETS: "subsets"}
+
+
+@dataclass(frozen=True, slots=True)
+class Inherit:
+    """Give every classifier its effective features, and check generalization.
+
+    Assumes resolved references. Guarantees ``feature`` edges from each classifier to its own
+    properties, ports, operations and receptions and then to the inherited ones, nearest
+    generals first, each once, without those that a nearer one redefines. Private features are
+    among them, for instances have them. Generalizations that close a circle are reported and
+    give nothing.
+    """
+
+    name: ClassVar[str] = "inherit"
+    after: ClassVar[tuple[str, ...]] = ("resolve",)
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Add the edges and report; see the class."""
+        hierarchy = _Hierarchy(graph)
+        for circle in hierarchy.circles:
+            _report_circle(graph, sink, circle)
+        for classifier in graph.of_kind(*CLASSIFIERS):
+            features = hierarchy.features(classifier)
+            if features != graph.targets(classifier, Edge.FEATURE):
+                graph.replace_targets(Edge.FEATURE, classifier, features)
+            _check_generals(graph, sink, classifier)
+        for edge in _RELATIONS:
+            for _, source, target in tuple(graph.edges(edge)):
+                _check_relation(graph, sink, edge, graph[source], graph[target], hierarchy)
+
+
+class _Hierarchy:
+    """Generalization without its circles."""
+
+    def __init__(self, graph: Graph) -> None:
+        import networkx as nx
+
+        self._graph = graph
+        view = networkx(graph, Edge.SPECIALIZES)
+        self._component: dict[str, int] = {}
+        self.circles: list[list[Element]] = []
+        self._features: dict[str, dict[Element, None]] = {}
+        # Components come out general before specific: each is ready when it is needed.
+        for number, ids in enumerate(nx.strongly_connected_components(view)):
+            self._component.update(dict.fromkeys(ids, number))
+            self._enter(ids)
+
+    def _enter(self, ids: set[str]) -> None:
+        members = sorted((self._graph[id] for id in ids), key=_document_order)
+        if len(members) > 1 or members[0] in self._graph.targets(members[0], Edge.SPECIALIZES):
+            self.circles.append(members)
+        for member in members:
+            self._features[member.id] = self._collect_features(member)
+
+    def direct(self, classifier: Element) -> list[Element]:
+        """Generals of the classifier that do not lead back to it."""
+        own = self._component.get(classifier.id)
+        ups = self._graph.targets(classifier, Edge.SPECIALIZES)
+        return [up for up in ups if self._component[up.id] != own]
+
+    def features(self, classifier: Element) -> list[Element]:
+        """Effective features of the classifier."""
+        if classifier.id not in self._features:
+            return _own_features(self._graph, classifier)
+        return list(self._features[classifier.id])
+
+    def is_above(self, general: Element, classifier: Element) -> bool:
+        """Whether the classifier specialises the general one, directly or not, and not back."""
+        same = self._component.get(general.id) == self._component.get(classifier.id)
+        return not same and general in generals(self._graph, classifier)
+
+    def _collect_features(self, classifier: Element) -> dict[Element, None]:
+        found = dict.fromkeys(_own_features(self._graph, classifier))
+        for up in self.direct(classifier):
+            found.update(self._features[up.id])
+        replaced = {old for one in found for old in self._replaced_by(one)}
+        return {one: None for one in found if one not in replaced}
+
+    def _replaced_by(self, feature: Element) -> Iterator[Element]:
+        owner = self._graph.owner(feature)
+        for old in self._graph.targets(feature, Edge.REDEFINES):
+            former = self._graph.owner(old)
+            if owner is not None and former is not None and self.is_above(former, owner):
+                yield old
+
+
+def _own_features(graph: Graph, classifier: Element) -> list[Element]:
+    # The ends that an association owns are no features of it that its instances hold.
+    if classifier.kind is Kind.ASSOCIATION:
+        ends = graph.targets(classifier, Edge.END)
+        return [one for one in graph.owned(classifier) if one.kind in FEATURES and one not in ends]
+    return [one for one in graph.owned(classifier) if one.kind in FEATURES]
+
+
+def _document_order(element: Element) -> tuple[str, int, str]:
+    return element.source, element.ordinal, element.id
+
+
+# -- rules -------------------------------------------------------------------------------------
+
+
+def _report_circle(graph: Graph, sink: Sink, circle: list[Element]) -> None:
+    names = [graph.qualified_name(one) for one in (*circle, circle[0])]
+    sink.report(
+        GENERALIZATION_CYCLE,
+        graph.subject(circle[0]),
+        element=names[0],
+        cycle=", ".join(f"'{name}'" for name in names),
+    )
+
+
+def _check_generals(graph: Graph, sink: Sink, classifier: Element) -> None:
+    for general in graph.targets(classifier, Edge.SPECIALIZES):
+        if not general.attrs.get("external") and not _same_kind(classifier, general):
+            sink.report(
+                GENERALIZATION_KIND,
+                graph.subject(classifier),
+                kind=classifier.kind,
+                element=graph.qualified_name(classifier),
+                general_kind=general.kind,
+                general=graph.qualified_name(general),
+            )
+
+
+def _same_kind(specific: Element, general: Element) -> bool:
+    return specific.kind is general.kind or {specific.kind, general.kind} <= _CLASSES
+
+
+def _check_relation(
+    graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element, hierarchy: _Hierarchy
+) -> None:
+    if other.attrs.get("external"):
+        return
+    if not _may_relate(graph, edge, feature, other, hierarchy):
+        sink.report(
+            REDEFINES_STRANGER,
+            graph.subject(feature),
+            element=graph.qualified_name(feature),
+            relation=_RELATIONS[edge],
+            other=graph.qualified_name(other),
+        )
+        return
+    _check_types(graph, sink, edge, feature, other)
+    _check_multiplicities(graph, sink, edge, feature, other)
+
+
+def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element) -> None:
+    own, general = (graph.target(one, Edge.TYPED_BY) for one in (feature, other))
+    if own is None or general is None or _narrower(graph, own, general):
+        return
+    sink.report(
+        TYPE_NOT_NARROWER,
+        graph.subject(feature),
+        element=graph.qualified_name(feature),
+        relation=_RELATIONS[edge],
+        other=graph.qualified_name(other),
+        type=own.name,
+        other_type=general.name,
+    )
+
+
+def _check_multiplicities(
+    graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element
+) -> None:
+    if not _wider(feature, other):
+        return
+    sink.report(
+        MULTIPLICITY_WIDER,
+        graph.subject(feature),
+        element=graph.qualified_name(feature),
+        relation=_RELATIONS[edge],
+        other=graph.qualified_name(other),
+        multiplicity=feature.attrs.get("multiplicity", "1"),
+        other_multiplicity=other.attrs.get("multiplicity", "1"),
+    )
+
+
+def _may_relate(
+    graph: Graph, edge: Edge, feature: Element, other: Element, hierarchy: _Hierarchy
+) -> bool:
+    owner, former = graph.owner(feature), graph.owner(other)
+    if owner is None or former is None:
+        return False
+    if hierarchy.is_above(former, owner):
+        return True
+    # Association ends relate through the classifiers at the other side; that is not followed.
+    if Kind.ASSOCIATION in (owner.kind, former.kind) or owner.kind not in CLASSIFIERS:
+        return True
+    return edge is Edge.SUBSETS and owner is former
+
+
+def _narrower(graph: Graph, narrow: Element, wide: Element) -> bool:
+    above = [narrow, *generals(graph, narrow), wide]
+    # What a stand-in specialises is unknown, so nothing is held against it.
+    return any(one.attrs.get("external") for one in above) or conforms(graph, narrow, wide)
+
+
+def _wider(feature: Element, other: Element) -> bool:
+    own, general = (bounds(one.attrs.get("multiplicity")) for one in (feature, other))
+    if own is None or general is None or general[1] is None:
+        return False
+    return own[1] is None or own[1] > general[1]

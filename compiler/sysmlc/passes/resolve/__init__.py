@@ -1,0 +1,246 @@
+"""Pass ``resolve``: references become edges, what lies outside the unit becomes a stand-in."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple
+
+from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.identity import derived_id
+from sysmlc.passes.resolve.libraries import (
+    PRIMITIVE_TYPES,
+    is_href,
+    is_standard,
+    kind_of,
+    name_of,
+    primitive,
+    split,
+)
+from sysmlc.passes.resolve.rules import BROKEN_ID, BROKEN_REFERENCE, MISSING_LIBRARY
+from sysmlc.passes.resolve.targets import Targets
+
+_ATTRIBUTES: dict[str, Kind] = {
+    "decision_input": Kind.ACTIVITY,
+    "decision_input_flow": Kind.OBJECT_FLOW,
+    "interrupts": Kind.STRUCTURED,
+    "item_property": Kind.PROPERTY,
+    "test": Kind.ACTION,
+    "body_part": Kind.ACTION,
+    "setup_part": Kind.ACTION,
+    "clauses": Kind.ACTION,
+}
+"""Attributes that hold ids (docs/ir.md), with the kind of what they name."""
+
+_LISTED = 10
+
+
+class _Use(NamedTuple):
+    """One place that needs an element: an edge to come, or an attribute that holds an id."""
+
+    holder: Element
+    target: str
+    kind: Kind
+    path: str = ""
+    ordinal: int = -1
+    edge: Edge | None = None
+    attribute: str = ""
+
+    @property
+    def relation(self) -> str:
+        return self.edge.value if self.edge else self.attribute
+
+    def place(self) -> tuple[str, int, str]:
+        ordinal = self.ordinal if self.ordinal >= 0 else self.holder.ordinal
+        return self.holder.source, ordinal, self.holder.id
+
+
+@dataclass(frozen=True, slots=True)
+class Resolve:
+    """Turn every reference into an edge.
+
+    Assumes what a front end leaves: elements, edges it could draw at once, ``graph.pending``.
+    Guarantees: nothing is pending; the ids in attributes exist; every edge's target is an
+    element, a stand-in (``external``, ``href``) when its file is not part of the unit. A
+    reference that leads nowhere is reported, and the holder's attribute ``unresolved`` names
+    the relation so that later rules do not complain about what follows from it. The result
+    does not depend on the order of the files.
+    """
+
+    name: ClassVar[str] = "resolve"
+    after: ClassVar[tuple[str, ...]] = ()
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Resolve in place; see the class."""
+        uses = [*_references(graph), *_attributes(graph)]
+        answers = _Answers(graph, Targets(graph))
+        answers.find(uses)
+        graph.pending.clear()
+        for use in uses:
+            _settle(graph, sink, use, answers.of(use))
+        _rewrite(graph, answers)
+        _report_libraries(graph, sink, answers.outside)
+
+
+def _references(graph: Graph) -> Iterator[_Use]:
+    for one in graph.pending:
+        holder = graph.get(one.source)
+        if holder is not None:
+            yield _Use(holder, one.target, one.kind, one.name, one.ordinal, edge=one.edge)
+
+
+def _attributes(graph: Graph) -> Iterator[_Use]:
+    for element in graph:
+        for name in element.attrs:
+            for id in _ids(element.attrs[name]) if name in _ATTRIBUTES else ():
+                yield _Use(element, id, _ATTRIBUTES[name], attribute=name)
+
+
+def _ids(value: AttrValue) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _ids(item)
+
+
+# -- finding -----------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Answers:
+    """What each target means, by the file that names it."""
+
+    graph: Graph
+    targets: Targets
+    outside: dict[str, list[_Use]] = field(default_factory=dict)
+    """Uses of elements outside the unit, by the href of the stand-in."""
+    _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
+
+    def find(self, uses: list[_Use]) -> None:
+        for use in uses:
+            self._look_up(use)
+        for href in sorted(self.outside):
+            _stand_in(self.graph, href, self.outside[href])
+
+    def of(self, use: _Use) -> Element | None:
+        return self.get(use.holder, use.target)
+
+    def get(self, holder: Element, target: str) -> Element | None:
+        return self.graph.get(self._found.get((holder.source, target)))
+
+    def _look_up(self, use: _Use) -> None:
+        key = (use.holder.source, use.target)
+        if key not in self._found:
+            element = self.targets.find(*key)
+            self._found[key] = element.id if element else self._outside_id(use)
+        elif self._found[key] is None:
+            return
+        href = _canonical(use)
+        if self._found[key] == _stand_in_id(href):
+            self.outside.setdefault(href, []).append(use)
+
+    def _outside_id(self, use: _Use) -> str | None:
+        library, _ = split(use.target)
+        if not is_href(use.target) or self.targets.files(use.holder.source, library):
+            return None
+        return _stand_in_id(_canonical(use))
+
+
+def _canonical(use: _Use) -> str:
+    name = primitive(use.target, use.path)
+    return PRIMITIVE_TYPES + name if name else use.target
+
+
+def _stand_in_id(href: str) -> str:
+    return derived_id(href, "stub")
+
+
+def _stand_in(graph: Graph, href: str, uses: list[_Use]) -> None:
+    id = _stand_in_id(href)
+    if id in graph:
+        return
+    path = min((use.path for use in uses if use.path), default="")
+    kind = kind_of(href, {use.kind for use in uses})
+    attrs: dict[str, AttrValue] = {"external": True, "href": href}
+    if href.startswith(PRIMITIVE_TYPES):
+        kind, path = Kind.DATA_TYPE, ""
+        attrs["subkind"] = "primitive"
+    attrs["origin"] = min(uses, key=_Use.place).holder.id
+    graph.add(Element(id, kind, name_of(href, path), attrs=attrs))
+
+
+# -- writing down ------------------------------------------------------------------------------
+
+
+def _settle(graph: Graph, sink: Sink, use: _Use, target: Element | None) -> None:
+    if target is None:
+        _report_broken(graph, sink, use)
+    elif use.edge is not None:
+        graph.connect(use.edge, use.holder, target)
+
+
+def _report_broken(graph: Graph, sink: Sink, use: _Use) -> None:
+    known = use.holder.attrs.get("unresolved")
+    names = {str(name) for name in known} if isinstance(known, tuple) else set()
+    graph.set(use.holder, unresolved=tuple(sorted(names | {use.relation})))
+    sink.report(
+        BROKEN_REFERENCE if use.edge else BROKEN_ID,
+        _subject(graph, use),
+        relation=use.relation,
+        element=graph.qualified_name(use.holder),
+        target=use.target,
+    )
+
+
+def _subject(graph: Graph, use: _Use) -> Subject:
+    subject = graph.subject(use.holder)
+    if use.ordinal < 0:
+        return subject
+    return Subject(subject.name, subject.id, Place(use.holder.source, use.ordinal))
+
+
+def _rewrite(graph: Graph, answers: _Answers) -> None:
+    for element in graph:
+        for name in _ATTRIBUTES.keys() & element.attrs.keys():
+            graph.set(element, **{name: _renamed(answers, element, element.attrs[name])})
+
+
+def _renamed(answers: _Answers, holder: Element, value: AttrValue) -> AttrValue:
+    if isinstance(value, str):
+        found = answers.get(holder, value)
+        return found.id if found else None
+    if isinstance(value, tuple):
+        items = (_renamed(answers, holder, item) for item in value)
+        return tuple(item for item in items if item is not None)
+    return value
+
+
+def _report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[_Use]]) -> None:
+    libraries: dict[str, dict[str, list[_Use]]] = {}
+    for href, uses in outside.items():
+        library, _ = split(href)
+        if not is_standard(library):
+            libraries.setdefault(library, {})[href] = uses
+    for library in sorted(libraries):
+        _report_library(graph, sink, library, libraries[library])
+
+
+def _report_library(graph: Graph, sink: Sink, library: str, missing: dict[str, list[_Use]]) -> None:
+    first = min((use for uses in missing.values() for use in uses), key=_Use.place)
+    file, ordinal, _ = first.place()
+    lines = [_takes_down(graph, href, missing[href]) for href in sorted(missing)]
+    more = [f"and {len(lines) - _LISTED} more"] if len(lines) > _LISTED else []
+    sink.report(
+        MISSING_LIBRARY,
+        Subject(library, place=Place(file, ordinal) if file else None),
+        notes=(*lines[:_LISTED], *more),
+        library=library,
+        count=len(missing),
+    )
+
+
+def _takes_down(graph: Graph, href: str, uses: list[_Use]) -> str:
+    stand_in = graph[_stand_in_id(href)]
+    users = sorted({graph.qualified_name(use.holder) for use in uses})
+    more = f" and {len(users) - 2} more" if len(users) > 2 else ""
+    return f"{stand_in.kind} '{stand_in.name}', used by {', '.join(users[:2])}{more}"

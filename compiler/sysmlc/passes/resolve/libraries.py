@@ -1,0 +1,90 @@
+"""Libraries that every tool brings along, and what a reference into a file says of its target."""
+
+import re
+from urllib.parse import unquote
+
+from sysmlc.ir import Kind
+
+PRIMITIVES = ("Boolean", "Integer", "Real", "String", "UnlimitedNatural")
+PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+"""The UML primitives of all dialects share one stand-in each, under this href."""
+
+_STANDARD = re.compile(
+    r"""pathmap://(UML_|SysML|SYSMLC_)\w*(LIBRARIES|METAMODELS|PROFILES)/
+    | https?://(www|schema)\.omg\.org/spec/(UML|SysML|MOF|XMI)/
+    | https?://www\.eclipse\.org/(uml2|emf)/
+    | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/)
+    | (.*/)?(UML_Standard_Profile|SysML\ Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)$
+    """,
+    re.VERBOSE,
+)
+_PRIMITIVE_FILE = re.compile(r"Primitive(Value)?Types|::datatypes::|/UML\.xmi$")
+_ALIASES = {
+    "bool": "Boolean",
+    "boolean": "Boolean",
+    "eboolean": "Boolean",
+    "byte": "Integer",
+    "short": "Integer",
+    "int": "Integer",
+    "long": "Integer",
+    "eint": "Integer",
+    "elong": "Integer",
+    "eshort": "Integer",
+    "float": "Real",
+    "double": "Real",
+    "efloat": "Real",
+    "edouble": "Real",
+    "estring": "String",
+    **{name.lower(): name for name in PRIMITIVES},
+}
+_ROLE_NAME = re.compile(r"(?:.*[._])?[a-zA-Z]+_packagedElement_(?P<name>.+)")
+_PACKAGEABLE = re.compile(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
+_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
+
+
+def split(href: str) -> tuple[str, str]:
+    """File and fragment of an href."""
+    library, _, fragment = href.partition("#")
+    return library, fragment
+
+
+def is_href(target: str) -> bool:
+    """Whether a reference's target names a file, not only an id."""
+    return "://" in target or target.find("#") > 0
+
+
+def is_standard(library: str) -> bool:
+    """Whether the file is UML's, SysML's or our own, whose content is known without reading it."""
+    return _STANDARD.match(unquote(library)) is not None
+
+
+def primitive(href: str, path: str) -> str:
+    """UML primitive that an href leads to, or the empty string.
+
+    ``path`` is the qualified name of the target when the source gives it (MagicDraw's
+    referentPath). The primitive value types of SysML count as UML's, those of Ecore and Java
+    as the nearest one.
+    """
+    if not (_PRIMITIVE_FILE.search(unquote(href)) or _PRIMITIVE_FILE.search(path)):
+        return ""
+    return _ALIASES.get(name_of(href, path).lower(), "")
+
+
+def name_of(href: str, path: str) -> str:
+    """Name of the target: last part of its path, else what the fragment shows of it."""
+    if path:
+        return path.rpartition("::")[2]
+    fragment = unquote(split(href)[1])
+    for pattern in (_PACKAGEABLE, _ROLE_NAME):
+        match = pattern.fullmatch(fragment)
+        if match:
+            return _ESCAPE.sub(lambda code: chr(int(code[1], 16)), match["name"])
+    return re.split(r"[./]", fragment)[-1] or fragment
+
+
+def kind_of(href: str, kinds: set[Kind]) -> Kind:
+    """Kind of the target, from what its references say; the most telling one wins."""
+    if "stereotype_packagedElement_" in href:
+        return Kind.STEREOTYPE
+    told = sorted(kinds - {Kind.CLASS})
+    return told[0] if told else Kind.CLASS

@@ -1,0 +1,60 @@
+"""What can be wrong with references."""
+
+from sysmlc.diagnostics import Severity, rule
+
+BROKEN_REFERENCE = rule(
+    "SM150",
+    "broken-reference",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to '{target}', which does not exist",
+    why="The file refers to an element that it does not contain, so what depends on it is lost.",
+    help="restore the element in the modelling tool, or remove what refers to it",
+    wrong="""\
+Class gate "Gate"
+  Port gate.in "in"
+    ?> typed-by pallet Class
+""",
+    right="""\
+Class gate "Gate"
+  Port gate.in "in"
+    ?> typed-by pallet Class
+Class pallet "Pallet"
+""",
+)
+BROKEN_ID = rule(
+    "SM151",
+    "broken-id",
+    Severity.ERROR,
+    "'{relation}' of '{element}' names '{target}', which does not exist",
+    why="The element is described with the help of another one that the model does not contain.",
+    help="restore the element in the modelling tool, or remove what refers to it",
+    wrong="""\
+Activity pull "Pull in"
+  Control free "bay free?" subkind="decision" decision_input="isFree"
+""",
+    right="""\
+Activity pull "Pull in"
+  Control free "bay free?" subkind="decision" decision_input="isFree"
+Activity isFree "is free"
+""",
+)
+MISSING_LIBRARY = rule(
+    "SM152",
+    "missing-library",
+    Severity.WARNING,
+    "'{library}' is not part of the compile unit: {count} of its elements are only known by name",
+    why="What the model takes from a file that is not read has a name and a kind, nothing more: "
+    "no features, no stereotypes, no behaviour.",
+    help="give the file '{library}' as a further input",
+    wrong="""\
+Class gate "Gate"
+  Port gate.in "in"
+    ?> typed-by plant.uml#pallet Class "Pallet"
+""",
+    right="""\
+Class gate "Gate" @line.uml:1
+  Port gate.in "in"  @line.uml:2
+    ?> typed-by plant.uml#pallet Class "Pallet"
+Class pallet "Pallet" @plant.uml:1
+""",
+)
