@@ -1,10 +1,11 @@
 """What a back end is: a name and ``emit``. It reads the graph and never changes it."""
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output
 
@@ -18,12 +19,21 @@ class InputFile:
     language: str
 
 
+Locate = Callable[[Iterable[Place]], Mapping[Place, Place]]
+"""Finds lines and columns: each place that can be found, with its line and column known."""
+
+
+def _as_they_are(places: Iterable[Place]) -> Mapping[Place, Place]:
+    return {place: place for place in places}
+
+
 @dataclass(frozen=True, slots=True)
 class EmitOptions:
-    """What the user asked of the back ends."""
+    """What the user asked of the back ends, and what they may ask of the driver."""
 
     templates: Path | None = None
     inputs: tuple[InputFile, ...] = ()
+    locate: Locate = _as_they_are
 
 
 class Backend(Protocol):

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.output import Output
 
@@ -22,8 +22,13 @@ class GraphBackend:
         names = {element.id: graph.qualified_name(element) for element in graph}
         ordered = sorted(graph, key=lambda e: (names[e.id], e.ordinal, e.id))
         rank = {element.id: number for number, element in enumerate(ordered)}
+        places = {element.id: Place(element.source, element.ordinal) for element in ordered}
+        found = options.locate(place for place in places.values() if place.file)
         content = {
-            "elements": [_element(graph, element, names[element.id]) for element in ordered],
+            "elements": [
+                _element(element, names[element.id], found.get(places[element.id]))
+                for element in ordered
+            ],
             "edges": [
                 {"kind": kind, "from": source, "to": target}
                 for kind, source, target in sorted(
@@ -35,16 +40,22 @@ class GraphBackend:
         output.add("graph.json", text, trace=(), backend=self.name)
 
 
-def _element(graph: Graph, element: Element, qualified_name: str) -> dict[str, object]:
+def _element(element: Element, qualified_name: str, place: Place | None) -> dict[str, object]:
     return {
         "id": element.id,
         "kind": outward_kind(element),
         "name": element.name,
         "qualified_name": qualified_name,
         "owner": element.owner,
-        "source": {"file": element.source, "ordinal": element.ordinal},
+        "source": _source(place),
         "attrs": dict(sorted(element.attrs.items())),
     }
+
+
+def _source(place: Place | None) -> dict[str, object] | None:
+    if place is None:
+        return None
+    return {"file": place.file, "line": place.line or None, "column": place.column or None}
 
 
 def outward_kind(element: Element) -> str:
