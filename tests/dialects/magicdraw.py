@@ -53,7 +53,9 @@ _LISTS = frozenset(
 )
 """Features that hold several references: MagicDraw writes each reference as a child."""
 
-_NOT_SAVED = frozenset({"incoming", "outgoing", "partition", "base_NamedElement"})
+_NOT_SAVED = frozenset(
+    {"incoming", "outgoing", "partition", "base_NamedElement", "base_DirectedRelationship"}
+)
 """What Papyrus saves and MagicDraw derives."""
 
 _LISTS_OF = {
@@ -82,6 +84,11 @@ def write_xml(papyrus: bytes) -> bytes:
     return etree.tostring(writer.root, xml_declaration=True, encoding="UTF-8")
 
 
+def ids_of(papyrus: bytes) -> dict[str, str]:
+    """The ids that the elements of a Papyrus document get in MagicDraw's files."""
+    return _Writer(etree.fromstring(papyrus)).ids
+
+
 def write_mdzip(papyrus: bytes) -> bytes:
     """The document as a MagicDraw project: a zip with the model among other entries."""
     buffer = io.BytesIO()
@@ -101,7 +108,7 @@ class _Writer:
     """One document on its way from Papyrus to MagicDraw."""
 
     def __init__(self, source: Element) -> None:
-        self._ids = {id_of(element): _magicdraw_id(id_of(element)) for element in _with_id(source)}
+        self.ids = {id_of(element): _magicdraw_id(id_of(element)) for element in _with_id(source)}
         own = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
         self.root = etree.Element(
             f"{{{XMI}}}XMI",
@@ -110,7 +117,7 @@ class _Writer:
         self._head()
         for element in source:
             if element.tag == f"{{{PAPYRUS_UML}}}Model":
-                self._ids[id_of(element)] = ROOT_ID
+                self.ids[id_of(element)] = ROOT_ID
                 self._model(element)
             else:
                 self._application(element)
@@ -154,12 +161,12 @@ class _Writer:
     def _feature(self, made: Element, name: str, value: str) -> None:
         ids = value.split()
         if name == f"{{{XMI}}}id":
-            made.set(name, self._ids[value])
+            made.set(name, self.ids[value])
         elif name in _LISTS or name in _LISTS_OF.get(_type(made), ()):
             for id_ in ids:
-                etree.SubElement(made, name, {f"{{{XMI}}}idref": self._ids.get(id_, id_)})
-        elif name not in ("name", "value", "body") and all(id_ in self._ids for id_ in ids):
-            made.set(name, " ".join(self._ids[id_] for id_ in ids))
+                etree.SubElement(made, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
+        elif name not in ("name", "value", "body") and all(id_ in self.ids for id_ in ids):
+            made.set(name, " ".join(self.ids[id_] for id_ in ids))
         else:
             made.set(name, value)
 
@@ -180,7 +187,7 @@ class _Writer:
             made.set(name, value)
             return
         words = value.split(" ")
-        made.set(name, " ".join(self._ids.get(word, word) for word in words))
+        made.set(name, " ".join(self.ids.get(word, word) for word in words))
 
     def _end_paths(self, source: Element) -> None:
         """MagicDraw notes the path of nearly every connector end, also where it is one part."""
@@ -189,8 +196,8 @@ class _Writer:
             if "partWithPort" in end.attrib and id_of(end) not in told:
                 path = etree.SubElement(self.root, f"{{{SYSML}}}NestedConnectorEnd")
                 path.set(f"{{{XMI}}}id", _magicdraw_id(id_of(end) + "path"))
-                path.set("base_ConnectorEnd", self._ids[id_of(end)])
-                path.set("propertyPath", self._ids[str(end.get("partWithPort"))])
+                path.set("base_ConnectorEnd", self.ids[id_of(end)])
+                path.set("propertyPath", self.ids[str(end.get("partWithPort"))])
 
     def _diagram(self, model: Element) -> None:
         box = etree.SubElement(_extension(model), "modelExtension")
@@ -276,4 +283,4 @@ def _standard(href: str) -> tuple[str, str]:
         return f"{SYSML}.xmi#_11_5EAPbeta{number}", "::".join(["SysML", *names])
     if href.startswith(_SYSML_PROFILE):
         return f"{SYSML}.xmi#_SysML__0", "SysML"
-    return href, href.rpartition("#")[2]
+    return href, href.partition("#")[0].rpartition("/")[2].partition(".")[0]

@@ -1,0 +1,47 @@
+"""Compares what the two dialects of one model become: graphs, and output texts."""
+
+from pathlib import Path
+
+from dialects.magicdraw import ids_of, write_mdzip, write_xml
+from examples.compiling import compile_text, outputs
+from sysmlc.driver import Compilation
+from sysmlc.ir.diff import Change, diff
+
+WRITERS = {"xml": write_xml, "mdzip": write_mdzip}
+
+OF_THE_DIALECT = frozenset({"href", "namespace", "tag.Id", "tag.id", "tag.Text", "tag.text"})
+"""Attributes in which the dialects differ by their nature: where the standard's files are, and
+how the tools' SysML profiles are called and spelt. What they mean is in roles and attributes."""
+
+
+def compile_both(
+    folder: Path, papyrus: bytes, dialect: str = "xml", *emit: str
+) -> tuple[Compilation, Compilation]:
+    """The compilation of a Papyrus document, and of the same model in MagicDraw's dialect."""
+    other = WRITERS[dialect](papyrus)
+    return (
+        compile_text(folder, "model.uml", papyrus, *emit),
+        compile_text(folder, f"model.{dialect}", other, *emit),
+    )
+
+
+def graph_changes(one: Compilation, other: Compilation) -> list[Change]:
+    """Differences of the graphs that are not of the dialect."""
+    ignored = {"id", "source", "trace", *OF_THE_DIALECT}
+    return [change for change in diff(one.graph, other.graph, ignored) if not _of_dialect(change)]
+
+
+def _of_dialect(change: Change) -> bool:
+    return False
+
+
+def common_outputs(papyrus: bytes, one: Compilation, other: Compilation) -> tuple[dict, dict]:
+    """The outputs of both, the second with the ids and the file name of the first."""
+    names = {new: old for old, new in ids_of(papyrus).items()}
+    return outputs(one), {path: _translated(text, names) for path, text in outputs(other).items()}
+
+
+def _translated(text: str, names: dict[str, str]) -> str:
+    for new, old in names.items():
+        text = text.replace(new, old)
+    return text.replace("model.xml", "model.uml").replace("model.mdzip", "model.uml")

@@ -1,0 +1,53 @@
+"""The same model from Papyrus and from MagicDraw gives the same graph and the same outputs."""
+
+from random import Random
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from dialects.comparing import common_outputs, compile_both, graph_changes
+from dialects.random_models import random_model
+from examples.compiling import EXAMPLES
+
+DEFAULT = ("contracts", "recipe", "plantuml")
+
+
+@pytest.mark.parametrize("dialect", ["xml", "mdzip"])
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+def test_an_example_is_the_same_in_both_dialects(model, dialect, tmp_path):
+    papyrus = model.read_bytes()
+    one, other = compile_both(tmp_path, papyrus, dialect, *DEFAULT)
+    assert graph_changes(one, other) == []
+    here, there = common_outputs(papyrus, one, other)
+    assert here == there
+    assert here
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_a_random_model_is_the_same_in_both_dialects(seed, tmp_path):
+    papyrus = random_model(Random(seed))
+    one, other = compile_both(tmp_path, papyrus, "xml", *DEFAULT)
+    assert len(one.graph) > 10
+    assert graph_changes(one, other) == []
+    here, there = common_outputs(papyrus, one, other)
+    assert here == there
+
+
+@settings(
+    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(st.randoms(use_true_random=False), st.integers(1, 3))
+def test_any_random_model_has_one_graph(tmp_path, random, size):
+    one, other = compile_both(tmp_path, random_model(random, size), "xml", "ir")
+    assert graph_changes(one, other) == []
+
+
+def test_random_models_hold_what_they_promise():
+    """A generator that makes nothing would make the tests above pass."""
+    text = b"".join(random_model(Random(seed)) for seed in range(25)).decode()
+    wanted = """uml:Port isConjugated PortsAndFlows:FlowProperty Blocks:NestedConnectorEnd
+        uml:InformationFlow uml:StateMachine uml:TimeEvent uml:DecisionNode uml:ForkNode
+        uml:InputPin Requirements:Requirement Allocations:Allocate Plant:Robot uml:Stereotype
+        uml:Enumeration uml:Generalization uml:Operation uml:ActivityPartition"""
+    assert [word for word in wanted.split() if word not in text] == []

@@ -1,0 +1,26 @@
+"""Each shipped example gives the outputs that were read and found right (tests/golden/examples)."""
+
+import pytest
+
+from examples.compiling import EXAMPLES, compile_example, findings, outputs
+
+
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+def test_an_example_gives_its_golden_outputs(model, golden):
+    compilation = compile_example(model)
+    made = {**outputs(compilation), "findings.txt": findings(compilation)}
+    assert compilation.exit_code() == 0
+    assert not compilation.withheld
+    golden.check(f"examples/{model.parent.name}", made)
+
+
+def test_there_are_three_examples():
+    names = [path.parent.name for path in EXAMPLES]
+    assert names == ["baygate-behaviour", "four-tasks", "lego-recipe"]
+
+
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+def test_an_example_is_in_the_graph_whole(model):
+    total = compile_example(model, "ir").coverage.as_json()["total"]
+    assert total["unsupported"] == 0
+    assert total["approximated"] == 0
