@@ -31,13 +31,21 @@ class IrSyntaxError(ValueError):
 
 def print_text(graph: Graph) -> str:
     """The graph as text; elements without an owner in the order of addition."""
+    waiting = _waiting(graph)
+    lines = [line for root in graph.roots() for line in _element_lines(graph, root, waiting)]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def print_element(graph: Graph, element: Element) -> str:
+    """One element and what is below it, as text."""
+    return "".join(f"{line}\n" for line in _element_lines(graph, element, _waiting(graph)))
+
+
+def _waiting(graph: Graph) -> dict[str, list[Reference]]:
     waiting: dict[str, list[Reference]] = {}
     for reference in graph.pending:
         waiting.setdefault(reference.source, []).append(reference)
-    lines: list[str] = []
-    for root in graph.roots():
-        lines.extend(_element_lines(graph, root, waiting))
-    return "".join(f"{line}\n" for line in lines)
+    return waiting
 
 
 def _element_lines(

@@ -1,0 +1,19 @@
+"""``sysmlc backends``: what can be emitted."""
+
+import click
+
+
+@click.command("backends", short_help="List what can be emitted.")
+def command() -> None:
+    """List the back ends, plug-ins included; those with * are emitted by default."""
+    from sysmlc.cli.session import fail
+    from sysmlc.driver import BackendError, backend_names, load_backends
+
+    try:
+        backends = load_backends(backend_names())
+    except BackendError as problem:
+        fail(str(problem))
+    width = max(len(backend.name) for backend in backends)
+    for backend in backends:
+        mark = "*" if backend.is_default else " "
+        click.echo(f"{mark} {backend.name:<{width}}  {backend.summary}")

@@ -1,0 +1,99 @@
+"""``sysmlc build``: compile models and write the output folder."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from sysmlc.cli.session import Unit
+    from sysmlc.driver import Compilation, Plan
+
+
+@click.command(
+    "build",
+    short_help="Compile models and write contracts, recipes and diagrams.",
+    epilog="""\b
+Examples:
+  sysmlc build plant.uml profile.profile.uml -o out/
+  sysmlc plant.mdzip --emit +graph         also graph.json
+  sysmlc plant.uml --emit plantuml         only diagrams
+  sysmlc build --check                     are the committed outputs up to date?""",
+)
+@options.models()
+@options.output_folder
+@options.emitting
+@options.reporting
+@options.reading
+@click.option(
+    "--check",
+    "check_only",
+    is_flag=True,
+    help="Write nothing; exit 1 and list the files when the output folder is not up to date.",
+)
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    output: Path | None,
+    check_only: bool,
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Compile MODEL... (files or folders) and write what changed to the output folder.
+
+    Without MODEL every [[model]] of sysmlc.toml is compiled. A file that comes from an element
+    with an error is withheld; the others are written.
+    """
+    from sysmlc.cli import session
+    from sysmlc.driver import plan
+
+    settings = session.Settings(**given)
+    config = session.load_config(models, settings.config)
+    units = session.units(models, config, output, settings.emit)
+    made = [session.compile_unit(unit.files, config, settings, unit.emit) for unit in units]
+    session.report(made, settings)
+    code = session.exit_code(made, config, settings)
+    for unit, compilation in zip(units, made, strict=True):
+        if compilation.exit_code() == 2:
+            continue
+        planned = plan(compilation, unit.output)
+        if check_only:
+            code = max(code, _compare(planned))
+        else:
+            _write(planned, unit, compilation, session.says_more(settings), settings.verbose)
+    ctx.exit(code)
+
+
+def _compare(planned: "Plan") -> int:
+    stale = planned.differences()
+    for path in stale:
+        click.echo(f"not up to date: {planned.folder / path}", err=True)
+    return 1 if stale else 0
+
+
+def _write(
+    planned: "Plan", unit: "Unit", compilation: "Compilation", talk: bool, verbose: bool
+) -> None:
+    from sysmlc.cli.session import fail
+    from sysmlc.driver import OutputError, apply
+
+    try:
+        changed = apply(planned)
+    except OutputError as problem:
+        fail(str(problem))
+    if verbose:
+        for path in changed:
+            click.echo(f"changed {unit.output / path}", err=True)
+    if talk:
+        click.echo(_sentence(planned, len(changed), compilation, unit.output))
+
+
+def _sentence(planned: "Plan", changed: int, compilation: "Compilation", folder: Path) -> str:
+    withheld = len(compilation.withheld)
+    held = f", {withheld} withheld because of errors" if withheld else ""
+    shown = os.path.relpath(folder) if folder.is_relative_to(Path.cwd()) else str(folder)
+    return f"{shown}: {len(planned.files)} files, {changed} changed{held}"

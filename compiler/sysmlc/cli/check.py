@@ -1,0 +1,41 @@
+"""``sysmlc check``: the findings, and nothing written."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from sysmlc.cli import options
+
+
+@click.command(
+    "check",
+    short_help="Report what is wrong with models; write nothing.",
+    epilog="""\b
+Examples:
+  sysmlc check models/
+  sysmlc check plant.uml --strict --format github
+  sysmlc check plant.uml --format sarif > findings.sarif""",
+)
+@options.models()
+@options.emitting
+@options.reporting
+@options.reading
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Compile MODEL... in memory and report what is wrong, as 'build' would."""
+    from sysmlc.cli import session
+
+    settings = session.Settings(**given)
+    config = session.load_config(models, settings.config)
+    units = session.units(models, config, None, settings.emit)
+    made = [session.compile_unit(unit.files, config, settings, unit.emit) for unit in units]
+    session.report(made, settings)
+    if settings.form == "text" and not any(compilation.diagnostics for compilation in made):
+        click.echo("no findings", err=True)
+    ctx.exit(session.exit_code(made, config, settings))

@@ -1,0 +1,53 @@
+"""``sysmlc explain``: what a rule means and how to satisfy it."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from sysmlc.diagnostics import Rule
+
+
+@click.command(
+    "explain",
+    short_help="Explain a rule: why it exists, a wrong and a right model.",
+    epilog="""\b
+Examples:
+  sysmlc explain SM170
+  sysmlc explain missing-file
+  sysmlc explain                 all rules, one line each""",
+)
+@click.argument("code", required=False, metavar="[CODE|NAME]")
+def command(code: str | None) -> None:
+    """Explain the rule with this code or name; without one, list all rules."""
+    from sysmlc.cli.session import fail
+    from sysmlc.driver import full_catalogue
+    from sysmlc.suggest import did_you_mean
+
+    rules = full_catalogue()
+    if code is None:
+        for rule in rules.values():
+            click.echo(f"{rule.code}  {rule.severity.value:<7}  {rule.name}")
+        return
+    found = {**rules, **{rule.name: rule for rule in rules.values()}}
+    key = code.upper() if code.upper() in found else code.lower()
+    if key not in found:
+        fail(f"unknown rule '{code}'; {did_you_mean(key, found)}")
+    click.echo("\n".join(_explanation(found[key])))
+
+
+def _explanation(rule: "Rule") -> Iterator[str]:
+    yield f"{rule.code} {rule.name} ({rule.severity.value})"
+    yield ""
+    yield f"  {rule.phrase}"
+    for title, text in (
+        ("Why", rule.why),
+        ("What to do", rule.help),
+        ("Wrong", rule.wrong),
+        ("Right", rule.right),
+    ):
+        if text:
+            yield ""
+            yield f"{title}:"
+            yield from (f"  {line}" for line in text.strip("\n").splitlines())

@@ -1,0 +1,75 @@
+"""The command ``sysmlc``: finds the command word, or compiles when there is none."""
+
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from typing import ParamSpec, TypeVar
+
+import click
+
+from sysmlc import __version__
+
+COMMANDS = ("build", "check", "explain", "backends", "show", "diff", "simulate", "watch")
+"""Command words; each is a module of this package with a click command ``command``."""
+
+_OWN_OPTIONS = frozenset({"--help", "-h", "--version"})
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+
+
+class _Commands(click.Group):
+    """Commands that are imported when they are called; ``build`` when none is named."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        found: click.Command = import_module(f"sysmlc.cli.{cmd_name}").command
+        return found
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if args and args[0] not in COMMANDS and args[0] not in _OWN_OPTIONS:
+            args = ["build", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(
+    cls=_Commands,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="""\b
+Examples:
+  sysmlc model.uml -o out/         contracts, recipes and diagrams of a model
+  sysmlc check models/             only the findings, for continuous integration
+  sysmlc explain untyped-port      why a rule exists, a wrong and a right model
+  sysmlc watch model.uml -o out/   again at every save
+
+Exit codes: 0 clean, 1 the model has errors (with --strict also warnings),
+2 the work could not be done. A folder named like a command is written ./check.""",
+)
+@click.version_option(__version__, message="sysmlc %(version)s")
+def sysmlc() -> None:
+    """Compile models of production systems: SysML in; contracts, recipes, diagrams out.
+
+    Without a command word, MODEL... is compiled as by 'sysmlc build'.
+    """
+
+
+def main() -> None:
+    """Run the command line; a fault of our own is one sentence and exit code 2."""
+    _guarded(sysmlc, prog_name="sysmlc")
+
+
+def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
+    try:
+        return run(*args, **kwargs)
+    except RecursionError:
+        fault = "the model is nested too deeply"
+    except Exception as problem:
+        fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
+    click.echo(f"sysmlc: {fault}\nPlease report it with the command and the model.", err=True)
+    sys.exit(2)
+
+
+__all__ = ["COMMANDS", "main", "sysmlc"]

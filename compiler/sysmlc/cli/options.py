@@ -1,0 +1,105 @@
+"""Options that several commands share."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from sysmlc.diagnostics.render.registry import FORMATS
+
+_F = TypeVar("_F", bound=Callable[..., object])
+
+
+def names(_ctx: click.Context, _param: click.Parameter, value: str | None) -> tuple[str, ...]:
+    """Names that are separated by commas."""
+    return tuple(part.strip() for part in (value or "").split(",") if part.strip())
+
+
+def models(required: bool = False) -> Callable[[_F], _F]:
+    """The argument MODEL..."""
+    return click.argument(
+        "models", nargs=-1, required=required, type=click.Path(path_type=Path), metavar="MODEL..."
+    )
+
+
+def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def reading(function: _F) -> _F:
+    """Options on how models are read and refined."""
+    return _apply(
+        [
+            click.option(
+                "--config",
+                type=click.Path(path_type=Path, dir_okay=False),
+                metavar="FILE",
+                help="Configuration, instead of the nearest sysmlc.toml.",
+            ),
+            click.option(
+                "--strict-input", is_flag=True, help="Content that is not supported is an error."
+            ),
+            click.option("--verify-each", is_flag=True, help="Check the graph after each pass."),
+            click.option(
+                "--print-after",
+                multiple=True,
+                metavar="PASS",
+                help="Print the graph as it is after a pass ('read': before the first).",
+            ),
+            click.option("-v", "--verbose", is_flag=True, help="Say what is done."),
+        ],
+        function,
+    )
+
+
+def reporting(function: _F) -> _F:
+    """Options on how findings are shown and counted."""
+    return _apply(
+        [
+            click.option(
+                "--format",
+                "form",
+                type=click.Choice(FORMATS),
+                default="text",
+                show_default=True,
+                help="Form of the findings; json, sarif and github go to standard output.",
+            ),
+            click.option("--strict", is_flag=True, help="Warnings make the exit code 1 too."),
+        ],
+        function,
+    )
+
+
+def emitting(function: _F) -> _F:
+    """Options on what is made."""
+    return _apply(
+        [
+            click.option(
+                "--emit",
+                callback=names,
+                metavar="A,B|+X",
+                help="Back ends instead of the default ones; +X adds one. See 'sysmlc backends'.",
+            ),
+            click.option(
+                "--templates",
+                type=click.Path(path_type=Path, file_okay=False),
+                metavar="DIR",
+                help="Folder whose templates come before the shipped ones.",
+            ),
+        ],
+        function,
+    )
+
+
+def output_folder(function: _F) -> _F:
+    """The option ``-o``."""
+    return click.option(
+        "-o",
+        "--output",
+        type=click.Path(path_type=Path),
+        metavar="DIR",
+        help="Output folder.  [default: out, or what the configuration says]",
+    )(function)

@@ -1,0 +1,64 @@
+"""How far a compilation is, on terminals and only when it takes a second."""
+
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import click
+
+from sysmlc.driver import Observer
+
+if TYPE_CHECKING:
+    from sysmlc.ir import Graph
+
+_PATIENCE = 1.0
+"""Seconds without a bar."""
+_WIDTH = 24
+
+
+class Progress(Observer):
+    """Draws a bar on standard error, prints graphs that were asked for, keeps tracebacks."""
+
+    def __init__(
+        self,
+        verbose: bool = False,
+        print_after: tuple[str, ...] = (),
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._verbose = verbose
+        self._print_after = print_after
+        self._clock = clock
+        self._start = clock()
+        self._on_terminal = sys.stderr.isatty()
+        self._drawn = False
+
+    def step(self, what: str, number: int, total: int) -> None:
+        """Draw the bar, or with ``-v`` say the step."""
+        passed = self._clock() - self._start
+        if self._verbose:
+            click.echo(f"{passed:7.2f} s  {what}", err=True)
+        elif self._on_terminal and passed > _PATIENCE:
+            filled = _WIDTH * number // max(total, 1)
+            bar = "#" * filled + "-" * (_WIDTH - filled)
+            click.echo(f"\r[{bar}] {what:<30}", nl=False, err=True)
+            self._drawn = True
+
+    def after(self, what: str, graph: "Graph") -> None:
+        """Print the graph when it was asked for."""
+        if what in self._print_after:
+            from sysmlc.ir.text import print_text
+
+            self.clear()
+            click.echo(f"// after {what}\n{print_text(graph)}", nl=False)
+
+    def fault(self, where: str, trace: str) -> None:
+        """With ``-v`` show where a fault of ours happened."""
+        if self._verbose:
+            click.echo(f"{where}:\n{trace}", err=True, nl=False)
+
+    def clear(self) -> None:
+        """Take the bar away before anything else is printed."""
+        if self._drawn:
+            click.echo("\r\x1b[K", nl=False, err=True)
+            self._drawn = False

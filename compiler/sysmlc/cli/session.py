@@ -1,0 +1,214 @@
+"""What every compiling command does: configuration, compile units, findings, exit code."""
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+if TYPE_CHECKING:
+    from sysmlc.backends.base import Backend
+    from sysmlc.config import Config
+    from sysmlc.driver import Compilation
+
+_ON_STDOUT = frozenset({"json", "sarif", "github"})
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The options of the command line that concern reading, emitting and reporting."""
+
+    config: Path | None = None
+    strict_input: bool = False
+    verify_each: bool = False
+    print_after: tuple[str, ...] = ()
+    verbose: bool = False
+    form: str = "text"
+    strict: bool = False
+    emit: tuple[str, ...] = ()
+    templates: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """Files that are compiled together, and where their outputs go."""
+
+    files: tuple[Path, ...]
+    output: Path
+    emit: tuple[str, ...]
+
+
+def fail(message: str) -> NoReturn:
+    """End with one sentence and exit code 2."""
+    click.echo(f"sysmlc: {message}", err=True)
+    sys.exit(2)
+
+
+def load_config(models: Sequence[Path], file: Path | None) -> "Config":
+    """The configuration for these models; ends with exit code 2 when it is wrong."""
+    from sysmlc import config
+    from sysmlc.driver import full_catalogue
+    from sysmlc.suggest import did_you_mean
+
+    try:
+        loaded = config.load(file or config.find(_start(models)))
+    except config.ConfigError as problem:
+        fail(str(problem))
+    chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
+    if chosen:
+        rules = full_catalogue().values()
+        known = {rule.code for rule in rules} | {rule.name for rule in rules}
+        for name in chosen:
+            if name not in known:
+                fail(f"{loaded.file}: unknown rule '{name}'; {did_you_mean(name, known)}")
+    return loaded
+
+
+def _start(models: Sequence[Path]) -> Path:
+    if not models:
+        return Path.cwd()
+    first = models[0].absolute()
+    return first if first.is_dir() else first.parent
+
+
+def units(
+    models: Sequence[Path], config: "Config", output: Path | None, emit: tuple[str, ...]
+) -> list[Unit]:
+    """The compile units: what was named, or every ``[[model]]``.
+
+    A named file that a ``[[model]]`` lists brings the whole unit with it.
+    """
+    folder = config.folder or Path.cwd()
+    declared = [(unit, _expanded(folder, unit.files)) for unit in config.models]
+    chosen = [
+        Unit(
+            tuple(files),
+            output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
+            emit or unit.emit or config.emit,
+        )
+        for unit, files in declared
+        if not models or any(_same(model, file) for model in models for file in files)
+    ]
+    listed = [file for unit in chosen for file in unit.files]
+    rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
+    if rest:
+        plain = output or (folder / config.output if config.folder else Path(config.output))
+        chosen.append(Unit(rest, plain, emit or config.emit))
+    if not chosen:
+        raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")
+    return chosen
+
+
+def _expanded(folder: Path, patterns: Iterable[str]) -> list[Path]:
+    files: list[Path] = []
+    for pattern in patterns:
+        has_wildcard = any(sign in pattern for sign in "*?[")
+        files += sorted(folder.glob(pattern)) if has_wildcard else [folder / pattern]
+    return files
+
+
+def _same(left: Path, right: Path) -> bool:
+    return left.resolve() == right.resolve()
+
+
+def compile_unit(
+    files: tuple[Path, ...],
+    config: "Config",
+    settings: Settings,
+    emit: tuple[str, ...] | None = None,
+) -> "Compilation":
+    """Compile files with the back ends of ``emit`` (None: with no back end)."""
+    from sysmlc.cli.progress import Progress
+    from sysmlc.config import ConfigError
+    from sysmlc.driver import Request, compile_model
+
+    progress = Progress(settings.verbose, settings.print_after)
+    request = Request(
+        inputs=files,
+        config=config,
+        backends=() if emit is None else _backends(emit),
+        templates=_templates(config, settings),
+        strict_input=settings.strict_input or config.strict_input,
+        verify_each=settings.verify_each,
+    )
+    try:
+        _check_pass_names([step.name for step in request.pipeline()], settings.print_after)
+        return compile_model(request, progress)
+    except ConfigError as problem:
+        fail(f"{config.file}: {problem}")
+    finally:
+        progress.clear()
+
+
+def _backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
+    from sysmlc.driver import BackendError, select_backends
+
+    try:
+        return tuple(select_backends(emit))
+    except BackendError as problem:
+        fail(str(problem))
+
+
+def _templates(config: "Config", settings: Settings) -> Path | None:
+    folder = settings.templates
+    if folder is None and config.templates and config.folder:
+        folder = config.folder / config.templates
+    if folder is not None and not folder.is_dir():
+        fail(f"there is no folder '{folder}' for templates")
+    return folder
+
+
+def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
+    from sysmlc.suggest import did_you_mean
+
+    for name in asked:
+        if name not in ("read", *known):
+            fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
+
+
+def report(compilations: "Sequence[Compilation]", settings: Settings) -> None:
+    """Show the findings of all compilations as one report."""
+    from sysmlc.diagnostics.render import Report, make_report, render
+
+    findings = [
+        finding
+        for compilation in compilations
+        for finding in make_report(
+            compilation.diagnostics, compilation.sources, _Shown(compilation.root)
+        ).findings
+    ]
+    on_stdout = settings.form in _ON_STDOUT
+    stream = sys.stdout if on_stdout else sys.stderr
+    text = render(Report(tuple(findings)), settings.form, color=_has_color(stream))
+    click.echo(text, nl=False, err=not on_stdout, color=True)
+
+
+def says_more(settings: Settings) -> bool:
+    """Whether sentences may be printed on standard output beside the findings."""
+    return settings.form not in ("json", "sarif")
+
+
+def exit_code(compilations: "Iterable[Compilation]", config: "Config", settings: Settings) -> int:
+    """The highest exit code of the compilations."""
+    strict = settings.strict or config.strict
+    return max(compilation.exit_code(strict) for compilation in compilations)
+
+
+def _has_color(stream: object) -> bool:
+    is_terminal = getattr(stream, "isatty", lambda: False)()
+    return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """Names of inputs as the reader knows them: relative to the working folder."""
+
+    root: Path
+
+    def __call__(self, name: str) -> str:
+        path = self.root / name
+        here = Path.cwd()
+        return path.relative_to(here).as_posix() if path.is_relative_to(here) else name

@@ -1,0 +1,84 @@
+"""``sysmlc show``: the refined graph, or one element of it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from sysmlc.ir import Element, Graph
+
+
+@click.command(
+    "show",
+    short_help="Print the refined graph, or one element of it.",
+    epilog="""\b
+Examples:
+  sysmlc show plant.uml
+  sysmlc show plant.uml --element Plant::Gate
+  sysmlc show plant.uml --element Gate     when only one element is called so""",
+)
+@options.models(required=True)
+@click.option("-e", "--element", metavar="NAME|ID", help="Qualified name, name or id.")
+@options.reading
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    element: str | None,
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Print the graph of MODEL... after all passes, in the text form of docs/ir.md."""
+    from sysmlc.cli import session
+    from sysmlc.ir.text import print_text
+
+    settings = session.Settings(**given)
+    config = session.load_config(models, settings.config)
+    made = session.compile_unit(models, config, settings)
+    session.report([made], settings)
+    if made.exit_code() < 2:
+        text = print_text(made.graph) if element is None else _one(made.graph, element)
+        click.echo(text, nl=False)
+    ctx.exit(session.exit_code([made], config, settings))
+
+
+def _one(graph: "Graph", wanted: str) -> str:
+    from sysmlc.ir.text import print_element
+
+    element = _found(graph, wanted)
+    return print_element(graph, element) + _incoming(graph, element)
+
+
+def _found(graph: "Graph", wanted: str) -> "Element":
+    from sysmlc.cli.session import fail
+    from sysmlc.suggest import did_you_mean
+
+    by_id = graph.get(wanted)
+    if by_id is not None:
+        return by_id
+    names = {element.id: graph.qualified_name(element) for element in graph}
+    exact = [graph[id] for id, name in names.items() if name == wanted]
+    found = exact or [element for element in graph if element.name == wanted]
+    if not found:
+        fail(f"no element '{wanted}'; {did_you_mean(wanted, _spellings(graph, names))}")
+    if len(found) > 1:
+        listed = "".join(f"\n  {names[e.id]} ({e.kind}, id {e.id})" for e in found[:20])
+        fail(f"{len(found)} elements are called '{wanted}', name one:{listed}")
+    return found[0]
+
+
+def _spellings(graph: "Graph", names: dict[str, str]) -> list[str]:
+    every = [*names.values(), *(element.name for element in graph if element.name)]
+    return every if len(every) < 20_000 else []
+
+
+def _incoming(graph: "Graph", element: "Element") -> str:
+    lines = [
+        f"  <- {edge} {graph.qualified_name(graph[source])}"
+        for edge, source, target in graph.edges()
+        if target == element.id
+    ]
+    return "".join(f"{line}\n" for line in lines)

@@ -1,0 +1,93 @@
+"""``sysmlc simulate``: run a scenario against the behaviour of a model."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from sysmlc.sources import Source
+
+
+@click.command(
+    "simulate",
+    short_help="Run a scenario with the reference interpreter.",
+    epilog="""\b
+Examples:
+  sysmlc simulate gate.uml --scenario wrong-id.yaml
+  sysmlc simulate gate.uml --scenario wrong-id.yaml --junit report.xml -o out/""",
+)
+@options.models(required=True)
+@click.option(
+    "--scenario",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Inputs and the expected trace, in YAML.",
+)
+@click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="JUnit XML report.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Folder for the trace as a PlantUML sequence diagram.",
+)
+@options.reporting
+@options.reading
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    scenario: Path,
+    junit: Path | None,
+    output: Path | None,
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Run the steps of a scenario and compare the trace with the expected one.
+
+    Exit code 0 when they agree, 1 when they do not, 2 when the scenario cannot be run.
+    """
+    from sysmlc.cli import session
+    from sysmlc.diagnostics import Sink
+    from sysmlc.simulation import run
+
+    settings = session.Settings(**given)
+    config = session.load_config(models, settings.config)
+    made = session.compile_unit(models, config, settings)
+    source = _read(scenario)
+    sink = Sink(config.rules)
+    result = None if made.exit_code() == 2 else run(made.graph, source, sink)
+    made = made.with_findings(sink)
+    session.report([made], settings)
+    if result is not None:
+        click.echo(result.text(), nl=False)
+        _save(junit, result.junit())
+        _save(output and output / f"{scenario.stem}.seq.puml", result.sequence_diagram())
+    passed = result is not None and result.passed
+    ctx.exit(max(made.exit_code(settings.strict or config.strict), 0 if passed else 1))
+
+
+def _read(scenario: Path) -> "Source":
+    from sysmlc.cli.session import fail
+    from sysmlc.sources import Source
+
+    try:
+        return Source(scenario.as_posix(), scenario.read_bytes())
+    except OSError as problem:
+        fail(f"cannot read scenario '{scenario}': {problem.strerror}")
+
+
+def _save(target: Path | None, text: str) -> None:
+    from sysmlc.cli.session import fail
+    from sysmlc.output import write_if_changed
+
+    if target is None:
+        return
+    try:
+        write_if_changed(target, text)
+    except OSError as problem:
+        fail(f"cannot write {target}: {problem.strerror}")

@@ -1,0 +1,173 @@
+"""Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from sysmlc import resources
+from sysmlc.diagnostics import Severity
+from sysmlc.diagnostics.suppress import Suppression
+from sysmlc.suggest import did_you_mean
+
+if TYPE_CHECKING:
+    from jsonschema import ValidationError
+
+FILE_NAME = "sysmlc.toml"
+
+
+class ConfigError(Exception):
+    """The configuration cannot be used; the message says where and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelUnit:
+    """One ``[[model]]``: files that are compiled together, and where their outputs go."""
+
+    name: str
+    files: tuple[str, ...]
+    output: str
+    emit: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """What a project chose; ``folder`` is where its file stands, None when there is none."""
+
+    folder: Path | None = None
+    file: Path | None = None
+    output: str = "out"
+    emit: tuple[str, ...] = ()
+    strict: bool = False
+    strict_input: bool = False
+    templates: str = ""
+    rules: Mapping[str, Severity | None] = field(default_factory=dict)
+    suppress: tuple[Suppression, ...] = ()
+    passes: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    models: tuple[ModelUnit, ...] = ()
+
+
+def find(start: Path) -> Path | None:
+    """The nearest ``sysmlc.toml`` from ``start`` upwards, else the nearest ``[tool.sysmlc]``.
+
+    The search ends at the repository root. Without a repository it ends at the working folder
+    when that is above ``start``, else it looks in ``start`` only: a file that happens to lie
+    higher up must not change the outputs.
+    """
+    folders = list(_upwards(start.resolve()))
+    for folder in folders:
+        if (folder / FILE_NAME).is_file():
+            return folder / FILE_NAME
+    for folder in folders:
+        project = folder / "pyproject.toml"
+        if project.is_file() and _tool_table(_parsed(project, _read(project))) is not None:
+            return project
+    return None
+
+
+def _upwards(start: Path) -> Iterator[Path]:
+    chain = [start, *start.parents]
+    roots = [folder for folder in chain if (folder / ".git").exists()]
+    here = Path.cwd()
+    last = roots[0] if roots else here if here in chain else start
+    yield from chain[: chain.index(last) + 1]
+
+
+def load(file: Path | None) -> Config:
+    """The configuration of a file; the defaults when there is none. Raises ConfigError."""
+    if file is None:
+        return Config()
+    text = _read(file)
+    table: object = _parsed(file, text)
+    if file.name == "pyproject.toml":
+        table = _tool_table(cast("dict[str, Any]", table)) or {}
+    _check(file, text, table)
+    return _config(file.resolve(), cast("dict[str, Any]", table))
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as problem:
+        raise ConfigError(f"{file}: cannot be read: {problem}") from problem
+
+
+def _parsed(file: Path, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise ConfigError(f"{file}: {problem}") from problem
+
+
+def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
+    tool = project.get("tool")
+    table = tool.get("sysmlc") if isinstance(tool, dict) else None
+    return table if isinstance(table, dict) else None
+
+
+def _check(file: Path, text: str, table: object) -> None:
+    import json
+
+    from jsonschema import Draft202012Validator
+
+    schema = json.loads(resources.text("metamodels", "sysmlc-config.schema.json"))
+    errors = sorted(Draft202012Validator(schema).iter_errors(table), key=lambda e: list(e.path))
+    if errors:
+        raise ConfigError(_explained(file, text, errors[0]))
+
+
+def _explained(file: Path, text: str, error: "ValidationError") -> str:
+    path = [str(part) for part in error.absolute_path]
+    if error.validator == "additionalProperties":
+        known = cast("dict[str, object]", error.schema)["properties"]
+        key = next(key for key in cast("dict[str, object]", error.instance) if key not in known)  # type: ignore[operator]
+        advice = did_you_mean(key, cast("dict[str, object]", known))
+        return f"{file}:{_line(text, key)}: unknown key '{'.'.join([*path, key])}'; {advice}"
+    key = next((part for part in reversed(path) if not part.isdigit()), "")
+    return f"{file}:{_line(text, key)}: '{'.'.join(path)}': {error.message}"
+
+
+def _line(text: str, key: str) -> int:
+    """Line of the first mention of a key: TOML parsers of the standard library keep no places."""
+    for number, line in enumerate(text.splitlines(), 1):
+        head = line.partition("=")[0] if "=" in line else line
+        if key and key in head.strip(" []").replace('"', "").split("."):
+            return number
+        if key and head.strip(' "') == key:
+            return number
+    return 1
+
+
+def _config(file: Path, table: dict[str, Any]) -> Config:
+    return Config(
+        folder=file.parent,
+        file=file,
+        output=table.get("output", "out"),
+        emit=tuple(table.get("emit", ())),
+        strict=table.get("strict", False),
+        strict_input=table.get("strict-input", False),
+        templates=table.get("templates", ""),
+        rules={key: _severity(word) for key, word in table.get("rules", {}).items()},
+        suppress=tuple(Suppression(**entry) for entry in table.get("suppress", ())),
+        passes=_pass_options(table),
+        models=tuple(_model(entry) for entry in table.get("model", ())),
+    )
+
+
+def _severity(word: str) -> Severity | None:
+    return None if word == "off" else Severity(word)
+
+
+def _pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
+    options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
+    levels = table.get("recipe", {}).get("levels")
+    if levels:
+        options.setdefault("recipe", {})["levels"] = tuple(sorted(levels.items()))
+    return options
+
+
+def _model(entry: dict[str, Any]) -> ModelUnit:
+    name = entry["name"]
+    emit = tuple(entry.get("emit", ()))
+    return ModelUnit(name, tuple(entry["files"]), entry.get("output", f"out/{name}"), emit)

@@ -1,0 +1,70 @@
+"""Findings with everything that a renderer shows: file, line, column, excerpt, counts."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from sysmlc.diagnostics.diagnostic import Diagnostic, Place
+from sysmlc.diagnostics.locate import Location, locate
+from sysmlc.diagnostics.rule import Severity
+from sysmlc.sources import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One finding with its place; line and column count characters from 1, 0 is unknown."""
+
+    diagnostic: Diagnostic
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    excerpt: str = ""
+    """The line of the input, without its line end."""
+
+    @property
+    def where(self) -> str:
+        """``file:line:column`` as far as it is known."""
+        known = [self.file, *(str(n) for n in (self.line, self.column) if n)]
+        return ":".join(known) if self.file else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """All findings of one compilation, in order."""
+
+    findings: tuple[Finding, ...]
+
+    def summary(self) -> dict[str, int]:
+        """Number of findings of each severity, and of files that they are in."""
+        counts = Counter(finding.diagnostic.severity for finding in self.findings)
+        files = {finding.file for finding in self.findings if finding.file}
+        numbers = {f"{severity.value}s": counts[severity] for severity in Severity}
+        return {**numbers, "files": len(files)}
+
+
+def make_report(
+    diagnostics: Iterable[Diagnostic],
+    sources: Iterable[Source],
+    shown_name: Callable[[str], str] = str,
+) -> Report:
+    """The findings with lines, columns and excerpts.
+
+    ``shown_name`` makes of a file's name in the unit the one that the reader knows (usually
+    relative to the working folder).
+    """
+    diagnostics = list(diagnostics)
+    found = locate(sources, [d.subject.place for d in diagnostics if d.subject.place])
+    return Report(tuple(_finding(diagnostic, found, shown_name) for diagnostic in diagnostics))
+
+
+def _finding(
+    diagnostic: Diagnostic, found: Mapping[Place, Location], shown_name: Callable[[str], str]
+) -> Finding:
+    place = diagnostic.subject.place
+    if place is None:
+        return Finding(diagnostic)
+    at = found.get(place)
+    file = shown_name(place.file)
+    if at is None:
+        return Finding(diagnostic, file, place.line, place.column)
+    return Finding(diagnostic, file, at.line, at.column, at.text)

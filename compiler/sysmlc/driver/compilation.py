@@ -1,0 +1,237 @@
+"""One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
+
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from sysmlc.backends.base import Backend, EmitOptions, InputFile
+from sysmlc.config import Config
+from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
+from sysmlc.diagnostics.suppress import suppress
+from sysmlc.driver import faults, registry
+from sysmlc.driver.inputs import unit_root
+from sysmlc.driver.places import Locator
+from sysmlc.driver.reading import Reading, read_unit
+from sysmlc.driver.withhold import withheld_artefacts
+from sysmlc.frontends.base import Frontend
+from sysmlc.ir import Graph
+from sysmlc.output import Artefact, Output
+from sysmlc.passes.base import Pass
+from sysmlc.sources import Source, SourceError
+
+
+class Observer:
+    """What wants to know how a compilation goes on; this one does nothing with it."""
+
+    def step(self, what: str, number: int, total: int) -> None:
+        """Called before step ``number`` (from 0) of ``total``."""
+
+    def after(self, what: str, graph: Graph) -> None:
+        """Called with the graph after a pass, and with ``read`` after the front ends."""
+
+    def fault(self, where: str, trace: str) -> None:
+        """Called with the Python traceback of a fault of ours."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What one compilation is asked for.
+
+    ``backends`` may be empty (``check``). ``frontends`` and ``passes`` are None for the real
+    ones; tests give their own.
+    """
+
+    inputs: tuple[Path, ...]
+    config: Config = field(default_factory=Config)
+    backends: tuple[Backend, ...] = ()
+    templates: Path | None = None
+    strict_input: bool = False
+    verify_each: bool = False
+    frontends: tuple[Frontend, ...] | None = None
+    passes: tuple[Pass, ...] | None = None
+
+    def pipeline(self) -> tuple[Pass, ...]:
+        """The passes in order. Raises ConfigError for options that no pass has."""
+        if self.passes is not None:
+            return self.passes
+        return tuple(registry.passes(self.config.passes))
+
+
+@dataclass(frozen=True, slots=True)
+class Compilation:
+    """What came out: the refined graph, findings in the order of places, and artefacts."""
+
+    root: Path
+    graph: Graph
+    diagnostics: tuple[Diagnostic, ...]
+    coverage: Coverage
+    inputs: tuple[InputFile, ...]
+    artefacts: tuple[Artefact, ...] = ()
+    withheld: Mapping[str, tuple[Diagnostic, ...]] = field(default_factory=dict)
+    sources: tuple[Source, ...] = ()
+    is_complete: bool = True
+    """Whether every input could be read; if not, nothing old is removed."""
+
+    def written(self) -> list[Artefact]:
+        """The artefacts that are not withheld, sorted by path."""
+        return [artefact for artefact in self.artefacts if artefact.path not in self.withheld]
+
+    def with_findings(self, sink: Sink) -> "Compilation":
+        """The same with what a command found later."""
+        found = sorted([*self.diagnostics, *sink], key=_by_place)
+        return replace(self, diagnostics=tuple(found))
+
+    def exit_code(self, strict: bool = False) -> int:
+        """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
+        if any(found.rule.code in faults.STOPPING for found in self.diagnostics):
+            return 2
+        bad = {"error", "warning"} if strict else {"error"}
+        return 1 if any(found.severity.value in bad for found in self.diagnostics) else 0
+
+
+def compile_model(request: Request, observer: Observer | None = None) -> Compilation:
+    """Compile one unit. Model faults are in the result; nothing is written.
+
+    Raises ConfigError for options that a pass does not have.
+    """
+    run = _Run(request, observer or Observer())
+    return run.compilation()
+
+
+class _Run:
+    """The state of one compilation while it goes on."""
+
+    def __init__(self, request: Request, observer: Observer) -> None:
+        self._request = request
+        self._observer = observer
+        self._sink = Sink(request.config.rules)
+        self._coverage = Coverage()
+        self._graph = Graph()
+        self._output = Output()
+        self._frontends = request.frontends or tuple(registry.frontends())
+        self._passes = request.pipeline()
+        self._root = unit_root(request.inputs, request.config.folder)
+        self._done = 0
+
+    def compilation(self) -> Compilation:
+        reading = read_unit(self._request.inputs, self._root, self._frontends, self._sink)
+        inputs = tuple(
+            InputFile(r.source.name, r.source.sha256, r.frontend.name) for r in reading.recognised
+        )
+        broken = not self._read(reading)
+        broken = not all(self._refine(step) for step in self._passes) or broken
+        emitted = [] if broken else self._emit(inputs, reading)
+        if self._request.strict_input:
+            self._report_unsupported()
+        diagnostics = self._findings()
+        return Compilation(
+            root=self._root,
+            graph=self._graph,
+            diagnostics=diagnostics,
+            coverage=self._coverage,
+            inputs=inputs,
+            artefacts=tuple(emitted),
+            withheld=withheld_artefacts(emitted, self._graph, diagnostics),
+            sources=reading.sources(),
+            is_complete=reading.is_complete
+            and not broken
+            and not any(map(_cuts_short, diagnostics)),
+        )
+
+    def _read(self, reading: Reading) -> bool:
+        done = True
+        for frontend in self._frontends:
+            sources = [r.source for r in reading.recognised if r.frontend is frontend]
+            if sources:
+                self._step(f"read {len(sources)} {frontend.name}")
+                done &= self._guarded(
+                    f"front end {frontend.name}",
+                    lambda f=frontend, s=sources: f.read(  # type: ignore[misc]
+                        s, self._graph, self._sink, self._coverage
+                    ),
+                )
+        return self._settled("read") and done
+
+    def _refine(self, step: Pass) -> bool:
+        self._step(f"pass {step.name}")
+        done = self._guarded(f"pass {step.name}", lambda: step.run(self._graph, self._sink))
+        return self._settled(step.name) and done
+
+    def _settled(self, what: str) -> bool:
+        self._observer.after(what, self._graph)
+        if not self._request.verify_each:
+            return True
+        from sysmlc.ir.verify import verify
+
+        problems = verify(self._graph)
+        for problem in problems:
+            self._sink.report(faults.INVALID_GRAPH, Subject(), where=what, problem=problem)
+        return not problems
+
+    def _emit(self, inputs: tuple[InputFile, ...], reading: Reading) -> list[Artefact]:
+        options = EmitOptions(self._request.templates, inputs, Locator(reading.sources()))
+        failed: set[str] = set()
+        for backend in self._request.backends:
+            self._step(f"emit {backend.name}")
+            before = {artefact.path for artefact in self._output.artefacts()}
+            if not self._guarded(
+                f"back end {backend.name}",
+                lambda b=backend: b.emit(  # type: ignore[misc]
+                    self._graph, self._output, self._sink, options
+                ),
+            ):
+                failed |= {a.path for a in self._output.artefacts()} - before
+        return [a for a in self._output.artefacts() if a.path not in failed]
+
+    def _guarded(self, where: str, act: Callable[[], None]) -> bool:
+        """Run our own or a plug-in's code; a fault in it becomes a finding, not a traceback."""
+        try:
+            act()
+        except SourceError as problem:
+            faults.report_unreadable(problem, self._sink)
+            return True
+        except Exception as problem:
+            self._observer.fault(where, traceback.format_exc())
+            text = f"{type(problem).__name__}: {problem}"
+            self._sink.report(faults.INTERNAL_FAULT, Subject(), where=where, problem=text)
+            return False
+        return True
+
+    def _step(self, what: str) -> None:
+        total = 1 + len(self._passes) + len(self._request.backends)
+        self._observer.step(what, self._done, total)
+        self._done += 1
+
+    def _report_unsupported(self) -> None:
+        for file in self._coverage.as_json()["files"]:  # type: ignore[attr-defined]
+            for type_name, verdicts in file["by_type"].items():
+                number = verdicts.get("unsupported", 0)
+                if number:
+                    subject = faults.about_file(file["file"])
+                    self._sink.report(faults.UNSUPPORTED, subject, number=number, type=type_name)
+
+    def _findings(self) -> tuple[Diagnostic, ...]:
+        left, unused = suppress(self._sink, self._request.config.suppress)
+        late = Sink(self._request.config.rules)
+        for entry in unused:
+            late.report(
+                faults.UNUSED_SUPPRESSION, Subject(), name=entry.rule, element=entry.element
+            )
+        return tuple(sorted([*left, *late], key=_by_place))
+
+
+def _cuts_short(found: Diagnostic) -> bool:
+    """Whether the finding means that part of the unit was not read."""
+    is_about_file = not found.subject.id and found.subject.place is not None
+    return found.is_error and is_about_file and found.rule.code.startswith("SM1")
+
+
+def _by_place(found: Diagnostic) -> tuple[object, ...]:
+    place = found.subject.place
+    where = ("", 0, 0, 0, 0) if place is None else _position(place)
+    return (where, found.rule.code, found.message, found.subject.name, found.subject.id)
+
+
+def _position(place: Place) -> tuple[object, ...]:
+    return (place.file, place.ordinal, place.offset, place.line, place.column)

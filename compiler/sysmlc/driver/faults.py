@@ -1,0 +1,154 @@
+"""Rules of the driver: what can go wrong around a compilation."""
+
+from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
+from sysmlc.sources import Fault, SourceError
+
+MISSING_FILE = rule(
+    "SM170",
+    "missing-file",
+    Severity.ERROR,
+    "there is no file or folder '{path}'",
+    why="A model that is not there cannot be compiled; nothing is written.",
+    help="look at the spelling; file names are relative to the working folder",
+    wrong="sysmlc modle.uml",
+    right="sysmlc model.uml",
+)
+UNOPENED = rule(
+    "SM179",
+    "unopened-file",
+    Severity.ERROR,
+    "'{path}' {reason}",
+    why="The file is there but the operating system does not let us read it.",
+    help="look at its permissions",
+    wrong="chmod 000 plant.uml; sysmlc plant.uml",
+    right="chmod 644 plant.uml; sysmlc plant.uml",
+)
+UNRECOGNISED = rule(
+    "SM171",
+    "unrecognised-content",
+    Severity.ERROR,
+    "'{path}' is no model that a front end recognises",
+    why="Front ends recognise their files by content, whatever the name ends in. "
+    "A file that was named on the command line but is not understood would otherwise be "
+    "silently left out.",
+    help="front ends: {frontends}; for a project of a modelling tool save it as XMI first",
+    wrong="<html><body>a page that was saved instead of the model</body></html>",
+    right='<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
+    ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML">...</xmi:XMI>',
+)
+MALFORMED = rule(
+    "SM172",
+    "malformed-file",
+    Severity.ERROR,
+    "'{path}' cannot be read: {reason}",
+    why="The content is damaged. What stands before the damage is not used: a model that is "
+    "silently cut short gives wrong outputs.",
+    help="open and save the model again in the modelling tool",
+    wrong="<uml:Model><packagedElement></uml:Model>",
+    right="<uml:Model><packagedElement/></uml:Model>",
+)
+REFUSED = rule(
+    "SM177",
+    "refused-file",
+    Severity.ERROR,
+    "'{path}' is refused: {reason}",
+    why="Models come from others. A DOCTYPE can hide entities that read files or grow without "
+    "end, and an archive can name files outside its folder; no modelling tool writes either.",
+    help="remove the DOCTYPE, or save the model again in the modelling tool",
+    wrong='<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/passwd">]><uml:Model/>',
+    right="<uml:Model/>",
+)
+TOO_LARGE = rule(
+    "SM178",
+    "too-large",
+    Severity.ERROR,
+    "'{path}' exceeds a limit: {reason}",
+    why="Files larger or deeper than any real model are refused before they exhaust memory.",
+    help="split the model, or look whether the file is what you think",
+    wrong="an archive of 1 MB that unpacks to 10 GB",
+    right="an archive of 1 MB that unpacks to 20 MB",
+)
+NOTHING_TO_COMPILE = rule(
+    "SM173",
+    "nothing-to-compile",
+    Severity.ERROR,
+    "'{path}' holds no model",
+    why="A folder is searched for files whose names end as models' do "
+    "(.uml, .xmi, .xml, .mdxml, .mdzip, .ir); there is none.",
+    help="name a file, or another folder",
+    wrong="models/readme.txt",
+    right="models/plant.uml",
+)
+UNSUPPORTED = rule(
+    "SM174",
+    "unsupported-content",
+    Severity.ERROR,
+    "{number} elements of type '{type}' are not supported",
+    why="With --strict-input everything that has a meaning must be in the graph. "
+    "coverage.json lists the verdict on every element.",
+    help="remove them from the model, or compile without --strict-input",
+    wrong="<packagedElement xmi:type='uml:Duration'/>",
+    right="<packagedElement xmi:type='uml:Class'/>",
+)
+SKIPPED = rule(
+    "SM175",
+    "skipped-file",
+    Severity.WARNING,
+    "'{path}' is named like a model but no front end recognises it",
+    why="In a folder only what is recognised is compiled; a file that is named like a model "
+    "may have been meant.",
+    help="name the files instead of the folder if this one is not meant",
+    wrong="models/ with plant.uml and an empty notes.xml",
+    right="models/ with plant.uml",
+)
+INTERNAL_FAULT = rule(
+    "SM900",
+    "internal-fault",
+    Severity.ERROR,
+    "fault of sysmlc in {where}: {problem}",
+    why="This is a fault of sysmlc or of a plug-in, not of the model. What the faulty part "
+    "would have made is not written.",
+    help="please report it with the command and the model; -v shows where it happened",
+)
+INVALID_GRAPH = rule(
+    "SM901",
+    "invalid-graph",
+    Severity.ERROR,
+    "fault of sysmlc: after {where} the graph is not valid: {problem}",
+    why="With --verify-each the graph is checked after the front ends and after each pass. "
+    "An invalid graph is a fault of the part that ran last.",
+    help="please report it with the model",
+)
+UNUSED_SUPPRESSION = rule(
+    "SM902",
+    "unused-suppression",
+    Severity.WARNING,
+    "no finding '{name}' about '{element}' is left to suppress",
+    why="A suppression that no longer matches hides the next finding that does.",
+    help="remove the [[suppress]] entry",
+    wrong='[[suppress]]\nrule = "untyped-port"\nelement = "Plant::Gone"\nreason = "legacy"',
+    right='[[suppress]]\nrule = "untyped-port"\nelement = "Plant::Gate::in"\nreason = "legacy"',
+)
+
+_BY_FAULT = {
+    Fault.MALFORMED: MALFORMED,
+    Fault.REFUSED: REFUSED,
+    Fault.LIMIT: TOO_LARGE,
+    Fault.MISSING: UNOPENED,
+}
+
+STOPPING = frozenset(
+    found.code for found in (MISSING_FILE, UNOPENED, TOO_LARGE, INTERNAL_FAULT, INVALID_GRAPH)
+)
+"""Rules after which we could not do our work: exit code 2."""
+
+
+def about_file(name: str) -> Subject:
+    """A file as the subject of a finding."""
+    return Subject(place=Place(name))
+
+
+def report_unreadable(problem: SourceError, sink: Sink) -> None:
+    """Report a file that cannot be read, at the byte where it ends to make sense."""
+    subject = Subject(place=Place(problem.file, offset=problem.offset))
+    sink.report(_BY_FAULT[problem.fault], subject, path=problem.file, reason=problem.message)

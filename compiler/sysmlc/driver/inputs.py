@@ -1,0 +1,106 @@
+"""From what the user named to the sources of one compile unit."""
+
+import os
+import unicodedata
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from sysmlc.diagnostics import Sink
+from sysmlc.driver import faults
+from sysmlc.frontends.base import Frontend
+from sysmlc.sources import Source
+from sysmlc.suggest import did_you_mean
+
+SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".ir"})
+"""How files in a folder end that are worth a look; files that are named may end in anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recognised:
+    """One source and the front end that reads it."""
+
+    source: Source
+    frontend: Frontend
+
+
+def unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
+    """The folder that names in outputs are relative to.
+
+    ``preferred`` (where the configuration stands) if all paths are below it, else the nearest
+    folder that holds them all.
+    """
+    absolute = [Path(os.path.abspath(path)) for path in paths]  # noqa: PTH100 - keeps symlinks
+    if preferred is not None and all(path.is_relative_to(preferred) for path in absolute):
+        return preferred
+    folders = [path if path.is_dir() else path.parent for path in absolute]
+    return Path(os.path.commonpath(folders)) if folders else Path.cwd()
+
+
+def collect(paths: Iterable[Path], root: Path, sink: Sink) -> dict[Path, bool]:
+    """Files to read, sorted by name, and whether each was named (not found in a folder)."""
+    found: dict[Path, bool] = {}
+    for path in paths:
+        absolute = Path(os.path.abspath(path))  # noqa: PTH100 - keeps symlinks
+        if absolute.is_dir():
+            found = dict.fromkeys(_in_folder(absolute, root, sink), False) | found
+        elif absolute.exists():
+            found[absolute] = True
+        else:
+            _report_missing(path, absolute, root, sink)
+    return {path: found[path] for path in sorted(found, key=lambda p: name_of(p, root))}
+
+
+def name_of(path: Path, root: Path) -> str:
+    """Name of a file in outputs: relative to the root, with ``/``, in NFC."""
+    relative = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
+    return unicodedata.normalize("NFC", relative.as_posix())
+
+
+def recognise(
+    sources: Sequence[Source], frontends: Sequence[Frontend], named: bool, sink: Sink
+) -> Iterator[Recognised]:
+    """The sources that a front end recognises; the others are reported."""
+    for source in sources:
+        scores = [(frontend.detect(source), frontend) for frontend in frontends]
+        score, best = max(scores, key=lambda pair: pair[0])
+        if score > 0:
+            yield Recognised(source, best)
+        else:
+            rule = faults.UNRECOGNISED if named else faults.SKIPPED
+            known = ", ".join(frontend.name for frontend in frontends)
+            sink.report(rule, faults.about_file(source.name), path=source.name, frontends=known)
+
+
+def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:
+    found = sorted(_walk(folder))
+    if not found:
+        name = name_of(folder, root)
+        sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=name)
+    return found
+
+
+def _walk(folder: Path) -> Iterator[Path]:
+    for path, folders, files in os.walk(folder):
+        here = Path(path)
+        folders[:] = [f for f in folders if not f.startswith(".") and not _is_output(here / f)]
+        for file in files:
+            if Path(file).suffix.lower() in SUFFIXES and not file.startswith("."):
+                yield here / file
+
+
+def _is_output(folder: Path) -> bool:
+    manifest = folder / "manifest.json"
+    try:
+        return manifest.is_file() and '"sysmlc-manifest/' in manifest.read_text("utf-8")[:200]
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:
+    name = path.as_posix()
+    folder = absolute.parent
+    near = [p.name for p in sorted(folder.iterdir())] if folder.is_dir() else []
+    advice = did_you_mean(absolute.name, [n for n in near if not n.startswith(".")][:40])
+    subject = faults.about_file(name_of(absolute, root))
+    sink.report(faults.MISSING_FILE, subject, help="{advice}", path=name, advice=advice)

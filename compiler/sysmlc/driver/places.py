@@ -1,0 +1,20 @@
+"""Lines and columns for back ends and for trace.json."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from sysmlc.diagnostics import Place
+from sysmlc.diagnostics.locate import locate
+from sysmlc.sources import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Locator:
+    """Finds lines and columns in the inputs of one compilation (``backends.base.Locate``)."""
+
+    sources: Sequence[Source]
+
+    def __call__(self, places: Iterable[Place]) -> Mapping[Place, Place]:
+        """The places that can be found, with line and column."""
+        found = locate(self.sources, places)
+        return {p: replace(p, line=at.line, column=at.column) for p, at in found.items()}

@@ -1,0 +1,149 @@
+"""Front ends, back ends and rules: where they are found, without importing what is not used."""
+
+import pkgutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, replace
+from importlib import import_module
+from typing import TYPE_CHECKING, cast
+
+from sysmlc.backends.base import Backend
+from sysmlc.config import ConfigError
+from sysmlc.diagnostics import Rule, catalogue
+from sysmlc.frontends.base import Frontend
+from sysmlc.passes import pipeline
+from sysmlc.passes.base import Pass
+from sysmlc.suggest import did_you_mean
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+    from _typeshed import DataclassInstance
+
+GROUP = "sysmlc.backends"
+"""Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
+
+_FRONTENDS = ("sysmlc.frontends.xmi", "sysmlc.frontends.ir")
+_BACKENDS = {
+    name: f"sysmlc.backends.{name}"
+    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir")
+}
+_RULE_PACKAGES = ("frontends", "logic", "recipe", "simulation", "passes", "backends", "driver")
+
+
+class BackendError(Exception):
+    """A back end is unknown, twice there, or cannot be loaded."""
+
+
+def frontends() -> list[Frontend]:
+    """The front ends, in the order in which they are asked."""
+    return [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS if _there(name)]
+
+
+def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
+    """The passes in order, with options by the name of the pass.
+
+    Raises ConfigError for a pass or an option that does not exist.
+    """
+    for name in options:
+        if name not in pipeline.NAMES:
+            advice = did_you_mean(name, pipeline.NAMES)
+            raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
+    loaded = [pipeline.load(name) for name in pipeline.NAMES if _there(f"sysmlc.passes.{name}")]
+    return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
+
+
+def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
+    if not options:
+        return one
+    known = [field.name for field in fields(cast("DataclassInstance", one))]
+    for name in options:
+        if name not in known:
+            advice = did_you_mean(name, known)
+            raise ConfigError(f"passes.{one.name}.{name}: there is no such option; {advice}")
+    return cast("Pass", replace(cast("DataclassInstance", one), **options))
+
+
+def backend_names() -> list[str]:
+    """Names of all back ends, those of plug-ins included; loads none."""
+    return sorted({*_BACKENDS, *(entry.name for entry in _plug_ins())})
+
+
+def load_backends(names: Iterable[str]) -> list[Backend]:
+    """The back ends with these names, each once. Raises BackendError."""
+    plug_ins = {entry.name: entry for entry in _plug_ins()}
+    return [_load(name, plug_ins) for name in dict.fromkeys(names)]
+
+
+def select_backends(wanted: Sequence[str]) -> list[Backend]:
+    """Back ends for ``--emit``: plain names replace the default set, ``+name`` adds to it.
+
+    Raises BackendError; an unknown name is answered with the known ones.
+    """
+    plain = [name for name in wanted if not name.startswith("+")]
+    added = [name[1:] for name in wanted if name.startswith("+")]
+    if plain:
+        return load_backends([*plain, *added])
+    every = load_backends(backend_names())
+    return [backend for backend in every if backend.is_default or backend.name in _known(added)]
+
+
+def full_catalogue() -> dict[str, Rule]:
+    """Every rule there is: imports every module that may hold one."""
+    for package in _RULE_PACKAGES:
+        for module in _modules(f"sysmlc.{package}"):
+            import_module(module)
+    return catalogue()
+
+
+def _known(names: Iterable[str]) -> frozenset[str]:
+    for name in names:
+        if name not in backend_names():
+            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, backend_names())}")
+    return frozenset(names)
+
+
+def _plug_ins() -> "list[EntryPoint]":
+    from importlib.metadata import entry_points
+
+    found = {entry.name: entry for entry in entry_points(group=GROUP) if not _is_ours(entry)}
+    taken = sorted(found.keys() & _BACKENDS.keys())
+    if taken:
+        entry = found[taken[0]]
+        raise BackendError(f"the plug-in {entry.value} takes the name of back end '{entry.name}'")
+    return [found[name] for name in sorted(found)]
+
+
+def _is_ours(entry: "EntryPoint") -> bool:
+    return entry.value.startswith("sysmlc.")
+
+
+def _load(name: str, plug_ins: "dict[str, EntryPoint]") -> Backend:
+    _known([name])
+    try:
+        if name in _BACKENDS:
+            return cast("Backend", import_module(_BACKENDS[name]).BACKEND)
+        return cast("Backend", plug_ins[name].load())
+    except Exception as problem:
+        raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
+
+
+def _modules(package: str) -> Iterator[str]:
+    try:
+        folder = import_module(package)
+    except ModuleNotFoundError as problem:
+        if problem.name != package:
+            raise
+        return
+    yield package
+    for found in pkgutil.walk_packages(getattr(folder, "__path__", ()), f"{package}."):
+        if not found.name.endswith("__main__"):
+            yield found.name
+
+
+def _there(name: str) -> bool:
+    # FIXME remove when all parts have landed
+    try:
+        m = import_module(name)
+        return not name.startswith("sysmlc.frontends") or hasattr(m, "FRONTEND")
+    except ModuleNotFoundError:
+        return False
