@@ -1,0 +1,51 @@
+# Needs Python 3.11 to 3.13, git and make. PYTHON=python3.12 chooses another interpreter.
+PYTHON ?= python3
+MODEL ?= examples/lego-recipe/lego-recipe.uml
+PIP = -m pip --disable-pip-version-check --quiet install
+
+.PHONY: help demo test check format bench clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+demo: .demo/.ready ## compile an example and show what came out (MODEL=... for another)
+	@.demo/bin/sysmlc $(MODEL) -o .demo/out
+	@echo
+	@echo "$(MODEL) became, in .demo/out:"
+	@cd .demo/out && find . -type f | sed 's|^\./|  |' | sort
+	@echo
+	@echo "Your own model: .demo/bin/sysmlc model.uml -o out/   Words: .demo/bin/sysmlc --help"
+
+test: .venv/.ready ## everything that continuous integration runs
+	@.ci/system-packages
+	.venv/bin/ruff check
+	.venv/bin/ruff format --check
+	.venv/bin/mypy
+	.venv/bin/pytest -n 2
+
+check: .venv/.ready ## the quick half of 'make test': style, types, tests that are not slow
+	.venv/bin/ruff check
+	.venv/bin/ruff format --check
+	.venv/bin/mypy
+	.venv/bin/pytest -n 2 -m "not slow"
+
+format: .venv/.ready ## put the code into its form
+	.venv/bin/ruff check --fix
+	.venv/bin/ruff format
+
+bench: .venv/.ready ## the measurements of benchmarks/
+	@for file in benchmarks/*.py; do .venv/bin/python $$file || exit 1; done
+
+clean: ## remove the environments and what the tools keep
+	rm -rf .venv .demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+# The stamps are touched last: an interrupted installation starts again.
+.venv/.ready: pyproject.toml
+	@.ci/environment .venv "$(PYTHON)"
+	@.venv/bin/python $(PIP) --editable '.[test]'
+	@touch $@
+
+.demo/.ready: pyproject.toml
+	@.ci/environment .demo "$(PYTHON)"
+	@.demo/bin/python $(PIP) --editable .
+	@touch $@

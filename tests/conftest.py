@@ -1,6 +1,11 @@
-"""Golden files: ``golden`` compares texts with a folder, ``--update-golden`` writes the folder."""
+"""Golden files: ``golden`` compares texts with a folder, ``--update-golden`` writes the folder.
+
+Where the corpus is there (SYSMLC_CORPUS) and in continuous integration (CI) a test that needs
+the corpus or PlantUML may not be skipped: a skip fails.
+"""
 
 import difflib
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -72,3 +77,38 @@ def golden(request):
     """The golden files, to compare with or to write."""
     terminal = request.config.get_terminal_writer()
     return Golden(request.config.getoption("--update-golden"), terminal.line)
+
+
+@pytest.fixture(scope="session")
+def corpus() -> Path:
+    """The folder with real models; a test that uses it carries the mark ``corpus``."""
+    folder = os.environ.get("SYSMLC_CORPUS")
+    if not folder:
+        pytest.skip("SYSMLC_CORPUS is not set")
+    return Path(folder)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    report = yield
+    if report.skipped and not hasattr(report, "wasxfail") and _must_run(item):
+        report.outcome = "failed"
+        report.longrepr = f"{item.nodeid} may not be skipped here: {report.longrepr}"
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    report = yield
+    if report.skipped and os.environ.get("SYSMLC_CORPUS"):
+        report.outcome = "failed"
+        report.longrepr = f"{collector.nodeid} may not be skipped here: {report.longrepr}"
+    return report
+
+
+def _must_run(item) -> bool:
+    needed = {"corpus": ("SYSMLC_CORPUS",), "plantuml": ("CI", "SYSMLC_CORPUS")}
+    return any(
+        item.get_closest_marker(mark) and any(os.environ.get(name) for name in names)
+        for mark, names in needed.items()
+    )
