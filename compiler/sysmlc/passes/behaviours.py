@@ -1,0 +1,313 @@
+"""Pass ``behaviours``: methods of operations, calls and their arguments, behaviours of states."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import BEHAVIORS, features, parameters
+
+CALL_OF_NOTHING = rule(
+    "SM400",
+    "call-of-nothing",
+    Severity.WARNING,
+    "action '{action}' does not say which {what} it calls",
+    why="Nothing is known of what the action does: contracts treat it as an elementary one.",
+    help="choose the {what} in the modelling tool",
+    wrong="""\
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-operation"
+""",
+    right="""\
+Class gate "Gate"
+  Operation gate.read "readTag"
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-operation"
+    -> calls gate.read
+""",
+)
+CALL_ARGUMENTS = rule(
+    "SM401",
+    "call-arguments",
+    Severity.WARNING,
+    "action '{action}' has {pins} {direction} pins, '{called}' has {parameters} {direction} "
+    "parameters",
+    why="Each parameter of what is called has its pin (UML 2.5.1 clause 16.3.3), so values have "
+    "no place to go, or come from nowhere.",
+    help="let the modelling tool synchronise the pins of the action",
+    wrong="""\
+Activity read "Read"
+  Parameter read.id "id" direction="return"
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-behavior"
+    -> calls read
+""",
+    right="""\
+Activity read "Read"
+  Parameter read.id "id" direction="return"
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-behavior"
+    -> calls read
+    Pin pull.read.id "id" direction="out" subkind="result"
+""",
+)
+NO_BEHAVIOR = rule(
+    "SM402",
+    "no-behavior",
+    Severity.WARNING,
+    "the {relation} of '{element}' leads to '{target}', which is no behaviour",
+    why="Entry, do, exit, effect, method and classifier behaviour are behaviours (UML 2.5.1 "
+    "clause 13.2).",
+    help="let it lead to an activity, state machine or interaction",
+    wrong="""\
+Class gate "Gate"
+  Operation gate.open "open"
+StateMachine sm "Gate states"
+  Region sm.r
+    State sm.open "open"
+      -> entry gate.open
+""",
+    right="""\
+Class gate "Gate"
+  Activity gate.open "open"
+StateMachine sm "Gate states"
+  Region sm.r
+    State sm.open "open"
+      -> entry gate.open
+""",
+)
+METHOD_BY_NAME = rule(
+    "SM403",
+    "method-by-name",
+    Severity.INFO,
+    "operation '{operation}' has no method, but '{owner}' has a behaviour of the same name",
+    why="Equal names are no connection, so calls of the operation do not run the behaviour.",
+    help="set the behaviour's specification to the operation if it implements it",
+    wrong="""\
+Class gate "Gate"
+  Operation gate.open "open"
+  Activity gate.doOpen "open"
+""",
+    right="""\
+Class gate "Gate"
+  Operation gate.open "open"
+    -> method gate.doOpen
+  Activity gate.doOpen "open"
+""",
+)
+METHOD_PARAMETERS = rule(
+    "SM404",
+    "method-parameters",
+    Severity.WARNING,
+    "operation '{operation}' has the parameters ({own}), its method '{method}' ({other})",
+    why="A method has the parameters of its operation (UML 2.5.1 clause 13.2.3.2), so a call "
+    "cannot pass its arguments on.",
+    help="give the behaviour the same parameters, in the same order",
+    wrong="""\
+Class gate "Gate"
+  Operation gate.open "open"
+    Parameter gate.open.a "angle"
+    -> method gate.doOpen
+  Activity gate.doOpen "open"
+""",
+    right="""\
+Class gate "Gate"
+  Operation gate.open "open"
+    Parameter gate.open.a "angle"
+    -> method gate.doOpen
+  Activity gate.doOpen "open"
+    Parameter gate.doOpen.a "angle"
+""",
+)
+TRIGGER_OF_NOTHING = rule(
+    "SM405",
+    "trigger-of-nothing",
+    Severity.WARNING,
+    "{what} trigger of '{element}' does not say which {what} it waits for",
+    why="Nobody can send what fires it.",
+    help="choose the {what} in the modelling tool",
+    wrong="""\
+StateMachine sm "Gate states"
+  Region sm.r
+    Transition t "leave"
+      -> trigger t.go
+      Trigger t.go "go" subkind="signal"
+""",
+    right="""\
+Signal go "Go"
+StateMachine sm "Gate states"
+  Region sm.r
+    Transition t "leave"
+      -> trigger t.go
+      Trigger t.go "go" subkind="signal"
+        -> typed-by go
+""",
+)
+
+_CALLED: dict[str, tuple[str, tuple[Kind, ...]]] = {
+    "call-behavior": ("behaviour", BEHAVIORS),
+    "call-operation": ("operation", (Kind.OPERATION,)),
+    "send": ("signal", (Kind.SIGNAL,)),
+    "broadcast": ("signal", (Kind.SIGNAL,)),
+}
+_BEHAVIOR_EDGES = (
+    Edge.ENTRY,
+    Edge.DO,
+    Edge.EXIT,
+    Edge.EFFECT,
+    Edge.METHOD,
+    Edge.CLASSIFIER_BEHAVIOR,
+)
+_NO_ARGUMENT = frozenset({"target", "object", "exception", "insert-at", "remove-at"})
+_IN = ("in", "inout")
+_OUT = ("out", "inout", "return")
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviours:
+    """Link operations to the methods they inherit, and check calls.
+
+    Assumes effective features. Guarantees: an operation that redefines another one and has no
+    method of its own has the other's; every call, trigger and state behaviour leads to
+    something of the right kind, or is reported. Which component a behaviour belongs to is
+    ``ir.query.component_name``.
+    """
+
+    name: ClassVar[str] = "behaviours"
+    after: ClassVar[tuple[str, ...]] = ("inherit", "classify")
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Link in place and report; see the class."""
+        for operation in graph.of_kind(Kind.OPERATION):
+            _inherit_method(graph, operation)
+            _check_method(graph, sink, operation)
+        for action in graph.of_kind(Kind.ACTION):
+            if action.subkind in _CALLED:
+                _check_call(graph, sink, action)
+        for trigger in graph.of_kind(Kind.TRIGGER):
+            _check_trigger(graph, sink, trigger)
+        for edge, source, target in graph.edges(*_BEHAVIOR_EDGES):
+            _check_behavior(graph, sink, edge, graph[source], graph[target])
+
+
+# -- methods -----------------------------------------------------------------------------------
+
+
+def _inherit_method(graph: Graph, operation: Element) -> None:
+    seen, level = {operation}, [operation]
+    while level:
+        methods = [found for one in level for found in graph.targets(one, Edge.METHOD)]
+        if methods:
+            for method in methods:
+                graph.connect(Edge.METHOD, operation, method)
+            return
+        ups = [up for one in level for up in graph.targets(one, Edge.REDEFINES)]
+        level = [up for up in dict.fromkeys(ups) if up not in seen]
+        seen.update(level)
+
+
+def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
+    methods = graph.targets(operation, Edge.METHOD)
+    if not methods and operation.attrs.get("abstract") is None:
+        _suggest_method(graph, sink, operation)
+    for method in methods:
+        own, other = (_signature(graph, one) for one in (operation, method))
+        if own != other and not method.attrs.get("external"):
+            sink.report(
+                METHOD_PARAMETERS,
+                graph.subject(operation),
+                operation=graph.qualified_name(operation),
+                own=", ".join(own),
+                method=graph.qualified_name(method),
+                other=", ".join(other),
+            )
+
+
+def _signature(graph: Graph, owner: Element) -> list[str]:
+    """Directions of the parameters in order, results last: tools put them at either end."""
+    directions = [str(one.attrs.get("direction", "in")) for one in parameters(graph, owner)]
+    return sorted(directions, key=lambda direction: direction == "return")
+
+
+def _suggest_method(graph: Graph, sink: Sink, operation: Element) -> None:
+    owner = graph.owner(operation)
+    if owner is None or "method" in _unresolved(operation):
+        return
+    for one in graph.owned(owner):
+        is_free = one.kind in BEHAVIORS and graph.source(one, Edge.METHOD) is None
+        if is_free and one.name == operation.name and one.name:
+            sink.report(
+                METHOD_BY_NAME,
+                graph.subject(operation),
+                operation=graph.qualified_name(operation),
+                owner=owner.name,
+            )
+
+
+# -- calls -------------------------------------------------------------------------------------
+
+
+def _check_call(graph: Graph, sink: Sink, action: Element) -> None:
+    what, kinds = _CALLED[action.subkind]
+    called = graph.target(action, Edge.CALLS)
+    if called is None:
+        if Edge.CALLS.value not in _unresolved(action):
+            name = graph.qualified_name(action)
+            sink.report(CALL_OF_NOTHING, graph.subject(action), action=name, what=what)
+    elif called.kind in kinds and not called.attrs.get("external"):
+        _check_pins(graph, sink, action, called)
+
+
+def _check_pins(graph: Graph, sink: Sink, action: Element, called: Element) -> None:
+    pins = [one for one in graph.owned(action) if one.kind is Kind.PIN]
+    pins = [one for one in pins if one.subkind not in _NO_ARGUMENT]
+    ins, outs = _wanted(graph, called)
+    for direction, wanted in (("in", ins), ("out", outs)):
+        given = sum(1 for one in pins if one.attrs.get("direction", "in") == direction)
+        if given != wanted:
+            sink.report(
+                CALL_ARGUMENTS,
+                graph.subject(action),
+                action=graph.qualified_name(action),
+                pins=given,
+                direction=direction,
+                called=graph.qualified_name(called),
+                parameters=wanted,
+            )
+
+
+def _wanted(graph: Graph, called: Element) -> tuple[int, int]:
+    if called.kind is Kind.SIGNAL:
+        return sum(1 for one in features(graph, called) if one.kind is Kind.PROPERTY), 0
+    return len(parameters(graph, called, *_IN)), len(parameters(graph, called, *_OUT))
+
+
+def _check_trigger(graph: Graph, sink: Sink, trigger: Element) -> None:
+    if trigger.subkind not in ("signal", "call") or Edge.TYPED_BY.value in _unresolved(trigger):
+        return
+    if graph.target(trigger, Edge.TYPED_BY) is None:
+        sink.report(
+            TRIGGER_OF_NOTHING,
+            graph.subject(trigger),
+            what="operation" if trigger.subkind == "call" else "signal",
+            element=graph.qualified_name(graph.owner(trigger) or trigger),
+        )
+
+
+def _check_behavior(
+    graph: Graph, sink: Sink, edge: Edge, element: Element, target: Element
+) -> None:
+    if target.kind in BEHAVIORS or target.attrs.get("external"):
+        return
+    sink.report(
+        NO_BEHAVIOR,
+        graph.subject(element),
+        relation=edge.value.replace("-", " "),
+        element=graph.qualified_name(element),
+        target=graph.qualified_name(target),
+    )
+
+
+def _unresolved(element: Element) -> tuple[object, ...]:
+    known = element.attrs.get("unresolved")
+    return known if isinstance(known, tuple) else ()

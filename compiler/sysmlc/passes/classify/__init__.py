@@ -1,0 +1,158 @@
+"""Pass ``classify``: what each element is in SysML, and at which level of a recipe."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import generals, tag
+from sysmlc.passes.classify.lineage import (
+    Ancestor,
+    Profiles,
+    known_meanings,
+    look_alike,
+    meanings,
+)
+from sysmlc.passes.classify.relations import add_relations
+from sysmlc.passes.classify.roles import by_stereotype, by_structure
+from sysmlc.passes.classify.rules import LOOK_ALIKE, UNKNOWN_STEREOTYPE
+from sysmlc.passes.classify.vocabulary import LEVELS, Family
+
+_Meanings = dict[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Classify:
+    """Give every stereotype application its lineage and every element its role.
+
+    Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of``
+    when the stereotype is in the unit; ``role`` as docs/ir.md lists them (one that a front end
+    gave stays unless a stereotype says otherwise); ``req_id`` and ``text`` of requirements;
+    ``direction`` of flow properties; ``level`` on what a stereotype of the shipped profile, or
+    a general classifier with a level, puts there; the edges that dependencies mean. The kind
+    of an element never changes.
+    """
+
+    name: ClassVar[str] = "classify"
+    after: ClassVar[tuple[str, ...]] = ("resolve", "inherit")
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Classify in place; see the class."""
+        lineages = _lineages(graph)
+        known = _meanings(graph, sink, lineages)
+        _give_roles(graph, known)
+        _give_levels(graph, lineages)
+        _give_values(graph)
+        add_relations(graph, sink)
+
+
+# -- stereotypes -------------------------------------------------------------------------------
+
+
+def _lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
+    profiles = Profiles(graph)
+    found: dict[str, tuple[Ancestor, ...]] = {}
+    for application in graph.of_kind(Kind.APPLICATION):
+        stereotype = profiles.stereotype(application)
+        if stereotype is not None:
+            graph.connect(Edge.INSTANCE_OF, application, stereotype)
+        found[application.id] = profiles.lineage(application)
+        names = dict.fromkeys(one.name for one in found[application.id])
+        graph.set(application, lineage=tuple(names))
+    return found
+
+
+def _meanings(graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]) -> _Meanings:
+    """Names of SysML stereotypes on each element, look-alikes included."""
+    found: _Meanings = {}
+    doubtful: dict[tuple[str, str], list[Element]] = {}
+    for id, lineage in lineages.items():
+        application = graph[id]
+        alike = look_alike(lineage)
+        names = known_meanings(alike) if alike else meanings(lineage)
+        for subject in graph.targets(application, Edge.SUBJECT):
+            found[subject.id] = (*found.get(subject.id, ()), *names)
+        if alike or _is_unknown(graph, application, lineage):
+            doubtful.setdefault((_full_name(application), alike), []).append(application)
+    for (name, alike), applications in doubtful.items():
+        _report(graph, sink, name, alike, applications)
+    return found
+
+
+def _is_unknown(graph: Graph, application: Element, lineage: tuple[Ancestor, ...]) -> bool:
+    custom = all(one.family is Family.CUSTOM for one in lineage)
+    return custom and graph.target(application, Edge.INSTANCE_OF) is None
+
+
+def _full_name(application: Element) -> str:
+    namespace = application.attrs.get("namespace", "")
+    return f"{application.attrs.get('stereotype', '')} ({namespace})"
+
+
+def _report(graph: Graph, sink: Sink, name: str, alike: str, applications: list[Element]) -> None:
+    bases = [one for app in applications for one in graph.targets(app, Edge.SUBJECT)]
+    sink.report(
+        LOOK_ALIKE if alike else UNKNOWN_STEREOTYPE,
+        graph.subject(bases[0] if bases else applications[0]),
+        stereotype=name,
+        known=alike,
+        count=len(applications),
+    )
+
+
+# -- roles and levels --------------------------------------------------------------------------
+
+
+def _give_roles(graph: Graph, known: _Meanings) -> None:
+    for element in graph:
+        role = by_stereotype(element, known.get(element.id, ()))
+        if role:
+            graph.set(element, role=role)
+    for element in graph:
+        if not element.role:
+            graph.set(element, role=by_structure(graph, element) or None)
+
+
+def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> None:
+    for id, lineage in lineages.items():
+        level = next(_levels(lineage), None)
+        for subject in graph.targets(graph[id], Edge.SUBJECT) if level else ():
+            graph.set(subject, level=level)
+    # All are found before one is set, so that the order of the elements does not matter.
+    for classifier, level in [(one, _inherited_level(graph, one)) for one in _specific(graph)]:
+        graph.set(classifier, level=level)
+
+
+def _inherited_level(graph: Graph, classifier: Element) -> str | None:
+    levels = (up.attrs.get("level") for up in generals(graph, classifier))
+    return next((str(level) for level in levels if level), None)
+
+
+def _levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
+    for one in lineage:
+        if one.family is Family.SYSMLC and one.name in LEVELS:
+            yield LEVELS[one.name]
+
+
+def _specific(graph: Graph) -> Iterator[Element]:
+    for id in dict.fromkeys(source for _, source, _ in graph.edges(Edge.SPECIALIZES)):
+        if "level" not in graph[id].attrs:
+            yield graph[id]
+
+
+def _give_values(graph: Graph) -> None:
+    for element in graph:
+        if element.role == "requirement":
+            _give_requirement(graph, element)
+        elif element.role == "flow property":
+            given = element.attrs.get("direction") or tag(graph, element, "direction")
+            # SysML 1.6 clause 9.3.2.7: the default direction is inout.
+            graph.set(element, direction=given or "inout")
+
+
+def _give_requirement(graph: Graph, requirement: Element) -> None:
+    for attribute, tag_name in (("req_id", "id"), ("text", "text")):
+        value = tag(graph, requirement, tag_name)
+        if value is not None:
+            graph.set(requirement, **{attribute: value})

@@ -1,0 +1,38 @@
+"""Edges that dependencies mean: satisfies, derives, allocated-to and so on."""
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.passes.classify.rules import NO_REQUIREMENT
+from sysmlc.passes.classify.vocabulary import DEPENDENCY_ROLES
+
+_EDGES = dict(DEPENDENCY_ROLES.values())
+_OF_REQUIREMENTS = frozenset({"satisfy", "derive", "verify", "copy"})
+
+
+def add_relations(graph: Graph, sink: Sink) -> None:
+    """Add from each client to each supplier the edge that the dependency's role means."""
+    for dependency in graph.of_kind(Kind.DEPENDENCY):
+        edge = _edge(dependency)
+        for client in graph.targets(dependency, Edge.CLIENT):
+            for supplier in graph.targets(dependency, Edge.SUPPLIER):
+                graph.connect(edge, client, supplier)
+        _check(graph, sink, dependency)
+
+
+def _edge(dependency: Element) -> Edge:
+    if dependency.role in _EDGES:
+        return _EDGES[dependency.role]
+    return Edge.REALIZES if dependency.subkind == "realization" else Edge.DEPENDS
+
+
+def _check(graph: Graph, sink: Sink, dependency: Element) -> None:
+    if dependency.role not in _OF_REQUIREMENTS:
+        return
+    for supplier in graph.targets(dependency, Edge.SUPPLIER):
+        if supplier.role != "requirement" and not supplier.attrs.get("external"):
+            sink.report(
+                NO_REQUIREMENT,
+                graph.subject(dependency),
+                relation=dependency.role,
+                element=graph.qualified_name(supplier),
+            )

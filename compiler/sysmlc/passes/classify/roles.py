@@ -1,0 +1,87 @@
+"""Role of an element: what its stereotypes, its type and its owner make of it."""
+
+from collections.abc import Mapping
+
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import type_of
+from sysmlc.passes.classify.vocabulary import (
+    CLASSIFIER_ROLES,
+    CONNECTOR_ROLES,
+    DEPENDENCY_ROLES,
+    FLOW_ROLES,
+    PORT_ROLES,
+    PROPERTY_ROLES,
+)
+
+_BY_STEREOTYPE: dict[Kind, Mapping[str, str]] = {
+    **dict.fromkeys(
+        (
+            Kind.CLASS,
+            Kind.COMPONENT,
+            Kind.INTERFACE,
+            Kind.DATA_TYPE,
+            Kind.ENUMERATION,
+            Kind.SIGNAL,
+            Kind.PACKAGE,
+            Kind.ACTIVITY,
+            Kind.STATE_MACHINE,
+            Kind.INTERACTION,
+            Kind.OPERATION,
+            Kind.ASSOCIATION,
+        ),
+        CLASSIFIER_ROLES,
+    ),
+    Kind.PORT: PORT_ROLES,
+    Kind.PROPERTY: PROPERTY_ROLES,
+    Kind.CONNECTOR: CONNECTOR_ROLES,
+    Kind.ITEM_FLOW: FLOW_ROLES,
+    Kind.DEPENDENCY: {name: role for name, (role, _) in DEPENDENCY_ROLES.items()},
+}
+_BY_KIND = {
+    Kind.PORT: "port",
+    Kind.REQUIREMENT: "requirement",
+    Kind.TEST_CASE: "test case",
+    Kind.VIEW: "view",
+    Kind.FLOW_PROPERTY: "flow property",
+}
+_VALUES = frozenset({Kind.DATA_TYPE, Kind.ENUMERATION})
+_OBJECTS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})
+_OTHERS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
+
+
+def by_stereotype(element: Element, meanings: tuple[str, ...]) -> str:
+    """Role that SysML stereotypes give to an element of this kind, or the empty string."""
+    roles = _BY_STEREOTYPE.get(element.kind, {})
+    return next((role for name, role in roles.items() if name in meanings), "")
+
+
+def by_structure(graph: Graph, element: Element) -> str:
+    """Role that kind, type and owner give; the roles of the types must be known already."""
+    if element.kind is Kind.PROPERTY:
+        return _property_role(graph, element)
+    return _BY_KIND.get(element.kind, "")
+
+
+def _property_role(graph: Graph, feature: Element) -> str:
+    owner, type_ = graph.owner(feature), type_of(graph, feature)
+    if owner is None or owner.kind is Kind.STEREOTYPE or _is_loose_end(graph, owner, feature):
+        return ""
+    if type_ is not None and type_.role == "constraint block":
+        return "constraint property"
+    if owner.role == "constraint block":
+        return "constraint parameter"
+    return _role_by_type(feature, type_)
+
+
+def _is_loose_end(graph: Graph, owner: Element, feature: Element) -> bool:
+    return owner.kind is Kind.ASSOCIATION and feature in graph.targets(owner, Edge.END)
+
+
+def _role_by_type(feature: Element, type_: Element | None) -> str:
+    if type_ is None:
+        return ""
+    if type_.kind in _VALUES:
+        return "value"
+    if type_.kind in _OBJECTS and feature.attrs.get("aggregation") == "composite":
+        return "part"
+    return "reference" if type_.kind in _OBJECTS | _OTHERS else ""

@@ -1,0 +1,190 @@
+"""Stereotypes that sysmlc knows: their namespaces in every dialect, their generalizations, roles.
+
+SysML 1.6 (formal/19-11-01); MagicDraw's additional stereotypes; SysML 1.1's FlowPort and
+FlowSpecification (SysML 1.6 annex C).
+"""
+
+import re
+from enum import StrEnum
+
+from sysmlc.ir import Edge
+
+
+class Family(StrEnum):
+    """Whose stereotype it is."""
+
+    SYSML = "SysML"
+    SYSMLC = "sysmlc"
+    STANDARD = "UML's standard profile"
+    FOREIGN = "another standard's"
+    TOOL = "a modelling tool's"
+    CUSTOM = "a custom profile's"
+
+
+_NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
+    (Family.SYSMLC, re.compile(r"urn:sysmlc:profile:|pathmap://SYSMLC_PROFILES/")),
+    (
+        Family.SYSML,
+        re.compile(
+            r"""https?://www\.omg\.org/spec/SysML/
+            | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)
+            | https?://www\.sparxsystems\.com/profiles/SysML
+            | https?://www\.magicdraw\.com/schemas/additional_stereotypes\.xmi
+            | https?://www\.magicdraw\.com/spec/Customization/\d+/(SysML|Requirements)
+            | pathmap://SysML\w*_PROFILES/
+            | (.*/)?(SysML(\ |%20)Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)
+            """,
+            re.VERBOSE,
+        ),
+    ),
+    (
+        Family.STANDARD,
+        re.compile(
+            r"""https?://www\.eclipse\.org/uml2/[\d.]+/UML/Profile/
+            | https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/StandardProfile
+            | pathmap://UML_PROFILES/
+            | (.*/)?UML_Standard_Profile\.(mdzip|mdxml|xml)
+            """,
+            re.VERBOSE,
+        ),
+    ),
+    (
+        # MARTE has a FlowPort and an Allocate of its own, and Papyrus writes its sub-profiles
+        # as /papyrus/GCM/1 and so on.
+        Family.FOREIGN,
+        re.compile(
+            r"""https?://www\.omg\.org/spec/(MARTE|UTP|FUML)
+            | https?://www\.eclipse\.org/papyrus/(MARTE\w*|GCM|Alloc|FCM|HLAM|HRM|HwLayout|GRM
+              |GQAM|SAM|PAM|SRM|RSM|NFPs|Time|VSL|C_Cpp|Codegen|FMIProfile|umlrt)/
+            | https?://Papyrus/RobotML/
+            | pathmap://(Papyrus_PROFILES/MARTE|FCM_|Robotml_|PapyrusC_Cpp_)
+            """,
+            re.VERBOSE,
+        ),
+    ),
+    (
+        Family.TOOL,
+        re.compile(
+            r"""https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/MagicDraw
+            | https?://www\.magicdraw\.com/schemas/(DSL_Customization|Validation_Profile
+              |Dependency_Matrix_Profile|Matrix_Templates_Profile|matrix_templates)
+            | https?://www\.eclipse\.org/uml2/schemas/Ecore/
+            | https?://www\.magicdraw\.com/spec/Customization/
+            """,
+            re.VERBOSE,
+        ),
+    ),
+)
+
+_PARENTS = {
+    "InterfaceBlock": ("Block",),
+    "ConjugatedInterfaceBlock": ("InterfaceBlock",),
+    "_InterfaceBlock": ("InterfaceBlock",),
+    "ConstraintBlock": ("Block",),
+    "System": ("Block",),
+    "Domain": ("Block",),
+    "System_context": ("Block",),
+    "Subsystem": ("Block",),
+    "External": ("Block",),
+    "Requirement": ("AbstractRequirement",),
+    "extendedRequirement": ("Requirement",),
+    **dict.fromkeys(
+        (
+            "businessRequirement",
+            "designConstraint",
+            "functionalRequirement",
+            "interfaceRequirement",
+            "performanceRequirement",
+            "physicalRequirement",
+            "usabilityRequirement",
+        ),
+        ("extendedRequirement",),
+    ),
+    **dict.fromkeys(("Copy", "DeriveReqt", "Satisfy", "Verify"), ("Trace",)),
+    "NestedConnectorEnd": ("ElementPropertyPath",),
+    "BoundReference": ("EndPathMultiplicity",),
+    "Continuous": ("Rate",),
+    "Discrete": ("Rate",),
+    "PartProperty": ("BlockProperty",),
+}
+
+CLASSIFIER_ROLES = {
+    "ConstraintBlock": "constraint block",
+    "InterfaceBlock": "interface block",
+    "FlowSpecification": "interface block",
+    "Block": "block",
+    "AbstractRequirement": "requirement",
+    "Requirement": "requirement",
+    "TestCase": "test case",
+    "ValueType": "value type",
+    "View": "view",
+    "Viewpoint": "viewpoint",
+}
+"""Role of a classifier or package, by stereotype; the first that is in the lineage counts."""
+
+PROPERTY_ROLES = {
+    "FlowProperty": "flow property",
+    "PartProperty": "part",
+    "ReferenceProperty": "reference",
+    "SharedProperty": "reference",
+    "ValueProperty": "value",
+    "ConstraintProperty": "constraint property",
+    "ConstraintParameter": "constraint parameter",
+}
+PORT_ROLES = {"FullPort": "full port", "ProxyPort": "proxy port", "FlowPort": "flow port"}
+CONNECTOR_ROLES = {"BindingConnector": "binding connector"}
+FLOW_ROLES = {"ItemFlow": "item flow"}
+
+DEPENDENCY_ROLES: dict[str, tuple[str, Edge]] = {
+    "Satisfy": ("satisfy", Edge.SATISFIES),
+    "DeriveReqt": ("derive", Edge.DERIVES),
+    "Verify": ("verify", Edge.VERIFIES),
+    "Copy": ("copy", Edge.TRACES),
+    "Refine": ("refine", Edge.REFINES),
+    "Trace": ("trace", Edge.TRACES),
+    "Allocate": ("allocate", Edge.ALLOCATED_TO),
+}
+"""Role of a dependency and the edge that it means, by stereotype."""
+
+LEVELS = {
+    "Recipe": "recipe",
+    "Task": "task",
+    "MachineService": "machine service",
+    "InfrastructureService": "infrastructure service",
+    "MachineFunction": "machine function",
+    "Machine": "machine",
+    "Material": "material",
+    "Capability": "capability",
+    "OpcUaCall": "opc ua call",
+}
+"""Recipe level, by stereotype of the shipped profile (design, section 5)."""
+
+MEANINGFUL = frozenset(
+    [
+        *CLASSIFIER_ROLES,
+        *PROPERTY_ROLES,
+        *PORT_ROLES,
+        *CONNECTOR_ROLES,
+        *FLOW_ROLES,
+        *DEPENDENCY_ROLES,
+    ]
+)
+"""SysML stereotypes that give a role; a custom stereotype of such a name is taken for it."""
+
+
+def family(namespace: str) -> Family:
+    """Whose stereotypes a namespace (or the file of a profile) holds."""
+    for found, pattern in _NAMESPACES:
+        if pattern.match(namespace):
+            return found
+    return Family.CUSTOM
+
+
+def mangled(name: str) -> str:
+    """A stereotype's name as XML tags show it: ``SD-DD`` becomes ``SD_DD``."""
+    return re.sub(r"\W", "_", name)
+
+
+def parents(name: str) -> tuple[str, ...]:
+    """What a stereotype of SysML specialises, when no profile of the unit says it."""
+    return _PARENTS.get(name, ())
