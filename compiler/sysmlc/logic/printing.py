@@ -3,7 +3,10 @@
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 
 _STRENGTH = {
-    **{Op.IFF: 1, Op.IMPLIES: 2, Op.OR: 3, Op.AND: 4},
+    Op.IFF: 1,
+    Op.IMPLIES: 2,
+    Op.OR: 3,
+    Op.AND: 4,
     **dict.fromkeys((Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL), 5),
     **dict.fromkeys((Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY), 6),
     **dict.fromkeys((Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE), 7),

@@ -1,0 +1,304 @@
+"""What names mean inside a classifier: its properties as variables with finite domains."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
+from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.domains import contains
+from sysmlc.logic.expression import (
+    Binary,
+    Expression,
+    ExpressionError,
+    Name,
+    Unary,
+    dotted,
+    parse_expression,
+)
+from sysmlc.logic.expression import Literal as Constant
+from sysmlc.logic.formula import Literal
+from sysmlc.logic.names import unique
+
+ASSUMED_RANGE = rule(
+    "SM410",
+    "assumed-range",
+    Severity.INFO,
+    "property '{name}' has no range; {range} is assumed",
+    why="Contracts have finite domains: an Integer needs a least and a greatest value.",
+    help="Constrain it ({name} >= {low} and {name} <= {high}) or give it a value type with a "
+    "range.",
+    wrong='Class c "C"\n  Property n "n"\n    -> typed-by int\nDataType int "Integer"\n',
+    right='Class c "C"\n  Property n "n"\n    -> typed-by int\n  Constraint k body="0 <= n <= 3"\n'
+    'DataType int "Integer"\n',
+)
+
+_BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
+_INTEGER = frozenset(
+    ["integer", "int", "natural", "positive", "unlimitednatural", "eint", "short", "long", "byte"]
+)
+_UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])
+_RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
+_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+
+
+@dataclass(frozen=True, slots=True)
+class Feature:
+    """A property as a variable; ``domain`` is None when its values are not finite."""
+
+    element: Element
+    variable: str
+    domain: Domain | None
+    default: Literal | None = None
+    constant: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What the names of expressions mean inside one classifier."""
+
+    name: str
+    features: dict[str, Feature]
+    literals: dict[str, tuple[str, str]]
+    """Enumeration literals by written name: (enumeration, identifier)."""
+
+
+def context_of(
+    graph: Graph, classifier: Element | None, sink: Sink, assumed: tuple[int, int] = (0, 15)
+) -> Context:
+    """The context that a classifier gives; empty without one.
+
+    ``assumed`` is the range of Integers that have none.
+    """
+    if classifier is None:
+        return Context("", {}, _literals(graph))
+    found = [one for one in query.features(graph, classifier) if one.name and _is_value(one)]
+    named = {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
+    names = sorted(named, key=lambda name: (named[name].ordinal, name))
+    variables = unique(names, "value", "event", "none")
+    features = {
+        name: _feature(graph, named[name], variable, sink, assumed)
+        for name, variable in zip(names, variables, strict=True)
+    }
+    return Context(classifier.name, features, _literals(graph))
+
+
+def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:
+    for general in query.generals(graph, classifier):
+        yield from (one for one in graph.owned(general) if one.name and _is_value(one))
+
+
+def _is_value(element: Element) -> bool:
+    return element.kind in (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+
+
+def _literals(graph: Graph) -> dict[str, tuple[str, str]]:
+    found: dict[str, tuple[str, str]] = {}
+    for enumeration in graph.of_kind(Kind.ENUMERATION):
+        for name, made in _enumeration(graph, enumeration).items():
+            for written in (name, f"{enumeration.name}::{name}", f"{enumeration.name}.{name}"):
+                found.setdefault(written, (enumeration.name, made))
+    return found
+
+
+def _enumeration(graph: Graph, enumeration: Element) -> dict[str, str]:
+    owned = graph.owned(enumeration)
+    names = [one.name for one in owned if one.kind is Kind.ENUMERATION_LITERAL]
+    return dict(zip(names, unique(names, "literal"), strict=True))
+
+
+def _feature(
+    graph: Graph, element: Element, variable: str, sink: Sink, assumed: tuple[int, int]
+) -> Feature:
+    type_ = query.type_of(graph, element)
+    domain = _domain(graph, element, type_)
+    if domain is None and _is_integer(graph, element, type_):
+        domain = _assume(graph, element, type_, sink, assumed)
+    default = _default(graph, element, type_, domain)
+    constant = element.attrs.get("readonly") is True and default is not None
+    return Feature(element, variable, domain, default, constant)
+
+
+def _domain(graph: Graph, element: Element, type_: Element | None) -> Domain | None:
+    if type_ is not None and type_.kind is Kind.ENUMERATION:
+        literals = tuple(_enumeration(graph, type_).values())
+        return EnumerationDomain(literals) if literals else None
+    if _names(graph, type_) & _BOOLEAN or _untyped_default(element, type_, bool):
+        return BooleanDomain()
+    return _declared_range(graph, element, type_) if _is_integer(graph, element, type_) else None
+
+
+def _names(graph: Graph, type_: Element | None) -> set[str]:
+    if type_ is None:
+        return set()
+    family = [type_, *query.generals(graph, type_)]
+    hrefs = (str(one.attrs.get("href", "")).rpartition("#")[2] for one in family)
+    return {one.name.lower() for one in family} | {href.lower() for href in hrefs}
+
+
+def _is_integer(graph: Graph, element: Element, type_: Element | None) -> bool:
+    return bool(_names(graph, type_) & _INTEGER) or _untyped_default(element, type_, int)
+
+
+def _untyped_default(element: Element, type_: Element | None, kind: type) -> bool:
+    return type_ is None and type(element.attrs.get("default")) is kind
+
+
+def _assume(
+    graph: Graph, element: Element, type_: Element | None, sink: Sink, assumed: tuple[int, int]
+) -> Domain:
+    low, high = assumed
+    low = max(low, 0) if _names(graph, type_) & _UNSIGNED else low
+    default = element.attrs.get("default")
+    if isinstance(default, int) and not isinstance(default, bool):
+        low, high = min(low, default), max(high, default)
+    subject, shown = graph.subject(element), f"{low}..{high}"
+    sink.report(ASSUMED_RANGE, subject, name=element.name, range=shown, low=low, high=high)
+    return IntegerDomain(low, high)
+
+
+# -- ranges ------------------------------------------------------------------------------------
+
+
+def _declared_range(graph: Graph, element: Element, type_: Element | None) -> Domain | None:
+    """Range from tagged values, a bounded default, or constraints, in this order."""
+    types = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    for one in (element, *types):
+        found = _tagged_range(graph, one)
+        if found is not None:
+            return found
+    bounded = _RANGE.match(str(element.attrs.get("default", "")))
+    if bounded and ".." in bounded[0]:
+        return _range(int(bounded[1]), int(bounded[2]))
+    return _constrained_range(graph, element, types)
+
+
+def _range(low: int, high: int) -> Domain | None:
+    return IntegerDomain(low, high) if low <= high else None
+
+
+def _tagged_range(graph: Graph, element: Element) -> Domain | None:
+    found = _RANGE.match(str(query.tag(graph, element, "range") or ""))
+    if found:
+        return _range(int(found[1]), int(found[2]))
+    for least, greatest in (("min", "max"), ("lower", "upper"), ("minimum", "maximum")):
+        low = _integer(query.tag(graph, element, least))
+        high = _integer(query.tag(graph, element, greatest))
+        if low is not None and high is not None:
+            return _range(low, high)
+    return None
+
+
+def _integer(value: AttrValue) -> int | None:
+    text = str(value)
+    return int(text) if re.fullmatch(r"-?\d+", text) else None
+
+
+def _constrained_range(graph: Graph, element: Element, types: list[Element]) -> Domain | None:
+    low: int | None = None
+    high: int | None = None
+    for names, body in _constraints(graph, element, types):
+        for op, bound in _bounds(body, names):
+            least = {">": bound + 1, ">=": bound, "==": bound}.get(op)
+            most = {"<": bound - 1, "<=": bound, "==": bound}.get(op)
+            low = least if low is None else max(low, low if least is None else least)
+            high = most if high is None else min(high, high if most is None else most)
+    return None if low is None or high is None else _range(low, high)
+
+
+def _constraints(
+    graph: Graph, element: Element, types: list[Element]
+) -> Iterator[tuple[frozenset[str], Expression]]:
+    owner = graph.owner(element)
+    if owner is not None:
+        yield from _bodies(graph, owner, frozenset([element.name, f"self.{element.name}"]))
+    yield from _bodies(graph, element, frozenset([element.name, "self", "value"]))
+    for type_ in types:
+        yield from _bodies(graph, type_, frozenset(["self", "value", "self.value", type_.name]))
+
+
+def _bodies(
+    graph: Graph, owner: Element, names: frozenset[str]
+) -> Iterator[tuple[frozenset[str], Expression]]:
+    constraints = {one.id: one for one in graph.owned(owner) if one.kind is Kind.CONSTRAINT}
+    for one in graph.sources(owner, Edge.REFERENCES):
+        if one.kind is Kind.CONSTRAINT:
+            constraints[one.id] = one
+    for constraint in constraints.values():
+        try:
+            yield names, parse_expression(str(constraint.attrs.get("body", "")))
+        except ExpressionError:
+            continue
+
+
+def _bounds(body: Expression, names: frozenset[str]) -> Iterator[tuple[str, int]]:
+    """Bounds that a conjunction sets: ``x >= 0``, ``7 > x``, ``0 <= x <= 7``."""
+    match body:
+        case Binary("and", left, right):
+            yield from _bounds(left, names)
+            yield from _bounds(right, names)
+        case Binary(op, Binary(first, low, middle), high) if op in _MIRROR and first in _MIRROR:
+            yield from _bound(first, low, middle, names)
+            yield from _bound(op, middle, high, names)
+        case Binary(op, left, right):
+            yield from _bound(op, left, right, names)
+
+
+def _bound(
+    op: str, left: Expression, right: Expression, names: frozenset[str]
+) -> Iterator[tuple[str, int]]:
+    if dotted(left) in names and (value := _constant(right)) is not None:
+        yield op, value
+    elif dotted(right) in names and (value := _constant(left)) is not None:
+        yield _MIRROR.get(op, op), value
+
+
+def _constant(expression: Expression) -> int | None:
+    match expression:
+        case Constant(value) if isinstance(value, int) and not isinstance(value, bool):
+            return value
+        case Unary("-", Constant(value)) if isinstance(value, int):
+            return -value
+        case _:
+            return None
+
+
+# -- defaults ----------------------------------------------------------------------------------
+
+
+def _default(
+    graph: Graph, element: Element, type_: Element | None, domain: Domain | None
+) -> Literal | None:
+    written = element.attrs.get("default")
+    if domain is None or written is None:
+        return None
+    value = _literal_value(graph, str(written), type_, domain)
+    return value if value is not None and contains(domain, value) else None
+
+
+def _literal_value(
+    graph: Graph, text: str, type_: Element | None, domain: Domain
+) -> Literal | None:
+    match domain:
+        case BooleanDomain():
+            return {"true": True, "false": False}.get(text.lower())
+        case IntegerDomain():
+            return _integer(text)
+        case EnumerationDomain():
+            return None if type_ is None else _enumerated(graph, text, type_)
+
+
+def _enumerated(graph: Graph, text: str, type_: Element) -> Literal | None:
+    named = graph.get(text)
+    name = text.replace(".", "::").rpartition("::")[2] if named is None else named.name
+    return _enumeration(graph, type_).get(name)
+
+
+def name_of(expression: Expression) -> str | None:
+    """The name of a feature of the context: ``x`` and ``self.x`` are the same."""
+    name = dotted(expression)
+    if name is None or isinstance(expression, Name):
+        return name
+    head, _, rest = name.partition(".")
+    return rest if head in ("self", "this") else name

@@ -1,0 +1,242 @@
+"""What the drawing of a state machine says before anything runs: competition, races, cycles."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Graph
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.context import name_of
+from sysmlc.logic.contract import Domain
+from sysmlc.logic.elaborate import Scope, condition
+from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.expression import Expression
+from sysmlc.logic.formula import Formula
+from sysmlc.logic.machine import AfterTicks, Assign, Machine, OnEvent, Transition, Vertex
+from sysmlc.logic.machine_actions import walk
+
+PSEUDO_CYCLE = rule(
+    "SM424",
+    "pseudostate-cycle",
+    Severity.ERROR,
+    "pseudostate '{vertex}' leads back to itself without a state between",
+    why="A step would never end.",
+    help="Put a state into the cycle.",
+)
+DEAD_END = rule(
+    "SM425",
+    "pseudostate-without-exit",
+    Severity.ERROR,
+    "{kind} '{vertex}' has no outgoing transition",
+    why="A step cannot end in a pseudostate.",
+)
+RACE = rule(
+    "SM426",
+    "race",
+    Severity.WARNING,
+    "'{first}' and '{second}' of orthogonal regions can both assign '{variable}' in one step; "
+    "the component gets no contract",
+    why="Nothing in the diagram orders the two assignments.",
+    help="Assign the property in one region only, or on different events.",
+)
+CROSSING = rule(
+    "SM427",
+    "exit-from-orthogonal-state",
+    Severity.WARNING,
+    "'{first}' leaves an orthogonal state while '{second}' can be taken in another of its "
+    "regions; the component gets no contract",
+    why="Nothing in the diagram says which of the two is taken.",
+    help="Draw the transition from the border of the orthogonal state, or use another event.",
+)
+
+_LIMIT = 4096
+"""Valuations tried to see whether two guards exclude one another; more count as possible."""
+
+
+def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) -> bool:
+    """Whether two transitions that leave the vertex can be enabled at once."""
+    if vertex.kind == "initial":
+        return False
+    is_state = vertex.kind == "state"
+    return any(
+        (not is_state or _coincide(one, other)) and _compatible(one, other, scope)
+        for one, other in combinations(outgoing, 2)
+    )
+
+
+def _coincide(one: Transition, other: Transition) -> bool:
+    """Whether both can have an occurrence in one step; completion goes before the rest."""
+    if not one.occurrences or not other.occurrences:
+        return not one.occurrences and not other.occurrences
+    return any(_same_step(left, right) for left in one.occurrences for right in other.occurrences)
+
+
+def _same_step(left: object, right: object) -> bool:
+    if isinstance(left, OnEvent) and isinstance(right, OnEvent):
+        return left.literal is None or right.literal is None or left.literal == right.literal
+    if isinstance(left, AfterTicks) and isinstance(right, AfterTicks):
+        return left.count == right.count
+    return True
+
+
+def _simultaneous(one: Transition, other: Transition) -> bool:
+    """As ``_coincide``, for sources that can be active at the same time."""
+    if not one.occurrences or not other.occurrences:
+        return True
+    events = [
+        occurrence
+        for occurrence in (*one.occurrences, *other.occurrences)
+        if not isinstance(occurrence, OnEvent)
+    ]
+    return bool(events) or _coincide(one, other)
+
+
+def _compatible(one: Transition, other: Transition, scope: Scope) -> bool:
+    guards = [guard for guard in (one.guard, other.guard) if guard is not None]
+    return is_satisfiable(f.both(*(condition(guard, scope) for guard in guards)), guards, scope)
+
+
+def is_satisfiable(formula: Formula, sources: list[Expression], scope: Scope) -> bool:
+    """Whether some values make it true; beyond the limit of valuations the answer is yes."""
+    if formula == f.FALSE:
+        return False
+    found = dict(_domains(sources, scope))
+    if domains.count(found) > _LIMIT:
+        return True
+    return any(is_true(formula, values) for values in domains.valuations(found))
+
+
+def _domains(sources: list[Expression], scope: Scope) -> Iterator[tuple[str, Domain]]:
+    for source in sources:
+        for part in walk(source):
+            name = name_of(part)
+            symbol = None if name is None else scope(name)
+            if symbol is not None and symbol.domain is not None:
+                yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
+
+
+def is_derivable(graph: Graph, machine: Machine, sink: Sink) -> bool:
+    """Whether every step has a meaning; what stands against it is reported."""
+    problems = [
+        *_dead_ends(graph, machine, sink),
+        *_cycles(graph, machine, sink),
+    ]
+    if problems:
+        return False
+    return not [*_races(graph, machine, sink), *_crossings(graph, machine, sink)]
+
+
+def _dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    for vertex in machine.vertices.values():
+        if not vertex.is_stable and not machine.outgoing.get(vertex.id):
+            element = graph[vertex.id]
+            name = element.name or vertex.kind
+            sink.report(DEAD_END, graph.subject(element), kind=vertex.kind, vertex=name)
+            yield vertex.id
+
+
+def _cycles(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    for vertex in machine.vertices.values():
+        if not vertex.is_stable and vertex.id in _beyond(machine, vertex.id):
+            element = graph[vertex.id]
+            name = element.name or vertex.kind
+            sink.report(PSEUDO_CYCLE, graph.subject(element), vertex=name)
+            yield vertex.id
+
+
+def _beyond(machine: Machine, start: str) -> set[str]:
+    """Pseudostates that can be reached through pseudostates."""
+    found: set[str] = set()
+    waiting = [start]
+    while waiting:
+        for one in machine.outgoing.get(waiting.pop(), ()):
+            target = machine.vertices.get(one.target)
+            if target is not None and not target.is_stable and target.id not in found:
+                found.add(target.id)
+                waiting.append(target.id)
+    return found
+
+
+def ends_of(machine: Machine, transition: Transition) -> list[str]:
+    """Stable vertices to which a transition can lead, through pseudostates."""
+    reached = [transition.target, *sorted(_beyond(machine, transition.target))]
+    stops: dict[str, None] = {}
+    for id in reached:
+        if machine.vertices[id].is_stable:
+            stops[id] = None
+        else:
+            targets = (one.target for one in machine.outgoing.get(id, ()))
+            stops.update(dict.fromkeys(t for t in targets if machine.vertices[t].is_stable))
+    return list(stops)
+
+
+# -- orthogonal regions ------------------------------------------------------------------------
+
+
+def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition, str]]:
+    """Pairs whose sources can be active at once, with the state above both (or empty)."""
+    sources = [one for one in machine.transitions() if machine.vertices[one.source].kind == "state"]
+    for one, other in combinations(sources, 2):
+        common = _common_state(machine, one.source, other.source)
+        if common is not None and _simultaneous(one, other):
+            yield one, other, common
+
+
+def _common_state(machine: Machine, one: str, other: str) -> str | None:
+    """The state (empty: the machine) in different regions of which the two lie, else None."""
+    if machine.contains(one, other) or machine.contains(other, one):
+        return None
+    chains = [
+        {
+            machine.regions[machine.vertices[v].region].state: machine.vertices[v].region
+            for v in [start, *machine.above(start)]
+        }
+        for start in (one, other)
+    ]
+    for state, region in chains[0].items():
+        if state in chains[1]:
+            return state if chains[1][state] != region else None
+    return None
+
+
+def _races(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    for one, other, _ in _orthogonal_pairs(machine):
+        shared = [v for v in _touched(machine, one) if v in _touched(machine, other)]
+        if shared and _compatible(one, other, machine.scope):
+            subject = graph.subject(graph[one.id])
+            sink.report(RACE, subject, first=one.words, second=other.words, variable=shared[0])
+            yield one.id
+
+
+def _touched(machine: Machine, transition: Transition) -> dict[str, None]:
+    """Properties that may be assigned when the transition is taken; no less, maybe more."""
+    actions = list(transition.effect)
+    reach = [transition.target, *sorted(_beyond(machine, transition.target))]
+    for id in reach:
+        if not machine.vertices[id].is_stable:
+            actions += [a for one in machine.outgoing.get(id, ()) for a in one.effect]
+    region = machine.vertices[transition.source].region
+    for state in machine.states():
+        if state.region == region or region in _regions_above(machine, state.id):
+            actions += [*state.entry, *state.exit]
+    return dict.fromkeys(action.variable for action in actions if isinstance(action, Assign))
+
+
+def _regions_above(machine: Machine, vertex: str) -> list[str]:
+    return [machine.vertices[one].region for one in machine.above(vertex)]
+
+
+def _crossings(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    for one, other, state in _orthogonal_pairs(machine):
+        for leaver, stayer in ((one, other), (other, one)):
+            if _leaves(machine, leaver, state) and _compatible(one, other, machine.scope):
+                subject = graph.subject(graph[leaver.id])
+                sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
+                yield leaver.id
+
+
+def _leaves(machine: Machine, transition: Transition, state: str) -> bool:
+    if not state:
+        return False
+    return any(not machine.contains(state, end) for end in ends_of(machine, transition))

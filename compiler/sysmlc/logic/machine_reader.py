@@ -1,0 +1,496 @@
+"""From the graph to ``Machine``: vertices, regions, transitions and their variables."""
+
+from dataclasses import dataclass, field, replace
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.context import context_of
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
+from sysmlc.logic.expression import Binary, Expression, Unary
+from sysmlc.logic.expression import Literal as Written
+from sysmlc.logic.machine import (
+    INACTIVE,
+    NO_EVENT,
+    AfterTicks,
+    Machine,
+    Occurrence,
+    OnEvent,
+    OnRise,
+    Region,
+    Transition,
+    Vertex,
+    WhenTold,
+)
+from sysmlc.logic.machine_actions import (
+    Reading,
+    read_behaviours,
+    read_condition,
+    ticks_of,
+    told_time,
+)
+from sysmlc.logic.machine_checks import is_derivable, may_compete
+from sysmlc.logic.names import Names, identifier, unique
+
+NOT_DERIVED = rule(
+    "SM420",
+    "construct-not-derived",
+    Severity.WARNING,
+    "{what} of state machine '{machine}' is not derived; the component gets no contract",
+    why="A contract that leaves part of the diagram out would promise what the diagram does "
+    "not say.",
+    help="Draw it with states, choices and junctions, or leave the machine without contract.",
+    wrong='StateMachine m "M"\n  Region r\n    Pseudostate i subkind="initial"\n'
+    '    Pseudostate h subkind="deep-history"\n    State a "A"\n    Transition t\n'
+    "      -> flow-source i\n      -> flow-target a\n",
+    right='StateMachine m "M"\n  Region r\n    Pseudostate i subkind="initial"\n'
+    '    State a "A"\n    Transition t\n      -> flow-source i\n      -> flow-target a\n',
+)
+NO_INITIAL = rule(
+    "SM421",
+    "region-without-initial",
+    Severity.ERROR,
+    "region '{region}' of '{owner}' has no initial pseudostate with one transition",
+    why="Nothing says in which state the region starts.",
+    help="Add an initial pseudostate and a transition from it.",
+    wrong='StateMachine m "M"\n  Region r "r"\n    State a "A"\n',
+    right='StateMachine m "M"\n  Region r "r"\n    Pseudostate i subkind="initial"\n'
+    '    State a "A"\n    Transition t\n      -> flow-source i\n      -> flow-target a\n',
+)
+NONDETERMINISTIC = rule(
+    "SM422",
+    "competing-transitions",
+    Severity.WARNING,
+    "transitions {transitions} that leave '{vertex}' can be enabled at once",
+    why="The diagram leaves open which one is taken; the contract keeps that open, and "
+    "output '{pick}' says what was chosen.",
+    help="Make the guards exclude one another.",
+)
+DANGLING = rule(
+    "SM423",
+    "transition-without-end",
+    Severity.ERROR,
+    "transition '{transition}' has no {end}",
+    why="A transition leads from one vertex to another.",
+    wrong='StateMachine m "M"\n  Region r\n    State a "A"\n    Transition t "T"\n'
+    "      -> flow-source a\n",
+    right='StateMachine m "M"\n  Region r\n    State a "A"\n    Transition t "T"\n'
+    "      -> flow-source a\n      -> flow-target a\n",
+)
+
+_PSEUDO = frozenset(["initial", "choice", "junction", "entry-point", "exit-point"])
+_EVENTS = frozenset(["signal", "call"])
+
+
+@dataclass(frozen=True, slots=True)
+class MachineOptions:
+    """Length of a step in seconds, and the range of Integers that have none."""
+
+    tick_seconds: float = 1.0
+    assumed_range: tuple[int, int] = (0, 15)
+
+
+@dataclass(slots=True)
+class _Parts:
+    """The machine while it grows."""
+
+    reading: Reading
+    machine: Element
+    vertices: dict[str, Vertex] = field(default_factory=dict)
+    regions: dict[str, Region] = field(default_factory=dict)
+    outgoing: dict[str, tuple[Transition, ...]] = field(default_factory=dict)
+    events: dict[str, str] = field(default_factory=dict)
+    bounds: dict[str, int] = field(default_factory=dict)
+    memories: dict[str, Expression] = field(default_factory=dict)
+
+
+def context_classifier(graph: Graph, behaviour: Element) -> Element | None:
+    """The classifier in which a behaviour's names are resolved: the nearest that is none."""
+    for above in graph.ancestors(behaviour):
+        if above.kind in query.CLASSIFIERS and above.kind not in query.BEHAVIORS:
+            return above
+    return behaviour if behaviour.kind in query.BEHAVIORS else None
+
+
+def read_machine(
+    graph: Graph, machine: Element, sink: Sink, options: MachineOptions | None = None
+) -> Machine | None:
+    """The state machine as values, or None when something in it is not derived.
+
+    Everything that is missing or wrong is reported.
+    """
+    options = options or MachineOptions()
+    if not _is_supported(graph, machine, sink):
+        return None
+    parts = _start(graph, machine, sink, options)
+    top = _read_regions(parts, machine, "")
+    _read_transitions(parts)
+    _complete_states(parts)
+    made = _assemble(parts, top)
+    return made if is_derivable(graph, made, sink) else None
+
+
+def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> _Parts:
+    context = context_of(graph, context_classifier(graph, machine), sink, options.assumed_range)
+    taken = [one.variable for one in context.features.values()] + list(context.features)
+    names = Names("event", NO_EVENT, *taken)
+    return _Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
+
+
+# -- what is not derived -----------------------------------------------------------------------
+
+
+def _is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
+    missing = [
+        (element, what)
+        for element in graph.subtree(machine)
+        for what in [_unsupported(graph, element)]
+        if what
+    ]
+    for element, what in missing:
+        sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine.name)
+    broken = [_is_broken(graph, element, sink) for element in graph.subtree(machine)]
+    return not missing and not any(broken)
+
+
+def _unsupported(graph: Graph, element: Element) -> str:
+    if element.kind is Kind.PSEUDOSTATE and element.subkind not in _PSEUDO:
+        return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
+    if element.kind is not Kind.STATE:
+        return ""
+    if any(one.kind is Kind.TRIGGER for one in graph.owned(element)):
+        return f"the deferral of events in state '{element.name}'"
+    is_submachine = "submachine" in element.attrs or any(
+        target.kind is Kind.STATE_MACHINE
+        for edge in (Edge.CALLS, Edge.TYPED_BY, Edge.REFERENCES)
+        for target in graph.targets(element, edge)
+    )
+    return f"submachine state '{element.name}'" if is_submachine else ""
+
+
+def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
+    if element.kind is Kind.REGION:
+        return _lacks_initial(graph, element, sink)
+    if element.kind is not Kind.TRANSITION:
+        return False
+    ends = {
+        "source": graph.target(element, Edge.FLOW_SOURCE),
+        "target": graph.target(element, Edge.FLOW_TARGET),
+    }
+    for end, vertex in ends.items():
+        if vertex is None:
+            name = element.name or "<Transition>"
+            sink.report(DANGLING, graph.subject(element), transition=name, end=end)
+    return None in ends.values()
+
+
+def _lacks_initial(graph: Graph, region: Element, sink: Sink) -> bool:
+    initial = _initial(graph, region)
+    if initial is not None and len(graph.sources(initial, Edge.FLOW_SOURCE)) == 1:
+        return False
+    if not any(one.kind in (Kind.STATE, Kind.FINAL_STATE) for one in graph.owned(region)):
+        return False
+    owner = graph.owner(region) or region
+    name = region.name or "<Region>"
+    sink.report(NO_INITIAL, graph.subject(region), region=name, owner=owner.name)
+    return True
+
+
+def _initial(graph: Graph, region: Element) -> Element | None:
+    owned = graph.owned(region)
+    return next((one for one in owned if one.subkind == "initial"), None)
+
+
+# -- vertices ----------------------------------------------------------------------------------
+
+
+def _read_regions(parts: _Parts, owner: Element, state: str) -> tuple[str, ...]:
+    graph = parts.reading.graph
+    found = [
+        one
+        for one in graph.owned(owner)
+        if one.kind is Kind.REGION and _initial(graph, one) is not None
+    ]
+    for region in found:
+        alone = len(found) == 1
+        _read_region(parts, region, state, _region_name(owner, region, state, alone))
+    return tuple(region.id for region in found)
+
+
+def _region_name(owner: Element, region: Element, state: str, alone: bool) -> str:
+    own = "state" if alone else region.name or "state"
+    return f"{identifier(owner.name)}_{own}" if state else own
+
+
+def _read_region(parts: _Parts, region: Element, state: str, name: str) -> None:
+    graph = parts.reading.graph
+    kinds = (Kind.STATE, Kind.FINAL_STATE, Kind.PSEUDOSTATE)
+    vertices = [one for one in graph.owned(region) if one.kind in kinds]
+    stable = [one for one in vertices if one.kind is not Kind.PSEUDOSTATE]
+    fallbacks = [
+        one.name or ("final" if one.kind is Kind.FINAL_STATE else "state") for one in stable
+    ]
+    literals = unique(fallbacks, "state", INACTIVE)
+    domain = EnumerationDomain((*((INACTIVE,) if state else ()), *literals))
+    variable = parts.reading.make(f"region {region.id}", name, Owner.SYSTEM, domain, region.id)
+    initial = _initial(graph, region)
+    parts.regions[region.id] = Region(
+        region.id, variable, state, initial.id if initial else "", tuple(v.id for v in vertices)
+    )
+    names = dict(zip((one.id for one in stable), literals, strict=True))
+    for vertex in vertices:
+        _read_vertex(parts, vertex, region.id, names.get(vertex.id, ""))
+
+
+def _read_vertex(parts: _Parts, element: Element, region: str, literal: str) -> None:
+    if element.kind is not Kind.STATE:
+        kind = "final" if element.kind is Kind.FINAL_STATE else element.subkind
+        parts.vertices[element.id] = Vertex(element.id, kind, literal, region)
+        return
+    parts.vertices[element.id] = Vertex(
+        element.id,
+        "state",
+        literal,
+        region,
+        entry=read_behaviours(parts.reading, element, Edge.ENTRY),
+        exit=read_behaviours(parts.reading, element, Edge.EXIT),
+        do=_read_do(parts, element),
+    )
+    for one in parts.reading.graph.owned(element):
+        if one.kind is Kind.PSEUDOSTATE:
+            parts.vertices[one.id] = Vertex(one.id, one.subkind, "", region)
+    inner = _read_regions(parts, element, element.id)
+    parts.vertices[element.id] = replace(parts.vertices[element.id], regions=inner)
+
+
+def _read_do(parts: _Parts, state: Element) -> str:
+    behaviour = parts.reading.graph.target(state, Edge.DO)
+    if behaviour is None:
+        return ""
+    name = behaviour.name or str(behaviour.attrs.get("body", "")) or state.name
+    key, domain = f"do {state.id}", BooleanDomain()
+    return parts.reading.make(key, f"do_{name}", Owner.SYSTEM, domain, behaviour.id)
+
+
+# -- transitions -------------------------------------------------------------------------------
+
+
+def _read_transitions(parts: _Parts) -> None:
+    graph = parts.reading.graph
+    for vertex in tuple(parts.vertices.values()):
+        element = graph[vertex.id]
+        drawn = graph.sources(element, Edge.FLOW_SOURCE)
+        drawn = [one for one in drawn if one.kind is Kind.TRANSITION]
+        literals = unique([_label(graph, one) for one in drawn], "transition", NO_EVENT)
+        read = [
+            _read_transition(parts, one, vertex, literal)
+            for one, literal in zip(drawn, literals, strict=True)
+        ]
+        if read:
+            parts.outgoing[vertex.id] = _without_else(graph, read)
+
+
+def _label(graph: Graph, transition: Element) -> str:
+    target = graph.target(transition, Edge.FLOW_TARGET)
+    return transition.name or f"to_{target.name if target and target.name else 'next'}"
+
+
+def _read_transition(parts: _Parts, element: Element, vertex: Vertex, literal: str) -> Transition:
+    graph = parts.reading.graph
+    text = _guard_text(graph, element)
+    guard = None
+    if text and text.strip() != "else":
+        guard = read_condition(parts.reading, text.strip(), "guard", element)
+    triggers = graph.targets(element, Edge.TRIGGER) if vertex.kind == "state" else []
+    target = graph.target(element, Edge.FLOW_TARGET)
+    return Transition(
+        element.id,
+        literal,
+        _words(graph, element, text),
+        vertex.id,
+        target.id if target else "",
+        element.subkind or "external",
+        tuple(_occurrence(parts, trigger, vertex) for trigger in triggers),
+        guard,
+        read_behaviours(parts.reading, element, Edge.EFFECT),
+    )
+
+
+def _guard_text(graph: Graph, transition: Element) -> str:
+    text = transition.attrs.get("guard")
+    if isinstance(text, str) and text.strip():
+        return text
+    constraint = graph.target(transition, Edge.GUARD)
+    return "" if constraint is None else str(constraint.attrs.get("body", ""))
+
+
+def _words(graph: Graph, transition: Element, guard: str) -> str:
+    ends = [graph.target(transition, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    names = [end.name or end.subkind or str(end.kind) for end in ends if end is not None]
+    condition = f" [{guard.strip()}]" if guard.strip() else ""
+    return " to ".join(names) + condition
+
+
+def _without_else(graph: Graph, drawn: list[Transition]) -> tuple[Transition, ...]:
+    """The same with ``else`` written out as the negation of the other guards."""
+    return tuple(
+        replace(one, guard=_negated(one, drawn)) if _is_else(graph, one) else one for one in drawn
+    )
+
+
+def _is_else(graph: Graph, transition: Transition) -> bool:
+    return _guard_text(graph, graph[transition.id]).strip() == "else"
+
+
+def _negated(transition: Transition, drawn: list[Transition]) -> Expression | None:
+    guards: list[Expression] = [
+        one.guard or Written(True)
+        for one in drawn
+        if one is not transition and _share_occurrence(one, transition)
+    ]
+    if not guards:
+        return None
+    joined = guards[0]
+    for guard in guards[1:]:
+        joined = Binary("or", joined, guard)
+    return Unary("not", joined)
+
+
+def _share_occurrence(left: Transition, right: Transition) -> bool:
+    same = set(left.occurrences) & set(right.occurrences)
+    return bool(same) or (not left.occurrences and not right.occurrences)
+
+
+# -- triggers ----------------------------------------------------------------------------------
+
+
+def _occurrence(parts: _Parts, trigger: Element, vertex: Vertex) -> Occurrence:
+    kind = trigger.subkind
+    if kind == "time" or (not kind and "when" in trigger.attrs):
+        return _time(parts, trigger, vertex)
+    if kind == "change" or (not kind and "condition" in trigger.attrs):
+        return _change(parts, trigger)
+    if kind == "any":
+        return OnEvent(None)
+    return OnEvent(_event(parts, trigger))
+
+
+def _event(parts: _Parts, trigger: Element) -> str:
+    graph = parts.reading.graph
+    type_ = graph.target(trigger, Edge.TYPED_BY)
+    key = trigger.name if type_ is None else type_.id
+    name = (type_.name if type_ is not None else "") or trigger.name or "event"
+    if key not in parts.events:
+        taken = unique([*parts.events.values(), name], "event", NO_EVENT)
+        parts.events[key] = taken[-1]
+    return parts.events[key]
+
+
+def _time(parts: _Parts, trigger: Element, vertex: Vertex) -> Occurrence:
+    count = ticks_of(parts.reading, trigger)
+    if count is None:
+        return WhenTold(told_time(parts.reading, trigger))
+    parts.bounds[vertex.id] = max(count, parts.bounds.get(vertex.id, 0))
+    return AfterTicks(count)
+
+
+def _change(parts: _Parts, trigger: Element) -> Occurrence:
+    text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
+    condition = read_condition(parts.reading, text, "change condition", trigger)
+    key = f"memory {text}"
+    memory = parts.reading.make(key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id)
+    parts.memories[memory] = condition
+    return OnRise(memory, condition)
+
+
+# -- the whole ---------------------------------------------------------------------------------
+
+
+def _complete_states(parts: _Parts) -> None:
+    """Give states and branching pseudostates the variables that their transitions need."""
+    graph, reading = parts.reading.graph, parts.reading
+    for id, vertex in tuple(parts.vertices.items()):
+        outgoing = parts.outgoing.get(id, ())
+        name = graph[id].name or vertex.kind
+        changes: dict[str, str] = {}
+        if id in parts.bounds:
+            domain = IntegerDomain(0, parts.bounds[id])
+            changes["timer"] = reading.make(
+                f"timer {id}", f"ticks_{name}", Owner.SYSTEM, domain, id
+            )
+        if vertex.do and any(not one.occurrences for one in outgoing):
+            changes["done"] = reading.told(f"end {id}", vertex.do.replace("do_", "done_", 1), id)
+        if may_compete(outgoing, vertex, reading.scope):
+            changes["pick"] = _pick(parts, id, name, outgoing)
+        parts.vertices[id] = _with(vertex, changes)
+
+
+def _with(vertex: Vertex, changes: dict[str, str]) -> Vertex:
+    return Vertex(
+        vertex.id,
+        vertex.kind,
+        vertex.literal,
+        vertex.region,
+        vertex.regions,
+        vertex.entry,
+        vertex.exit,
+        vertex.do,
+        changes.get("done", ""),
+        changes.get("timer", ""),
+        changes.get("pick", ""),
+    )
+
+
+def _pick(parts: _Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -> str:
+    reading = parts.reading
+    literals = tuple(one.literal for one in outgoing)
+    domain = EnumerationDomain((NO_EVENT, *literals))
+    pick = reading.make(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, id)
+    named = ", ".join(f"'{one.words}'" for one in outgoing)
+    subject = reading.graph.subject(reading.graph[id])
+    reading.sink.report(NONDETERMINISTIC, subject, transitions=named, vertex=name, pick=pick)
+    return pick
+
+
+def _assemble(parts: _Parts, top: tuple[str, ...]) -> Machine:
+    reading = parts.reading
+    features = {one.variable: one for one in reading.context.features.values()}
+    assigned = tuple(name for name in features if name in reading.assigned)
+    defaults = {name: features[name].default for name in assigned}
+    return Machine(
+        parts.machine.id,
+        parts.machine.name,
+        (*_event_variable(parts), *_properties(reading), *reading.made.values()),
+        parts.vertices,
+        parts.regions,
+        parts.outgoing,
+        top,
+        reading.scope,
+        {name: value for name, value in defaults.items() if value is not None},
+        tuple(reading.outputs),
+        assigned,
+        parts.memories,
+    )
+
+
+def _event_variable(parts: _Parts) -> tuple[Variable, ...]:
+    if not parts.events:
+        return ()
+    domain = EnumerationDomain((NO_EVENT, *parts.events.values()))
+    return (Variable("event", Owner.ENVIRONMENT, domain, parts.machine.id),)
+
+
+def _properties(reading: Reading) -> list[Variable]:
+    found: list[Variable] = []
+    for feature in reading.context.features.values():
+        is_assigned = feature.variable in reading.assigned
+        is_read = feature.variable in reading.used and not feature.constant
+        if feature.domain is not None and (is_assigned or is_read):
+            owner = Owner.SYSTEM if is_assigned else Owner.ENVIRONMENT
+            found.append(Variable(feature.variable, owner, feature.domain, feature.element.id))
+    return found
