@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Source
@@ -30,7 +30,8 @@ def unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
     ``preferred`` (where the configuration stands) if all paths are below it, else the nearest
     folder that holds them all.
     """
-    absolute = [Path(os.path.abspath(path)) for path in paths]  # noqa: PTH100 - keeps symlinks
+    absolute = [_absolute(path) for path in paths]
+    preferred = preferred.resolve() if preferred else None
     if preferred is not None and all(path.is_relative_to(preferred) for path in absolute):
         return preferred
     folders = [path if path.is_dir() else path.parent for path in absolute]
@@ -41,7 +42,7 @@ def collect(paths: Iterable[Path], root: Path, sink: Sink) -> dict[Path, bool]:
     """Files to read, sorted by name, and whether each was named (not found in a folder)."""
     found: dict[Path, bool] = {}
     for path in paths:
-        absolute = Path(os.path.abspath(path))  # noqa: PTH100 - keeps symlinks
+        absolute = _absolute(path)
         if absolute.is_dir():
             found = dict.fromkeys(_in_folder(absolute, root, sink), False) | found
         elif absolute.exists():
@@ -58,18 +59,24 @@ def name_of(path: Path, root: Path) -> str:
 
 
 def recognise(
-    sources: Sequence[Source], frontends: Sequence[Frontend], named: bool, sink: Sink
+    sources: Sequence[Source], frontends: Sequence[Frontend], otherwise: Rule | None, sink: Sink
 ) -> Iterator[Recognised]:
-    """The sources that a front end recognises; the others are reported."""
+    """The sources that a front end recognises; ``otherwise`` is reported about the others."""
     for source in sources:
         scores = [(frontend.detect(source), frontend) for frontend in frontends]
         score, best = max(scores, key=lambda pair: pair[0])
         if score > 0:
             yield Recognised(source, best)
-        else:
-            rule = faults.UNRECOGNISED if named else faults.SKIPPED
+        elif otherwise is not None:
             known = ", ".join(frontend.name for frontend in frontends)
-            sink.report(rule, faults.about_file(source.name), path=source.name, frontends=known)
+            sink.report(
+                otherwise, faults.about_file(source.name), path=source.name, frontends=known
+            )
+
+
+def _absolute(path: Path) -> Path:
+    """The path from the top; only a file that is itself a symbolic link keeps its name."""
+    return path.resolve() if path.is_dir() else path.parent.resolve() / path.name
 
 
 def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:

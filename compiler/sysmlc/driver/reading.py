@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
 from sysmlc.frontends.base import Frontend
-from sysmlc.sources import Source, SourceError, load
+from sysmlc.sources import Roots, Source, SourceError, load
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,45 @@ def read_unit(
     inputs: Sequence[Path], root: Path, frontends: Sequence[Frontend], sink: Sink
 ) -> Reading:
     """The sources of the unit; what cannot be read is reported."""
-    files = collect(inputs, root, sink)
-    recognised: dict[str, Recognised] = {}
-    for path, named in files.items():
-        for found in recognise(_sources(path, root, sink), frontends, named, sink):
-            recognised.setdefault(found.source.name, found)
-    ordered = tuple(recognised[name] for name in sorted(recognised))
+    reader = _Reader(root, frontends, sink)
+    for path, named in collect(inputs, root, sink).items():
+        reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED)
+    reader.follow_links()
+    ordered = tuple(reader.found[name] for name in sorted(reader.found))
     return Reading(ordered, not sink.has_errors())
+
+
+class _Reader:
+    """Reads files, and then those that they refer to inside the root."""
+
+    def __init__(self, root: Path, frontends: Sequence[Frontend], sink: Sink) -> None:
+        self.found: dict[str, Recognised] = {}
+        self._root = root
+        self._roots = Roots((root,))
+        self._frontends = frontends
+        self._sink = sink
+        self._seen: set[Path] = set()
+        self._waiting: list[tuple[Path, Recognised]] = []
+
+    def read(self, path: Path, otherwise: Rule | None) -> None:
+        """Read a file; ``otherwise`` is reported when no front end recognises it."""
+        real = path.resolve()
+        if real in self._seen:
+            return
+        self._seen.add(real)
+        sources = _sources(path, self._root, self._sink)
+        for found in recognise(sources, self._frontends, otherwise, self._sink):
+            self.found[found.source.name] = found
+            self._waiting.append((path, found))
+
+    def follow_links(self) -> None:
+        """Read what the files refer to, and so on; what is elsewhere stays external."""
+        while self._waiting:
+            path, found = self._waiting.pop()
+            for href in found.frontend.links(found.source):
+                target = self._roots.resolve(path, href)
+                if target is not None:
+                    self.read(target, None)
 
 
 def _sources(path: Path, root: Path, sink: Sink) -> list[Source]:

@@ -20,5 +20,11 @@ class Frontend(Protocol):
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1 and by content, that it can read this source."""
 
+    def links(self, source: Source) -> Sequence[str]:
+        """References to other files, as the source writes them, each once and in order.
+
+        The driver adds those files to the compile unit that are there and allowed.
+        """
+
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph and account for every element of them."""

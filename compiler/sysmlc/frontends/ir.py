@@ -38,6 +38,10 @@ class IrFrontend:
         first = _FIRST.match(source.data[:4096])
         return 1.0 if first and first[1] in _KINDS else 0.0
 
+    def links(self, source: Source) -> Sequence[str]:
+        """A graph in text form refers to no other file."""
+        return ()
+
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read each file; one that is broken is reported and left out whole."""
         for source in sources:

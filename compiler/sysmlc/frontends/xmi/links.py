@@ -1,0 +1,17 @@
+"""Which files a document refers to; found without parsing it, before the unit is known."""
+
+import re
+from html import unescape
+
+from sysmlc.sources import Source
+
+_HREF = re.compile(rb"""\bhref\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+
+
+def links(source: Source) -> list[str]:
+    """Files named by hrefs, without fragments, each once and in order.
+
+    A document in UTF-16 gives none: its hrefs are read, but as references to other units.
+    """
+    found = (double or single for double, single in _HREF.findall(source.data))
+    return list(dict.fromkeys(unescape(href.decode("utf-8", "replace")) for href in found))
