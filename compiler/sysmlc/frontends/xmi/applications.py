@@ -1,0 +1,162 @@
+"""Applications of stereotypes: siblings of the model that name their base elements."""
+
+from sysmlc.diagnostics import Subject, Verdict
+from sysmlc.frontends.xmi import rules
+from sysmlc.frontends.xmi.behaviour import references
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.unit import Lowered
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.identity import derived_id
+
+_BASE = "base_"
+_Target = tuple[str, int, bool]
+
+
+def lower(context: Context) -> None:
+    """Lower the applications that the walk over the document has found."""
+    for row in context.applications:
+        _application(context, row)
+    for element, row in context.ends:
+        _path(context, element, row)
+
+
+def note_namespaces(context: Context) -> None:
+    """Papyrus says the namespace of a profile by applying ``EPackage`` to it."""
+    for row in context.applications:
+        values = context.document.attributes[row]
+        if "nsURI" in values and f"{_BASE}Package" in values:
+            package = context.unit.target_id(context.lowered, values[f"{_BASE}Package"], False)
+            if package:
+                context.unit.profiles.add(values["nsURI"], package)
+
+
+def _application(context: Context, row: int) -> None:
+    document = context.document
+    bases = _bases(context, row)
+    if f"{_BASE}Diagram" in document.attributes[row] or (bases and not _meaningful(context, bases)):
+        context.subtree(row, Verdict.IGNORED_NOTATION)
+        return
+    kept = _kept(context, bases)
+    if not kept and not any(is_href for _, _, is_href in bases):
+        _report(context, row)
+        return
+    context.subtree(row, Verdict.MAPPED if kept else Verdict.EXTERNAL)
+    element = _element(context, row, kept)
+    for target, at, is_href in bases:
+        context.link(Edge.SUBJECT, element.id, target, at, "subject", is_href)
+    _tags(context, element, row)
+    _specialities(context, element, row, kept)
+
+
+def _bases(context: Context, row: int) -> list[_Target]:
+    document = context.document
+    features = [name for name in document.attributes[row] if name.startswith(_BASE)]
+    features += [
+        feature
+        for child in document.children(row)
+        if (feature := document.features[child]).startswith(_BASE)
+    ]
+    found: dict[str, _Target] = {}
+    for feature in dict.fromkeys(features):
+        for target in references(document, row, feature):
+            found.setdefault(target[0], target)
+    return list(found.values())
+
+
+def _meaningful(context: Context, bases: list[_Target]) -> bool:
+    found = [context.unit.find(context.lowered, t, is_href) for t, _, is_href in bases]
+    return any(f is None or f[0].verdicts[f[1]] is not Verdict.IGNORED_NOTATION for f in found)
+
+
+def _kept(context: Context, bases: list[_Target]) -> list[tuple[Lowered, int]]:
+    """Bases that are elements of the graph."""
+    found = [context.unit.find(context.lowered, t, is_href) for t, _, is_href in bases]
+    return [place for place in found if place is not None and place[0].own[place[1]]]
+
+
+def _report(context: Context, row: int) -> None:
+    context.subtree(row, Verdict.UNSUPPORTED)
+    context.reported.update(range(row, context.document.ends[row]))
+    name = context.document.features[row]
+    subject = Subject(name, context.document.id(row), context.place(row))
+    context.sink.report(rules.BASELESS, subject, stereotype=name)
+
+
+def _element(context: Context, row: int, kept: list[tuple[Lowered, int]]) -> Element:
+    document = context.document
+    owner = kept[0][0].gids[kept[0][1]] if kept else None
+    name = document.features[row]
+    id = document.id(row)
+    known = context.unit.graph_id(document.name, id) if id else ""
+    if not known or known in context.graph:
+        known = derived_id(owner or document.name, f"{name}[{document.ordinals[row]}]")
+    element = Element(known, Kind.APPLICATION, name, owner, document.ordinals[row], document.name)
+    element.attrs["stereotype"] = name
+    element.attrs["namespace"] = document.namespace(row)
+    context.graph.add(element)
+    context.gids[row] = element.id
+    stereotype = context.unit.profiles.find(context.graph, document.namespace(row), name)
+    if stereotype is not None:
+        context.graph.connect(Edge.INSTANCE_OF, element, stereotype)
+    return element
+
+
+def _tags(context: Context, element: Element, row: int) -> None:
+    document = context.document
+    for name, value in document.attributes[row].items():
+        if "}" not in name and not name.startswith(_BASE):
+            element.attrs[f"tag.{name}"] = _tag(context, value)
+    collected: dict[str, list[AttrValue]] = {}
+    for child in document.children(row):
+        feature = document.features[child]
+        if not feature.startswith(_BASE):
+            collected.setdefault(feature, []).append(_child_tag(context, child))
+    for feature, values in collected.items():
+        element.attrs[f"tag.{feature}"] = values[0] if len(values) == 1 else tuple(values)
+
+
+def _tag(context: Context, value: str) -> AttrValue:
+    tokens = value.split()
+    ids = context.document.ids
+    if not tokens or not all(token in ids for token in tokens):
+        return value
+    found = [context.unit.target_id(context.lowered, token, False) or token for token in tokens]
+    return found[0] if len(found) == 1 else tuple(found)
+
+
+def _child_tag(context: Context, child: int) -> AttrValue:
+    document = context.document
+    href = document.attributes[child].get("href", "")
+    target = href or document.idref(child)
+    if target:
+        if href and context.unit.find(context.lowered, href, True) is None:
+            context.verdicts[child] = Verdict.EXTERNAL
+        return context.unit.target_id(context.lowered, target, bool(href)) or target
+    return document.texts.get(child, document.attributes[child].get("value", ""))
+
+
+def _specialities(
+    context: Context, element: Element, row: int, kept: list[tuple[Lowered, int]]
+) -> None:
+    """What SysML's own stereotypes add to the elements that they are applied to."""
+    document = context.document
+    if element.name == "ItemFlow" and kept:
+        flow = context.graph[kept[0][0].gids[kept[0][1]]]
+        item = element.attrs.get("tag.itemProperty")
+        if isinstance(item, str) and flow.kind is Kind.ITEM_FLOW:
+            context.graph.set(flow, item_property=item)
+    path = references(document, row, "propertyPath")
+    for holder, at in kept if path else ():
+        context.unit.paths[holder.gids[at]] = (context.lowered, path)
+
+
+def _path(context: Context, end: Element, row: int) -> None:
+    """Path of a connector end: the nested path, with the part that has the port at its end."""
+    holder, nested = context.unit.paths.get(end.id, (context.lowered, []))
+    seen = {target.rpartition("#")[2] for target, _, _ in nested}
+    steps = [(holder, step) for step in nested]
+    for step in references(context.document, row, "partWithPort"):
+        if step[0].rpartition("#")[2] not in seen:
+            steps.append((context.lowered, step))
+    for lowered, (target, at, is_href) in steps:
+        context.link_from(lowered, Edge.PATH, end.id, target, at, "partWithPort", is_href)

@@ -1,0 +1,192 @@
+"""Rows of behaviours that are no elements of their own, and what ties behaviours together."""
+
+from collections.abc import Callable
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.structure import text_of, value_in
+from sysmlc.frontends.xmi.unit import Lowered, Unit
+from sysmlc.frontends.xmi.values import value_of
+from sysmlc.ir import AttrValue, Edge, Element
+
+_Reader = Callable[[Context, int], None]
+
+
+# -- while walking -----------------------------------------------------------------------------
+
+
+def _guard(context: Context, row: int) -> None:
+    owner = context.owner(row)
+    value = value_in(context, row)
+    if owner is None:
+        return
+    owner.attrs["guard"] = text_of(value)
+    if value.language:
+        owner.attrs["guard_language"] = value.language
+    if value.is_literal or value.instance:
+        owner.attrs["guard_literal"] = True
+
+
+def _weight(context: Context, row: int) -> None:
+    owner = context.owner(row)
+    value = value_in(context, row).value
+    if owner is not None and value not in (1, 0):
+        owner.attrs["weight"] = value
+
+
+def _collected(name: str) -> _Reader:
+    def read(context: Context, row: int) -> None:
+        owner = context.owner(row)
+        context.subtree(row, Verdict.MAPPED)
+        if owner is not None:
+            context.rows_of.setdefault(name, []).append((owner, row))
+
+    return read
+
+
+def _part_of_others(context: Context, row: int) -> None:
+    """Events and occurrences are read by the triggers and messages that name them."""
+    context.subtree(row, Verdict.MAPPED)
+
+
+FEATURES: dict[str, _Reader] = {
+    "guard": _guard,
+    "weight": _weight,
+    "clause": _collected("clauses"),
+    "handler": _collected("handlers"),
+    "endData": _collected("link_ends"),
+}
+
+TYPES: dict[str, _Reader] = {
+    **dict.fromkeys(v.EVENT_TYPES, _part_of_others),
+    "MessageOccurrenceSpecification": _part_of_others,
+}
+
+_COLUMNS = {
+    "clauses": ("test", "body"),
+    "handlers": ("handlerBody", "exceptionInput", "exceptionType"),
+    "link_ends": ("end", "value"),
+}
+
+
+# -- when all documents are read ---------------------------------------------------------------
+
+
+def finish(context: Context) -> None:
+    """Tie together what refers forward or to other files."""
+    for name, rows in context.rows_of.items():
+        for element, row in rows:
+            _add_record(context, name, element, row)
+    for element, row in context.triggers:
+        _trigger(context, element, row)
+    for element, row in context.messages:
+        _message(context, element, row)
+    for element, target in context.guards:
+        _transition_guard(context, element, target)
+    _parameter_directions(context)
+
+
+def _add_record(context: Context, name: str, element: Element, row: int) -> None:
+    record: tuple[AttrValue, ...] = tuple(
+        tuple(_ids(context, row, feature)) for feature in _COLUMNS[name]
+    )
+    known = element.attrs.get(name, ())
+    element.attrs[name] = (*known, record) if isinstance(known, tuple) else (record,)
+
+
+def _ids(context: Context, row: int, feature: str) -> list[str]:
+    found = (
+        context.unit.target_id(context.lowered, target, False)
+        for target in context.document.targets(row, feature)
+    )
+    return [id for id in found if id is not None]
+
+
+def _trigger(context: Context, element: Element, row: int) -> None:
+    event = _target(context.unit, context.lowered, row, "event")
+    if event is None:
+        return
+    holder, at = event
+    subkind = v.EVENT_TYPES.get(holder.document.type(at))
+    if subkind is None:
+        return
+    element.attrs["subkind"] = subkind
+    if not element.name:
+        context.graph.rename(element, holder.document.attributes[at].get("name", ""))
+    _event_details(context, element, holder, at)
+
+
+def _event_details(context: Context, element: Element, holder: Lowered, row: int) -> None:
+    document = holder.document
+    for feature in ("signal", "operation"):
+        for target, at, is_href in references(document, row, feature):
+            context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
+    for child in document.children(row, "when"):
+        element.attrs["when"] = text_of(value_of(document, child))
+        if document.attributes[row].get("isRelative") == "true":
+            element.attrs["relative"] = True
+    for child in document.children(row, "changeExpression"):
+        element.attrs["condition"] = text_of(value_of(document, child))
+
+
+def references(document: Document, row: int, feature: str) -> list[tuple[str, int, bool]]:
+    """Targets of a feature, each with the row that names it and whether it is an href."""
+    found = [(t, row, False) for t in document.attributes[row].get(feature, "").split()]
+    for child in document.children(row, feature):
+        href = document.attributes[child].get("href", "")
+        target = href or document.idref(child)
+        if target:
+            found.append((target, child, bool(href)))
+    return found
+
+
+def _target(unit: Unit, lowered: Lowered, row: int, feature: str) -> tuple[Lowered, int] | None:
+    for target, _, is_href in references(lowered.document, row, feature):
+        return unit.find(lowered, target, is_href)
+    return None
+
+
+def _message(context: Context, element: Element, row: int) -> None:
+    for feature, edge in (("sendEvent", Edge.FLOW_SOURCE), ("receiveEvent", Edge.FLOW_TARGET)):
+        occurrence = _target(context.unit, context.lowered, row, feature)
+        if occurrence is not None:
+            holder, at = occurrence
+            for target, place, is_href in references(holder.document, at, "covered"):
+                context.link_from(holder, edge, element.id, target, place, "covered", is_href)
+
+
+def _transition_guard(context: Context, element: Element, target: str) -> None:
+    id = context.unit.target_id(context.lowered, target, False)
+    constraint = context.graph.get(id)
+    if constraint is None or constraint is element:
+        return
+    context.graph.connect(Edge.GUARD, element, constraint)
+    for key in ("body", "language"):
+        value = constraint.attrs.get(key)
+        if value is not None:
+            element.attrs["guard" if key == "body" else "guard_language"] = value
+
+
+def _parameter_directions(context: Context) -> None:
+    """Direction of the nodes of parameters; ``inout`` has two nodes, told apart by their flows."""
+    for element, row in context.parameters:
+        found = _target(context.unit, context.lowered, row, "parameter")
+        if found is None:
+            continue
+        holder, at = found
+        written = holder.document.get(at, "direction") or "in"
+        if written == "inout":
+            written = "out" if element.id in _flow_targets(context) else "in"
+        element.attrs["direction"] = "out" if written in ("out", "return") else "in"
+
+
+def _flow_targets(context: Context) -> frozenset[str]:
+    if context.flow_targets is None:
+        context.flow_targets = frozenset(
+            context.unit.target_id(link.lowered, link.target, link.is_href) or ""
+            for link in context.unit.links
+            if link.edge is Edge.FLOW_TARGET
+        )
+    return context.flow_targets

@@ -1,0 +1,351 @@
+"""What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
+
+from sysmlc.diagnostics import Place, Sink, Subject, Verdict
+from sysmlc.frontends.xmi import rules
+from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.identity import derived_id
+
+
+class Context:
+    """The lowering of one document."""
+
+    def __init__(self, unit: Unit, lowered: Lowered, sink: Sink) -> None:
+        self.unit = unit
+        self.graph = unit.graph
+        self.sink = sink
+        self.lowered = lowered
+        self.document = lowered.document
+        self.gids = lowered.gids
+        self.verdicts = lowered.verdicts
+        self.applications: list[int] = []
+        self.triggers: list[tuple[Element, int]] = []
+        self.messages: list[tuple[Element, int]] = []
+        self.ends: list[tuple[Element, int]] = []
+        self.parameters: list[tuple[Element, int]] = []
+        self.guards: list[tuple[Element, str]] = []
+        self.rows_of: dict[str, list[tuple[Element, int]]] = {}
+        self.lost: dict[int, str] = {}
+        self.reported: set[int] = set()
+        self.flow_targets: frozenset[str] | None = None
+        self._bounds: dict[str, list[AttrValue]] = {}
+        self._positions: dict[tuple[str, str], int] = {}
+        self._conditions: list[tuple[str, str]] = []
+        self._late: list[tuple[Element, str, list[str]]] = []
+
+    # -- rows ----------------------------------------------------------------------------------
+
+    def inherit(self, row: int) -> None:
+        """The row is mapped as part of what is above it."""
+        parent = self.document.parents[row]
+        self.gids[row] = self.gids[parent] if parent >= 0 else ""
+        self.verdicts[row] = Verdict.MAPPED
+
+    def owner(self, row: int) -> Element | None:
+        """Element of the nearest row above that has one."""
+        parent = self.document.parents[row]
+        return self.graph.get(self.gids[parent]) if parent >= 0 else None
+
+    def subtree(self, row: int, verdict: Verdict) -> int:
+        """Give the row and all its content one verdict; return the row after."""
+        end = self.document.ends[row]
+        self.verdicts[row:end] = [verdict] * (end - row)
+        gid = self.gids[row]
+        if not gid and self.document.parents[row] >= 0:
+            gid = self.gids[self.document.parents[row]]
+        self.gids[row:end] = [gid] * (end - row)
+        return end
+
+    def next_row(self, row: int) -> int:
+        """Where the walk goes on: after the row's content if that has its verdict already."""
+        following = row + 1
+        end = self.document.ends[row]
+        return end if following < end and self.verdicts[following] is not None else following
+
+    # -- elements ------------------------------------------------------------------------------
+
+    def make(self, row: int, kind: Kind, subkind: str, type_name: str, feature: str) -> bool:
+        """Add the row's element with its attributes; False where it cannot stand."""
+        parent = self.document.parents[row]
+        owner = self.gids[parent] if parent >= 0 else ""
+        above = self.graph.get(owner) if owner else None
+        allowed = v.OWNERS.get(kind)
+        if allowed is not None and (above is None or above.kind not in allowed):
+            return False
+        document = self.document
+        values = document.attributes[row]
+        element = Element(
+            self._id(row, owner, feature),
+            kind,
+            values.get("name", ""),
+            owner or None,
+            document.ordinals[row],
+            document.name,
+        )
+        if subkind:
+            element.attrs["subkind"] = subkind
+        self.graph.add(element)
+        self.gids[row] = element.id
+        self.lowered.own[row] = 1
+        self.verdicts[row] = Verdict.MAPPED
+        _DETAILS.get(kind, _nothing)(self, element, row, type_name, feature)
+        for name, value in values.items():
+            if name != "name" and "}" not in name:
+                self.attribute(element, row, name, value)
+        return True
+
+    def _id(self, row: int, owner: str, feature: str) -> str:
+        id = self.document.id(row)
+        if not id:
+            return derived_id(owner or self.document.name, self._position(owner, feature))
+        known = self.unit.graph_id(self.document.name, id)
+        if id in self.document.repeated and known in self.graph:
+            self._report_repeated(row, id)
+            return derived_id(known, str(self.document.ordinals[row]))
+        return known
+
+    def _position(self, owner: str, feature: str) -> str:
+        number = self._positions.get((owner, feature), 0)
+        self._positions[owner, feature] = number + 1
+        return f"{feature}[{number}]"
+
+    def _report_repeated(self, row: int, id: str) -> None:
+        subject = Subject(id=id, place=self.place(row))
+        self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
+
+    def place(self, row: int) -> Place:
+        """Place of the row."""
+        return Place(self.document.name, self.document.ordinals[row])
+
+    # -- attributes and references -------------------------------------------------------------
+
+    def attribute(self, element: Element, row: int, name: str, value: str) -> None:
+        """Put one UML attribute (or reference list) of the row into the graph."""
+        flag = v.FLAGS.get(name)
+        if flag is not None:
+            if value == "true":
+                element.attrs[flag] = True
+            return
+        edge = v.SPECIAL.get((element.kind, name)) or v.REFERENCES.get(name)
+        if edge is not None:
+            for target in value.split():
+                self.link(edge, element.id, target, row, name)
+        elif name in v.TEXTS:
+            key, default = v.TEXTS[name]
+            if value != default:
+                element.attrs[key] = value
+        elif name == "isUnique":
+            if value == "false":
+                element.attrs["unique"] = False
+        else:
+            self._other(element, row, name, value)
+
+    def _other(self, element: Element, row: int, name: str, value: str) -> None:
+        backwards = v.REVERSED.get((element.kind, name))
+        if backwards is not None:
+            for target in value.split():
+                self.link(backwards, element.id, target, row, name, is_reversed=True)
+        elif name in v.CONDITIONS:
+            self.conditions(value.split(), name)
+        elif name == "kind" and element.kind in _KINDS:
+            if value != _KINDS[element.kind]:
+                element.attrs["subkind"] = v.hyphenated(value)
+        elif name not in v.REDUNDANT and name not in _HANDLED:
+            self.keep(element, v.snake(name), value)
+
+    def keep(self, element: Element, key: str, value: str) -> None:
+        """Keep what no table names: ids of elements, a truth value, or text."""
+        tokens = value.split()
+        if tokens and all(token in self.document.ids for token in tokens):
+            self._late.append((element, key, tokens))
+        elif value in ("true", "false"):
+            element.attrs[key] = value == "true"
+        elif value:
+            element.attrs[key] = value
+
+    def keep_ids(self, element: Element, key: str, ids: list[str]) -> None:
+        """Keep local ids as ids of the graph, when all elements are there."""
+        if ids:
+            self._late.append((element, key, ids))
+
+    def text(self, row: int, feature: str) -> None:
+        """A child that is only text stands for an attribute of the same name."""
+        owner = self.owner(row)
+        value = self.document.texts.get(row, "")
+        if owner is None or not value:
+            return
+        if feature == "name":
+            self.graph.rename(owner, value)
+        elif feature in ("body", "language") and feature in owner.attrs:
+            self.approximate(row, "its alternative bodies")
+        else:
+            self.attribute(owner, row, feature, value)
+
+    def link(
+        self,
+        edge: Edge,
+        source: str,
+        target: str,
+        row: int,
+        feature: str,
+        is_href: bool = False,
+        is_reversed: bool = False,
+    ) -> None:
+        """Leave a reference from an element to an id or href."""
+        self.unit.links.append(
+            Link(edge, source, self.lowered, target, row, feature, is_href, is_reversed)
+        )
+
+    def link_from(
+        self,
+        holder: Lowered,
+        edge: Edge,
+        source: str,
+        target: str,
+        row: int,
+        feature: str,
+        is_href: bool,
+    ) -> None:
+        """Leave a reference that a row of another document makes."""
+        self.unit.links.append(Link(edge, source, holder, target, row, feature, is_href))
+
+    def approximate(self, row: int, lost: str) -> None:
+        """The row is in the graph without part of its meaning."""
+        self.verdicts[row] = Verdict.APPROXIMATED
+        self.lost[row] = lost
+
+    def conditions(self, targets: list[str], feature: str) -> None:
+        """The constraints with these ids are pre- or postconditions."""
+        self._conditions.extend((target, v.CONDITIONS[feature]) for target in targets)
+
+    def bound(self, row: int, index: int, value: AttrValue) -> None:
+        """Lower (0) or upper (1) bound of the element above the row."""
+        gid = self.gids[row]
+        if gid:
+            self._bounds.setdefault(gid, [1, 1])[index] = value
+
+    # -- at the end ----------------------------------------------------------------------------
+
+    def finish(self) -> None:
+        """Multiplicities and what could only be said when every row was read."""
+        for gid, (lower, upper) in self._bounds.items():
+            text = multiplicity(lower, upper)
+            if text:
+                self.graph[gid].attrs["multiplicity"] = text
+        for target, subkind in self._conditions:
+            row = self.document.ids.get(target, -1)
+            if row >= 0 and self.lowered.own[row]:
+                self.graph[self.gids[row]].attrs["subkind"] = subkind
+        for element, key, ids in self._late:
+            found = [self.gids[self.document.ids[id]] for id in ids if id in self.document.ids]
+            if found:
+                is_list = len(found) > 1 or key in v.LISTS
+                element.attrs[key] = tuple(found) if is_list else found[0]
+
+
+def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
+    """UML notation of two bounds; the empty string for exactly 1."""
+    if lower == upper:
+        return "" if lower == 1 else str(lower)
+    return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
+
+
+_HANDLED = frozenset({"partWithPort", "guard", "event", "sendEvent", "receiveEvent", "value"})
+"""Attributes that the readers of single kinds take themselves."""
+
+_KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
+"""Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""
+
+
+def _nothing(
+    _context: Context, _element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    return None
+
+
+def _parameter(
+    _context: Context, element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    element.attrs["direction"] = "in"
+
+
+def _pin(_context: Context, element: Element, _row: int, type_name: str, feature: str) -> None:
+    element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
+    element.attrs["subkind"] = v.hyphenated(feature)
+
+
+def _pseudostate(
+    _context: Context, element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    element.attrs["subkind"] = "initial"
+
+
+def _constraint(
+    context: Context, element: Element, _row: int, _type_name: str, feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    if feature in v.CONDITIONS:
+        element.attrs["subkind"] = v.CONDITIONS[feature]
+    if feature == "guard" and owner is not None:
+        context.guards.append((owner, element.id))
+
+
+def _transition(
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    for target in context.document.targets(row, "guard"):
+        context.guards.append((element, target))
+
+
+def _behaviour(
+    context: Context, element: Element, _row: int, _type_name: str, feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    edge = v.STATE_BEHAVIOURS.get(feature)
+    if edge is not None and owner is not None:
+        context.graph.connect(edge, owner, element)
+
+
+def _trigger(context: Context, element: Element, row: int, _type_name: str, feature: str) -> None:
+    owner = context.graph.owner(element)
+    context.triggers.append((element, row))
+    if feature == "deferrableTrigger":
+        element.attrs["deferred"] = True
+    elif owner is not None:
+        context.graph.connect(Edge.TRIGGER, owner, element)
+
+
+def _message(context: Context, element: Element, row: int, _type_name: str, _feature: str) -> None:
+    context.messages.append((element, row))
+
+
+def _connector_end(
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    if owner is not None:
+        context.graph.connect(Edge.END, owner, element)
+    context.ends.append((element, row))
+
+
+def _activity_parameter(
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    context.parameters.append((element, row))
+
+
+_DETAILS = {
+    Kind.PARAMETER: _parameter,
+    Kind.PIN: _pin,
+    Kind.PSEUDOSTATE: _pseudostate,
+    Kind.CONSTRAINT: _constraint,
+    Kind.TRANSITION: _transition,
+    Kind.ACTIVITY: _behaviour,
+    Kind.STATE_MACHINE: _behaviour,
+    Kind.INTERACTION: _behaviour,
+    Kind.TRIGGER: _trigger,
+    Kind.MESSAGE: _message,
+    Kind.CONNECTOR_END: _connector_end,
+    Kind.ACTIVITY_PARAMETER: _activity_parameter,
+}

@@ -1,0 +1,64 @@
+"""References to other files: which element of the unit they mean, and what to call a stub."""
+
+import posixpath
+import re
+from urllib.parse import unquote
+
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.vocabulary import HINTS, kind_of
+from sysmlc.ir import Kind
+
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+_READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
+_UNMISTAKABLE = 20
+"""Ids that tools make are at least this long; such an id means the same element everywhere."""
+
+
+def normalised(href: str, file: str) -> str:
+    """The href with its path relative to the unit's root; what has a scheme stays as it is."""
+    path, hash_sign, fragment = href.partition("#")
+    if not path:
+        return f"{file}#{fragment}"
+    if _SCHEME.match(path):
+        return href
+    folder = posixpath.dirname(file.partition("!")[0])
+    return posixpath.normpath(posixpath.join(folder, unquote(path))) + hash_sign + fragment
+
+
+def is_unmistakable(fragment: str) -> bool:
+    """Whether an id is of the kind that tools make, the same in no two models."""
+    return len(fragment) >= _UNMISTAKABLE
+
+
+def base_name(path: str) -> str:
+    """Last part of a path or URI, without an archive's entry."""
+    return unquote(posixpath.basename(path.partition("!")[0].partition("?")[0]))
+
+
+def hint(document: Document, row: int, feature: str) -> tuple[Kind, str]:
+    """Kind and name of the external element that a row with an ``href`` refers to."""
+    path, type_name = _reference_extension(document, row)
+    kind = kind_of(document.type(row) or type_name)
+    name = path.rpartition("::")[2] or name_in(document.attributes[row].get("href", ""))
+    return kind[0] if kind else HINTS.get(feature, Kind.CLASS), name
+
+
+def name_in(href: str) -> str:
+    """A name that can be read in the fragment of an href, or the empty string.
+
+    Eclipse writes ``...stereotype_packagedElement_Block``, OMG writes ``Integer``; other ids
+    say nothing.
+    """
+    fragment = unquote(href.partition("#")[2])
+    if re.search(r"_(packagedElement|owned[A-Z][a-z]+|nestedPackage|owned[A-Z]\w+?)_", fragment):
+        return re.split(r"_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_", fragment)[-1]
+    last = fragment.rpartition(".")[2].rpartition("-")[2]
+    return last if _READABLE.match(last) else ""
+
+
+def _reference_extension(document: Document, row: int) -> tuple[str, str]:
+    for child in range(row + 1, document.ends[row]):
+        if document.features[child] == "referenceExtension":
+            values = document.attributes[child]
+            return values.get("referentPath", ""), values.get("referentType", "")
+    return "", ""

@@ -1,0 +1,89 @@
+"""From the rows of a document to elements of the graph: one walk in document order."""
+
+from collections.abc import Callable
+
+from sysmlc.diagnostics import Sink, Verdict
+from sysmlc.frontends.xmi import behaviour, namespaces, structure, vocabulary
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.unit import Lowered, Unit
+
+_Reader = Callable[[Context, int], None]
+
+_FEATURES: dict[str, _Reader] = structure.FEATURES | behaviour.FEATURES
+_TYPES: dict[str, _Reader] = structure.TYPES | behaviour.TYPES
+
+
+def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
+    """Lower one document; stereotype applications and references are left for later."""
+    context = Context(unit, lowered, sink)
+    document = lowered.document
+    roots = _roots(context)
+    row = 0
+    while row < len(document):
+        row = _root(context, row) if row in roots else _row(context, row)
+    context.finish()
+    return context
+
+
+def _roots(context: Context) -> frozenset[int]:
+    document = context.document
+    if namespaces.is_xmi(document.namespace(0)):
+        context.verdicts[0] = Verdict.MAPPED
+        return frozenset({0, *document.children(0)})
+    return frozenset({0})
+
+
+def _root(context: Context, row: int) -> int:
+    document = context.document
+    namespace = document.namespace(row)
+    feature = document.features[row]
+    if row == 0 and context.verdicts[0] is not None:
+        return 1
+    if namespaces.is_uml(namespace):
+        return _element(context, row, document.type(row) or feature, feature)
+    if namespaces.is_settings(namespace) and not _names_package(context, row):
+        return context.subtree(row, Verdict.IGNORED_NOTATION)
+    if not namespace or namespaces.is_xmi(namespace):
+        return _row(context, row)
+    context.applications.append(row)
+    return document.ends[row]
+
+
+def _names_package(context: Context, row: int) -> bool:
+    return (
+        "nsURI" in context.document.attributes[row]
+        and "base_Package" in (context.document.attributes[row])
+    )
+
+
+def _row(context: Context, row: int) -> int:
+    document = context.document
+    feature = document.features[row]
+    values = document.attributes[row]
+    if feature in vocabulary.NOTATION_FEATURES:
+        return structure.notation(context, row)
+    context.inherit(row)
+    if "href" in values or document.idref_key in values:
+        return structure.reference(context, row, feature)
+    special = _FEATURES.get(feature)
+    if special is not None and structure.is_value(context, row, feature):
+        special(context, row)
+        return document.ends[row]
+    type_name = document.type(row)
+    if not type_name:
+        if structure.is_text(context, row, feature):
+            context.text(row, feature)
+            return document.ends[row]
+        type_name = vocabulary.DEFAULT_TYPES.get(feature, "")
+    return _element(context, row, type_name, feature)
+
+
+def _element(context: Context, row: int, type_name: str, feature: str) -> int:
+    reader = _TYPES.get(type_name)
+    if reader is not None:
+        reader(context, row)
+        return context.next_row(row)
+    kind = vocabulary.kind_of(type_name)
+    if kind is None or not context.make(row, kind[0], kind[1], type_name, feature):
+        return context.subtree(row, Verdict.UNSUPPORTED)
+    return row + 1

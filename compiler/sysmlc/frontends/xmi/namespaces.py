@@ -1,0 +1,25 @@
+"""Namespaces of XMI and UML in all their versions, and which files they make ours."""
+
+import re
+
+_XMI = re.compile(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
+_UML = re.compile(
+    r"https?://www\.eclipse\.org/uml2/[\d.]+/UML/?$"
+    r"|https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/?$"
+)
+_SETTINGS = re.compile(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[IC]/?$|/spec/MOF/")
+
+
+def is_xmi(namespace: str) -> bool:
+    """Whether it is a namespace of XMI 2."""
+    return _XMI.match(namespace) is not None
+
+
+def is_uml(namespace: str) -> bool:
+    """Whether it is a namespace of UML 2 (a profile of UML is not)."""
+    return _UML.match(namespace) is not None
+
+
+def is_settings(namespace: str) -> bool:
+    """Whether its elements say how a tool shows or stores the model, and nothing else."""
+    return _SETTINGS.search(namespace) is not None

@@ -1,0 +1,66 @@
+"""Rules of reading XMI."""
+
+from sysmlc.diagnostics import Severity, rule
+
+MALFORMED = rule(
+    "SM100",
+    "malformed-file",
+    Severity.ERROR,
+    "'{file}' cannot be read: {problem}",
+    why="The file is damaged, or it asks for something that safe reading refuses. Nothing of it "
+    "is in the graph, because half a model gives wrong outputs.",
+    help="open and save the model again in the modelling tool",
+    wrong="<uml:Model><packagedElement></uml:Model>",
+    right="<uml:Model><packagedElement/></uml:Model>",
+)
+NO_MODEL = rule(
+    "SM110",
+    "no-known-content",
+    Severity.ERROR,
+    "'{file}' looks like UML in XMI, but nothing in it is known to sysmlc",
+    why="The file would otherwise be left out without a word.",
+    help="check with which tool and version it was exported; UML 2 in XMI 2.1 and later is read",
+    wrong='<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"><settings/></xmi:XMI>',
+    right='<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
+    ' xmlns:uml="http://www.omg.org/spec/UML/20131001"><uml:Model/></xmi:XMI>',
+)
+UNSUPPORTED = rule(
+    "SM111",
+    "unsupported-element",
+    Severity.WARNING,
+    "{count} of type '{type}' ({number} elements with their content) not read",
+    why="The element has a meaning that the graph cannot hold yet, so outputs do not reflect it. "
+    "coverage.json counts such elements; --strict-input makes them errors.",
+    wrong="<packagedElement xmi:type='uml:DurationObservation'/>",
+    right="<packagedElement xmi:type='uml:Class'/>",
+)
+REPEATED_ID = rule(
+    "SM112",
+    "repeated-id",
+    Severity.ERROR,
+    "the id '{id}' is used by two elements of '{file}'",
+    why="A reference to it could mean either. Ids are unique in an XMI file.",
+    help="give one of them another xmi:id, or save the model again",
+    wrong="<packagedElement xmi:id='a'/><packagedElement xmi:id='a'/>",
+    right="<packagedElement xmi:id='a'/><packagedElement xmi:id='b'/>",
+)
+BASELESS = rule(
+    "SM113",
+    "stereotype-without-element",
+    Severity.WARNING,
+    "stereotype '{stereotype}' is applied to nothing that is in the model",
+    why="Tools leave such applications behind when the element was deleted, or when it is drawn "
+    "only. They have no effect.",
+    help="remove the application, or apply the stereotype again",
+    wrong="<Blocks:Block base_Class='deleted'/>",
+    right="<Blocks:Block base_Class='_a'/>",
+)
+APPROXIMATED = rule(
+    "SM114",
+    "approximated-element",
+    Severity.INFO,
+    "{count} of type '{type}' read without {lost}",
+    why="The element is in the graph, but part of its meaning is not.",
+    wrong="<guard xmi:type='uml:OpaqueExpression'><body>a</body><body>b</body></guard>",
+    right="<guard xmi:type='uml:OpaqueExpression'><body>a</body></guard>",
+)

@@ -1,0 +1,277 @@
+"""Rows that are no elements of their own: references, edges, bounds, defaults and values."""
+
+from collections.abc import Callable
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.xmi import hrefs
+from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.values import ValueText, value_of
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_Reader = Callable[[Context, int], None]
+
+
+# -- what a row is -----------------------------------------------------------------------------
+
+
+def is_value(context: Context, row: int, feature: str) -> bool:
+    """Whether the row holds a value, not an element of the same feature (a pin, a constraint)."""
+    type_name = context.document.type(row)
+    if feature in _ALWAYS:
+        return True
+    if type_name:
+        return type_name in v.VALUE_TYPES
+    if feature == "value":
+        owner = context.owner(row)
+        return owner is not None and (owner.kind is Kind.SLOT or owner.subkind == "value")
+    return feature not in v.DEFAULT_TYPES
+
+
+def is_text(context: Context, row: int, feature: str) -> bool:
+    """Whether the row is only text: an attribute written as a child."""
+    document = context.document
+    is_leaf = document.ends[row] == row + 1
+    has_attributes = any("}" not in name for name in document.attributes[row])
+    return is_leaf and not has_attributes and feature not in v.DEFAULT_TYPES
+
+
+# -- notation ----------------------------------------------------------------------------------
+
+
+def notation(context: Context, row: int) -> int:
+    """Notation and tool settings; bounds inside MagicDraw's extensions are content."""
+    document = context.document
+    end = context.subtree(row, Verdict.IGNORED_NOTATION)
+    if document.features[row] == "eAnnotations":
+        _namespaces(context, row)
+    elif document.features[row] == "Extension" and end > row + 1:
+        _extension_bounds(context, row)
+    return end
+
+
+def _extension_bounds(context: Context, row: int) -> None:
+    document = context.document
+    if not context.lowered.own[document.parents[row]]:
+        return
+    for model in document.children(row, "modelExtension"):
+        for child in document.children(model):
+            if document.features[child] in ("lowerValue", "upperValue"):
+                FEATURES[document.features[child]](context, child)
+
+
+def _namespaces(context: Context, row: int) -> None:
+    """Papyrus keeps the namespaces of a profile in an Ecore copy of it."""
+    gid = context.gids[row]
+    for child in range(row + 1, context.document.ends[row]):
+        uri = context.document.attributes[child].get("nsURI")
+        if uri and gid:
+            context.unit.profiles.add(uri, gid)
+
+
+# -- references --------------------------------------------------------------------------------
+
+
+def reference(context: Context, row: int, feature: str) -> int:
+    """A child with ``xmi:idref`` or ``href`` stands for what it refers to."""
+    document = context.document
+    end = context.subtree(row, Verdict.MAPPED)
+    for child in document.children(row):
+        context.subtree(child, Verdict.IGNORED_NOTATION)
+    parent = document.parents[row]
+    owner = context.owner(row)
+    href = document.attributes[row].get("href", "")
+    if owner is None or feature in ("packagedElement", "nestedPackage"):
+        context.verdicts[row] = Verdict.EXTERNAL if href else Verdict.MAPPED
+    elif not context.lowered.own[parent]:
+        edge = v.FOLDED_REFERENCES.get(feature)
+        if edge is not None:
+            context.link(edge, owner.id, href or document.idref(row), row, feature, bool(href))
+    else:
+        _refer(context, owner, row, feature, href)
+    return end
+
+
+def _refer(context: Context, owner: Element, row: int, feature: str, href: str) -> None:
+    target = href or context.document.idref(row)
+    edge = v.SPECIAL.get((owner.kind, feature)) or v.REFERENCES.get(feature)
+    backwards = v.REVERSED.get((owner.kind, feature))
+    if edge is not None:
+        context.link(edge, owner.id, target, row, feature, bool(href))
+    elif backwards is not None:
+        context.link(backwards, owner.id, target, row, feature, bool(href), is_reversed=True)
+    elif feature in v.CONDITIONS:
+        context.conditions([target], feature)
+    elif feature not in v.REDUNDANT and feature not in ("partWithPort", "guard", "event"):
+        _keep(context, owner, row, feature, href)
+
+
+def _keep(context: Context, owner: Element, row: int, feature: str, href: str) -> None:
+    if href:
+        known = hrefs.normalised(href, context.document.name)
+        owner.attrs.setdefault(v.snake(feature), known)
+    elif feature not in ("sendEvent", "receiveEvent"):
+        parent = context.document.parents[row]
+        context.keep_ids(owner, v.snake(feature), context.document.targets(parent, feature))
+
+
+# -- edges of the owner ------------------------------------------------------------------------
+
+
+def _edge(context: Context, row: int) -> None:
+    context.inherit(row)
+    owner = context.owner(row)
+    if owner is None:
+        return
+    for feature, edge in v.FOLDED_REFERENCES.items():
+        for target in context.document.attributes[row].get(feature, "").split():
+            context.link(edge, owner.id, target, row, feature)
+
+
+def _extension(context: Context, row: int) -> None:
+    """The ends of an extension say what the property ``base_...`` of the stereotype says."""
+    context.subtree(row, Verdict.MAPPED)
+
+
+def _property(context: Context, row: int) -> None:
+    document = context.document
+    owner = context.owner(row)
+    name = document.attributes[row].get("name", "")
+    if owner is not None and owner.kind is Kind.STEREOTYPE and name.startswith("base_"):
+        _metaclass(context, row, owner)
+    elif not context.make(row, Kind.PROPERTY, "", "Property", document.features[row]):
+        context.subtree(row, Verdict.UNSUPPORTED)
+
+
+def _metaclass(context: Context, row: int, owner: Element) -> None:
+    document = context.document
+    context.subtree(row, Verdict.MAPPED)
+    for target in document.targets(row, "type"):
+        context.link(Edge.EXTENDS, owner.id, target, row, "type")
+    for child in document.children(row, "type"):
+        href = document.attributes[child].get("href")
+        if href:
+            context.link(Edge.EXTENDS, owner.id, href, child, "type", is_href=True)
+
+
+def _image(context: Context, row: int) -> None:
+    context.subtree(row, Verdict.IGNORED_NOTATION)
+
+
+# -- values ------------------------------------------------------------------------------------
+
+
+def value_in(context: Context, row: int) -> ValueText:
+    """The value in a row; it and its content are mapped, alternatives are reported."""
+    context.subtree(row, Verdict.MAPPED)
+    value = value_of(context.document, row)
+    if value.bodies > 1:
+        context.approximate(row, "its alternative bodies")
+    return value
+
+
+def text_of(value: ValueText) -> str:
+    """The value as text: ``true`` and ``false`` for truth values."""
+    if isinstance(value.value, bool):
+        return "true" if value.value else "false"
+    return "" if value.value is None else str(value.value)
+
+
+def _lower(context: Context, row: int) -> None:
+    context.bound(row, 0, value_in(context, row).value)
+
+
+def _upper(context: Context, row: int) -> None:
+    context.bound(row, 1, value_in(context, row).value)
+
+
+def _default(context: Context, row: int) -> None:
+    _put(context, row, "default")
+
+
+def _specification(context: Context, row: int) -> None:
+    owner = context.owner(row)
+    if owner is None or owner.kind is not Kind.CONSTRAINT:
+        _put(context, row, "value")
+        return
+    value = value_in(context, row)
+    owner.attrs["body"] = text_of(value)
+    if value.language:
+        owner.attrs["language"] = value.language
+
+
+def _value(context: Context, row: int) -> None:
+    owner = context.owner(row)
+    if owner is None or owner.kind is not Kind.SLOT:
+        _put(context, row, "value")
+        return
+    value = value_in(context, row)
+    if value.instance:
+        is_href = value.instance not in context.document.ids
+        child = next(context.document.children(row, "instance"), row)
+        context.link(Edge.REFERENCES, owner.id, value.instance, child, "instance", is_href)
+    else:
+        _append(owner, "value", value.value)
+
+
+def _append(element: Element, key: str, value: AttrValue) -> None:
+    known = element.attrs.get(key)
+    if known is None:
+        element.attrs[key] = value
+    else:
+        element.attrs[key] = (*known, value) if isinstance(known, tuple) else (known, value)
+
+
+def _put(context: Context, row: int, key: str) -> None:
+    owner = context.owner(row)
+    value = value_in(context, row)
+    if owner is None:
+        return
+    owner.attrs[key] = value.value
+    if value.instance:
+        context.keep_ids(owner, f"{key}_instance", [value.instance])
+    elif not value.is_literal:
+        owner.attrs[f"{key}_language"] = value.language
+
+
+def _text(key: str, unless: str = "") -> _Reader:
+    def read(context: Context, row: int) -> None:
+        owner = context.owner(row)
+        text = text_of(value_in(context, row))
+        if owner is not None and text != unless:
+            owner.attrs[key] = text
+
+    return read
+
+
+def _argument(context: Context, row: int) -> None:
+    owner = context.owner(row)
+    text = text_of(value_in(context, row))
+    if owner is not None:
+        _append(owner, "arguments", text)
+
+
+_ALWAYS = frozenset(
+    {"lowerValue", "upperValue", "defaultValue", "joinSpec", "upperBound", "specification"}
+    | {"clause", "handler", "endData", "weight", "nameExpression"}
+)
+
+FEATURES: dict[str, _Reader] = {
+    "lowerValue": _lower,
+    "upperValue": _upper,
+    "defaultValue": _default,
+    "specification": _specification,
+    "value": _value,
+    "joinSpec": _text("join_spec"),
+    "upperBound": _text("upper_bound", unless="*"),
+    "nameExpression": _text("name_expression"),
+    "argument": _argument,
+}
+
+TYPES: dict[str, _Reader] = {
+    **dict.fromkeys(v.EDGE_TYPES, _edge),
+    "Extension": _extension,
+    "ExtensionEnd": _extension,
+    "Property": _property,
+    "Image": _image,
+}

@@ -1,0 +1,122 @@
+"""All files of one compile unit: ids that are the same for every order of files, references."""
+
+from collections import Counter
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.xmi import hrefs
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.profiles import Profiles
+from sysmlc.ir import Edge, Graph, Kind, Reference
+
+
+class Lowered:
+    """One document and what became of its rows.
+
+    ``gids[row]`` is the id in the graph of the row's element, or of the nearest element above
+    it; ``own[row]`` says whether it is the row's own.
+    """
+
+    __slots__ = ("document", "gids", "own", "verdicts")
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.gids: list[str] = [""] * len(document)
+        self.own = bytearray(len(document))
+        self.verdicts: list[Verdict | None] = [None] * len(document)
+
+
+class Link(NamedTuple):
+    """A reference whose target is still an id or href as the file writes it."""
+
+    edge: Edge
+    source: str
+    lowered: Lowered
+    target: str
+    row: int
+    feature: str
+    is_href: bool = False
+    is_reversed: bool = False
+
+
+class Unit:
+    """The documents of a compile unit, and the references between their elements."""
+
+    def __init__(self, documents: list[Document], graph: Graph) -> None:
+        self.graph = graph
+        self.files = [Lowered(document) for document in documents]
+        self.links: list[Link] = []
+        self.profiles = Profiles()
+        self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
+        count = Counter(id for document in documents for id in document.ids)
+        taken = Counter({id for id in count if id in graph})
+        self._clashes = {id for id, number in count.items() if number + taken[id] > 1}
+        self._holders: dict[str, list[Lowered]] = {}
+        for file in self.files:
+            for id in file.document.ids:
+                self._holders.setdefault(id, []).append(file)
+
+    def graph_id(self, file: str, id: str) -> str:
+        """Id in the graph of an element with the id ``id`` in the file."""
+        return f"{file}#{id}" if id in self._clashes else id
+
+    def find(self, lowered: Lowered, target: str, is_href: bool) -> tuple[Lowered, int] | None:
+        """File and row that an id or href means, if a file of the unit has it."""
+        if not is_href:
+            return self._local(lowered, target)
+        path, _, fragment = hrefs.normalised(target, lowered.document.name).partition("#")
+        holders = self._holders.get(fragment, [])
+        exact = [h for h in holders if _archive(h.document.name) == path or h.document.name == path]
+        if not exact and hrefs.is_unmistakable(fragment):
+            exact = holders
+        if not exact:
+            name = hrefs.base_name(path)
+            exact = [h for h in holders if hrefs.base_name(h.document.name) == name]
+        return (exact[0], exact[0].document.ids[fragment]) if len(exact) == 1 else None
+
+    def _local(self, lowered: Lowered, target: str) -> tuple[Lowered, int] | None:
+        row = lowered.document.ids.get(target)
+        if row is not None:
+            return lowered, row
+        holders = self._holders.get(target, [])
+        return (holders[0], holders[0].document.ids[target]) if len(holders) == 1 else None
+
+    def target_id(self, lowered: Lowered, target: str, is_href: bool) -> str | None:
+        """Id in the graph of what an id or href means; None for what is read but not kept.
+
+        What no file of the unit has is returned as written (an href normalised).
+        """
+        found = self.find(lowered, target, is_href)
+        if found is None:
+            return hrefs.normalised(target, lowered.document.name) if is_href else target
+        holder, row = found
+        if holder.verdicts[row] in (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED):
+            return None
+        return holder.gids[row] or None
+
+    def flush(self) -> None:
+        """Give all references to the graph, in the order in which they were found."""
+        for link in self.links:
+            target = self.target_id(link.lowered, link.target, link.is_href)
+            if target is not None:
+                self._refer(link, target)
+        self.links.clear()
+
+    def _refer(self, link: Link, target: str) -> None:
+        document = link.lowered.document
+        ordinal = document.ordinals[link.row]
+        kind, name = Kind.CLASS, ""
+        if link.is_href and target not in self.graph:
+            kind, name = hrefs.hint(document, link.row, link.feature)
+            if link.lowered.verdicts[link.row] is Verdict.MAPPED:
+                link.lowered.verdicts[link.row] = Verdict.EXTERNAL
+        source = link.source
+        if link.is_reversed:
+            if target not in self.graph:
+                return
+            source, target = target, source
+        self.graph.refer(Reference(link.edge, source, target, kind, name, ordinal))
+
+
+def _archive(name: str) -> str:
+    return name.partition("!")[0]

@@ -1,0 +1,107 @@
+"""Value specifications: literals as JSON values, expressions as text."""
+
+from typing import NamedTuple
+
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.ir import AttrValue
+
+_LITERALS = frozenset(
+    {
+        "LiteralBoolean",
+        "LiteralInteger",
+        "LiteralReal",
+        "LiteralString",
+        "LiteralUnlimitedNatural",
+        "LiteralNull",
+    }
+)
+
+
+class ValueText(NamedTuple):
+    """A value: a JSON literal or text; ``language`` is set when it is an expression."""
+
+    value: AttrValue
+    language: str = ""
+    is_literal: bool = False
+    instance: str = ""
+    """Local id or href of the instance that it names."""
+    bodies: int = 1
+    """Number of alternative texts; only the first is the value."""
+
+
+def value_of(document: Document, row: int) -> ValueText:
+    """The value that the value specification in this row means (UML 2.5.1 clause 8)."""
+    type_name = document.type(row)
+    if type_name in _LITERALS:
+        return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
+    if type_name == "InstanceValue":
+        return _instance(document, row)
+    if type_name in ("Expression", "StringExpression"):
+        return ValueText(_expression(document, row), language="UML")
+    if type_name in ("TimeExpression", "Duration"):
+        inner = next(document.children(row, "expr"), None)
+        return value_of(document, inner) if inner is not None else ValueText("")
+    if type_name in ("Interval", "TimeInterval", "DurationInterval"):
+        return ValueText(f"{document.get(row, 'min')}..{document.get(row, 'max')}")
+    return opaque(document, row)
+
+
+def opaque(document: Document, row: int) -> ValueText:
+    """First body and language of an opaque expression, action or behaviour."""
+    bodies = _texts(document, row, "body")
+    languages = _texts(document, row, "language")
+    body = bodies[0] if bodies else document.get(row, "value")
+    return ValueText(body, languages[0] if languages else "", bodies=max(len(bodies), 1))
+
+
+def name_of_instance(document: Document, row: int) -> str:
+    """Name of a row of the same document."""
+    return document.attributes[row].get("name", "")
+
+
+def _texts(document: Document, row: int, feature: str) -> list[str]:
+    attribute = document.attributes[row].get(feature)
+    if attribute is not None:
+        return [attribute]
+    return [document.texts.get(child, "") for child in document.children(row, feature)]
+
+
+def _literal(type_name: str, text: str) -> AttrValue:
+    if type_name == "LiteralBoolean":
+        return text == "true"
+    if type_name == "LiteralString":
+        return text
+    if type_name == "LiteralNull":
+        return "null"
+    try:
+        return _number(type_name, text)
+    except ValueError:
+        return text
+
+
+def _number(type_name: str, text: str) -> AttrValue:
+    if type_name == "LiteralReal":
+        return float(text or "0")
+    if text in ("*", "-1") and type_name == "LiteralUnlimitedNatural":
+        return "*"
+    return int(text or "0")
+
+
+def _instance(document: Document, row: int) -> ValueText:
+    targets = document.targets(row, "instance")
+    hrefs = [document.attributes[c].get("href", "") for c in document.children(row, "instance")]
+    target = next((t for t in [*targets, *hrefs] if t), "")
+    known = document.ids.get(target)
+    name = name_of_instance(document, known) if known is not None else ""
+    return ValueText(name or document.attributes[row].get("name", ""), instance=target)
+
+
+def _expression(document: Document, row: int) -> str:
+    """``symbol(operand, ...)``; without a symbol the operands joined (StringExpression)."""
+    operands = [str(value_of(document, child).value) for child in document.children(row, "operand")]
+    symbol = document.attributes[row].get("symbol", "")
+    if not symbol:
+        return "".join(operands)
+    if len(operands) == 2 and not symbol[:1].isalnum():
+        return f"({operands[0]} {symbol} {operands[1]})"
+    return f"{symbol}({', '.join(operands)})" if operands else symbol
