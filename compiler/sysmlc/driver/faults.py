@@ -38,14 +38,14 @@ UNRECOGNISED = rule(
 )
 MALFORMED = rule(
     "SM172",
-    "malformed-file",
+    "damaged-archive",
     Severity.ERROR,
     "'{path}' cannot be read: {reason}",
-    why="The content is damaged. What stands before the damage is not used: a model that is "
+    why="The archive is damaged or holds no model. Nothing of it is used: a model that is "
     "silently cut short gives wrong outputs.",
-    help="open and save the model again in the modelling tool",
-    wrong="<uml:Model><packagedElement></uml:Model>",
-    right="<uml:Model><packagedElement/></uml:Model>",
+    help="save the project again in the modelling tool",
+    wrong="a .mdzip whose download was cut off",
+    right="the whole .mdzip",
 )
 REFUSED = rule(
     "SM177",
