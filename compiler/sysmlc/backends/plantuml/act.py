@@ -1,0 +1,228 @@
+"""Activity diagrams: one for each activity with nodes, drawn as a graph (docs/decisions)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from sysmlc.backends.plantuml import actions, labels
+from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.lanes import can_be_boxes, tint
+from sysmlc.backends.plantuml.notes import notes
+from sysmlc.backends.plantuml.stm import divided, guard_text
+from sysmlc.backends.plantuml.text import label, plain, small, stack
+from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+
+NODES = (
+    Kind.ACTION,
+    Kind.STRUCTURED,
+    Kind.CONTROL,
+    Kind.OBJECT_NODE,
+    Kind.DATA_STORE,
+    Kind.ACTIVITY_PARAMETER,
+)
+FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
+_CONTROL_FLOW = "-[dashed]->"
+_OBJECT_FLOW = "-->"
+_LABEL = 30
+
+
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All activity diagrams, in the order of the model."""
+    for activity in graph.of_kind(Kind.ACTIVITY):
+        drawing = _Drawing(graph, activity)
+        view = drawing.view()
+        if view.nodes:
+            signature = labels.signature(graph, activity)
+            said = [item.id for item in graph.owned(activity) if item.kind is Kind.PARAMETER]
+            title = "Activity diagram"
+            yield from divided(graph, activity, view, "act", title, signature, tuple(said))
+
+
+@dataclass(slots=True)
+class _Drawing:
+    """One activity on its way to a picture; ``homes`` maps what a flow may touch to a node."""
+
+    graph: Graph
+    activity: Element
+    aliases: Aliases = field(default_factory=Aliases)
+    homes: dict[str, str] = field(default_factory=dict)
+    tints: dict[str, str] = field(default_factory=dict)
+
+    def view(self) -> GraphView:
+        nodes = [node for node in self._nodes(self.activity) if self._region(node) is None]
+        self.tints = {} if self._boxed(nodes) else self._tints()
+        loose = nodes if self.tints else [node for node in nodes if self._lane(node) is None]
+        held = [] if self.tints else nodes
+        drawn = (*self._lanes(self.activity, held), *map(self._node, loose))
+        return GraphView(
+            drawn, tuple(self._lines()), notes(self.graph, self.activity, self.aliases)
+        )
+
+    def _boxed(self, nodes: list[Element]) -> bool:
+        """Whether partitions are drawn as boxes around their nodes."""
+        lanes = {node.id: lane.id for node in nodes if (lane := self._lane(node)) is not None}
+        tops = {inner.id: node.id for node in nodes for inner in self.graph.subtree(node)}
+        ends = [
+            (tops.get(source.id, ""), tops.get(target.id, ""))
+            for flow in self._owned(self.activity)
+            for source in self.graph.targets(flow, Edge.FLOW_SOURCE)
+            for target in self.graph.targets(flow, Edge.FLOW_TARGET)
+        ]
+        return can_be_boxes(lanes, ends)
+
+    def _tints(self) -> dict[str, str]:
+        found = (item for item in self.graph.subtree(self.activity) if item.kind is Kind.PARTITION)
+        return {partition.id: tint(number) for number, partition in enumerate(found)}
+
+    def _region(self, node: Element) -> Element | None:
+        """The interruptible region that holds the node."""
+        groups = self.graph.targets(node, Edge.IN_PARTITION)
+        return next((item for item in groups if item.kind is Kind.STRUCTURED), None)
+
+    def _owned(self, owner: Element) -> list[Element]:
+        return self.graph.owned(owner)
+
+    def _nodes(self, owner: Element) -> list[Element]:
+        return [item for item in self._owned(owner) if item.kind in NODES]
+
+    def _lane(self, node: Element) -> Element | None:
+        """The first partition of a node."""
+        return next(iter(self._partitions(node)), None)
+
+    def _partitions(self, node: Element) -> list[Element]:
+        groups = self.graph.targets(node, Edge.IN_PARTITION)
+        return [group for group in groups if group.kind is Kind.PARTITION]
+
+    def _lanes(self, owner: Element, nodes: list[Element]) -> Iterator[Node]:
+        """Boxes for partitions; one that is written on the nodes gets none."""
+        for partition in self._owned(owner):
+            if partition.kind is not Kind.PARTITION:
+                continue
+            children = tuple(self._lanes(partition, nodes))
+            held = [node for node in nodes if self._lane(node) is partition]
+            children += tuple(map(self._node, held))
+            if children or not self._is_written(partition):
+                yield self._group(partition, self._lane_title(partition), "lane", children)
+
+    def _is_written(self, partition: Element) -> bool:
+        nodes = self.graph.sources(partition, Edge.IN_PARTITION)
+        return bool(self.tints) and any(node.kind is not Kind.CONTROL for node in nodes)
+
+    def _lane_title(self, partition: Element) -> str:
+        return label(self._lane_name(partition))
+
+    def _lane_name(self, partition: Element) -> str:
+        represented = self.graph.targets(partition, Edge.REPRESENTS)
+        names = ", ".join(labels.typed(self.graph, item) for item in represented)
+        if not partition.name or partition.name == names:
+            return names or "partition"
+        return f"{partition.name}: {names}" if names else partition.name
+
+    def _group(self, element: Element, title: str, shape: str, children: tuple[Node, ...]) -> Node:
+        alias = self.aliases.make(element.id, element.name, str(element.kind))
+        return Node(alias, title, shape, children=children, shows=(element.id,))
+
+    def _node(self, node: Element) -> Node:
+        alias = self.aliases.make(node.id, node.name, node.subkind or str(node.kind))
+        look = actions.look(self.graph, node)
+        self.homes[node.id] = alias
+        self.homes.update(dict.fromkeys(look.pins, alias))
+        lanes = self._written_lanes(node)
+        where = small(plain(", ".join(f"({lane})" for lane in lanes.values())))
+        title = stack([where, small(plain(labels.guillemets(look.words))), look.title])
+        return Node(
+            alias,
+            title,
+            look.shape,
+            look.rows,
+            self._content(node),
+            look.note,
+            (node.id, *look.pins, *look.shows, *lanes),
+            next((self.tints[lane] for lane in lanes if lane in self.tints), ""),
+        )
+
+    def _written_lanes(self, node: Element) -> dict[str, str]:
+        """Partitions to be named on the node: all, or the further ones of a grid."""
+        found = self._partitions(node)[0 if self.tints else 1 :]
+        return {} if node.kind is Kind.CONTROL else {p.id: self._lane_name(p) for p in found}
+
+    def _content(self, node: Element) -> tuple[Node, ...]:
+        if node.kind is not Kind.STRUCTURED:
+            return ()
+        held = [self._inner(node, item) for item in self._nodes(node)]
+        held += self._regional(node)
+        return _in_sections(node, held, self.aliases)
+
+    def _inner(self, owner: Element, item: Element) -> tuple[str, Node]:
+        return item.id, self._node(item)
+
+    def _regional(self, region: Element) -> Iterator[tuple[str, Node]]:
+        """Nodes of the activity that are in an interruptible region."""
+        for node in self.graph.sources(region, Edge.IN_PARTITION):
+            if node.owner == self.activity.id and self._region(node) is region:
+                yield node.id, self._node(node)
+
+    def _lines(self) -> Iterator[Line]:
+        for flow in self.graph.subtree(self.activity):
+            if flow.kind not in FLOWS:
+                continue
+            source = self.graph.target(flow, Edge.FLOW_SOURCE)
+            target = self.graph.target(flow, Edge.FLOW_TARGET)
+            if source is None or target is None:
+                continue
+            if source.id in self.homes and target.id in self.homes:
+                yield self._line(flow, source, target)
+
+    def _line(self, flow: Element, source: Element, target: Element) -> Line:
+        arrow = _CONTROL_FLOW if flow.kind is Kind.CONTROL_FLOW else _OBJECT_FLOW
+        if flow.attrs.get("interrupts"):
+            arrow = "-[bold]->"
+        text = label(self._flow_text(flow, source, target), _LABEL)
+        owned = [item.id for item in self._owned(flow) if item.kind is not Kind.APPLICATION]
+        shows = (flow.id, *owned)
+        return Line(self.homes[source.id], arrow, self.homes[target.id], text, shows=shows)
+
+    def _flow_text(self, flow: Element, source: Element, target: Element) -> str:
+        pins = [item.name for item in (source, target) if item.kind is Kind.PIN and item.name]
+        weight = flow.attrs.get("weight")
+        parts = [
+            labels.guillemets(labels.keywords(self.graph, flow)),
+            "⚡" if flow.attrs.get("interrupts") else "",
+            "«decisionInputFlow»" if target.attrs.get("decision_input_flow") == flow.id else "",
+            " → ".join(dict.fromkeys(pins)),
+            guard_text(self.graph, flow),
+            f"{{weight = {labels.literal(weight)}}}" if weight is not None else "",
+        ]
+        return " ".join(part for part in parts if part)
+
+
+def _in_sections(
+    owner: Element, held: list[tuple[str, Node]], aliases: Aliases
+) -> tuple[Node, ...]:
+    """Nodes of a loop or a conditional in dashed boxes named after its sections."""
+    left = dict(held)
+    boxes = []
+    for title, ids in _sections(owner):
+        members = tuple(left.pop(id) for id in ids if id in left)
+        if members:
+            alias = aliases.make(f"{owner.id} {title}", title, "section")
+            boxes.append(Node(alias, small(plain(title)), "section", children=members))
+    return (*boxes, *left.values())
+
+
+def _sections(owner: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
+    if owner.subkind == "loop":
+        tested = "while" if owner.attrs.get("tested_first") else "until test"
+        keys = {"setup_part": "setup", "test": tested, "body_part": "body"}
+        yield from ((title, _ids(owner.attrs.get(key))) for key, title in keys.items())
+    clauses = owner.attrs.get("clauses")
+    for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1):
+        tests, bodies = clause if isinstance(clause, tuple) and len(clause) == 2 else ((), ())
+        yield f"if {number}", _ids(tests)
+        yield f"then {number}", _ids(bodies)
+
+
+def _ids(value: AttrValue) -> tuple[str, ...]:
+    if isinstance(value, tuple):
+        return tuple(str(item) for item in value)
+    return () if value is None else tuple(str(value).split())

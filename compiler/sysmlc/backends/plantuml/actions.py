@@ -1,0 +1,157 @@
+"""How one activity node looks: its shape, its title, and its pins as rows."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml.stm import trigger_text
+from sysmlc.backends.plantuml.text import label, lines
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+_CONTROL = {
+    "initial": "start",
+    "final": "end",
+    "flow-final": "flowfinal",
+    "decision": "choice",
+    "merge": "choice",
+    "fork": "fork",
+    "join": "join",
+}
+_QUIET = frozenset(["call-behavior", "call-operation", "opaque", ""])
+_WORDS = {
+    "send": "send signal",
+    "accept": "accept event",
+    "accept-call": "accept call",
+    "read": "read",
+    "write": "write",
+}
+_SHAPES = {"accept": "accept", "accept-call": "accept", "send": "send", "broadcast": "send"}
+_ROW = 44
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a node shows; ``pins`` and ``shows`` are the ids that its rows stand for."""
+
+    shape: str
+    title: str
+    words: tuple[str, ...] = ()
+    rows: tuple[str, ...] = ()
+    note: str = ""
+    pins: tuple[str, ...] = ()
+    shows: tuple[str, ...] = ()
+
+
+def look(graph: Graph, node: Element) -> Look:
+    """The look of an activity node, from its kind and subkind."""
+    if node.kind is Kind.CONTROL:
+        return _control(graph, node)
+    if node.kind in (Kind.ACTION, Kind.STRUCTURED):
+        return _action(graph, node)
+    return _object(graph, node)
+
+
+def _control(graph: Graph, node: Element) -> Look:
+    shape = _CONTROL.get(node.subkind, "control")
+    if shape == "flowfinal":
+        return Look("flowfinal", "<size:22>⊗</size>", note=label(node.name))
+    return Look(shape, label(labels.name(node)), note=label(_control_note(graph, node)))
+
+
+def _control_note(graph: Graph, node: Element) -> str:
+    """What PlantUML does not print inside a diamond or a bar."""
+    behaviour = graph.get(str(node.attrs.get("decision_input", "")))
+    parts = [
+        node.name,
+        f"«decisionInput» {labels.name(behaviour)}" if behaviour is not None else "",
+        f"{{joinSpec = {node.attrs['join_spec']}}}" if node.attrs.get("join_spec") else "",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def _object(graph: Graph, node: Element) -> Look:
+    words = {Kind.DATA_STORE: ("datastore",), Kind.OBJECT_NODE: ("centralBuffer",)}
+    direction = node.attrs.get("direction")
+    applied = labels.applied(graph, node)
+    typed = next((t for t in (node, *graph.targets(node, Edge.REFERENCES)) if t.name), node)
+    text = labels.typed(graph, node)
+    if node.kind is Kind.ACTIVITY_PARAMETER:
+        parameter = graph.target(node, Edge.REFERENCES)
+        source = parameter if parameter is not None else node
+        text = labels.typed(graph, source, node.name or typed.name)
+        words = {Kind.ACTIVITY_PARAMETER: (f"parameter {direction}" if direction else "parameter",)}
+    shape = "store" if node.kind is Kind.DATA_STORE else "object"
+    return Look(shape, label(text), applied or words.get(node.kind, ()), _states(graph, node))
+
+
+def _states(graph: Graph, node: Element) -> tuple[str, ...]:
+    """The state that objects in this node are in."""
+    names = [s.name for s in graph.targets(node, Edge.REFERENCES) if s.kind is Kind.STATE]
+    return lines(f"[{', '.join(names)}]") if names else ()
+
+
+def _action(graph: Graph, node: Element) -> Look:
+    pins = [item for item in graph.owned(node) if item.kind is Kind.PIN]
+    called = graph.targets(node, Edge.CALLS)
+    extra = [item for item in graph.owned(node) if item.kind in (Kind.TRIGGER, Kind.CONSTRAINT)]
+    rows = [*_body(node), *_called(node, called), *_extra(graph, node, extra)]
+    rows += [row for pin in pins for row in _pin(graph, pin)]
+    return Look(
+        _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
+        label(_title(node, called)),
+        _words(graph, node),
+        tuple(rows),
+        pins=tuple(pin.id for pin in pins),
+        shows=tuple(item.id for item in extra),
+    )
+
+
+def _title(node: Element, called: list[Element]) -> str:
+    if node.name:
+        return node.name
+    if called:
+        return ", ".join(labels.name(item) for item in called)
+    return labels.literal(node.attrs.get("value")) if "value" in node.attrs else labels.name(node)
+
+
+def _words(graph: Graph, node: Element) -> tuple[str, ...]:
+    applied = labels.applied(graph, node)
+    if node.kind is Kind.STRUCTURED:
+        return (node.subkind or "structured", *applied)
+    kind = _WORDS.get(node.subkind, node.subkind.replace("-", " "))
+    return (
+        applied if node.subkind in _QUIET and applied else tuple(w for w in (kind, *applied) if w)
+    )
+
+
+def _body(node: Element) -> Iterator[str]:
+    """Body of an opaque action, value of a value action."""
+    if node.attrs.get("body"):
+        for part in labels.literal(node.attrs["body"]).splitlines():
+            yield from lines(part, _ROW)
+    if "value" in node.attrs and node.name:
+        yield from lines(f"= {labels.literal(node.attrs['value'])}", _ROW)
+
+
+def _called(node: Element, called: list[Element]) -> Iterator[str]:
+    for item in called:
+        if node.name and item.name != node.name:
+            yield from lines(f"calls {labels.name(item)}", _ROW)
+
+
+def _extra(graph: Graph, node: Element, extra: list[Element]) -> Iterator[str]:
+    for item in extra:
+        if item.kind is Kind.TRIGGER:
+            text = trigger_text(graph, item)
+            yield from lines(text, _ROW) if text != node.name else ()
+        else:
+            yield from lines(labels.condition(item), _ROW)
+
+
+def _pin(graph: Graph, pin: Element) -> tuple[str, ...]:
+    """``in name : Type = value``."""
+    direction = str(pin.attrs.get("direction", ""))
+    shown = pin.name or (pin.subkind if not graph.targets(pin, Edge.TYPED_BY) else "")
+    value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
+    text = f"{direction} {labels.typed(graph, pin, shown)}{value}".strip()
+    return lines(text, _ROW)

@@ -1,0 +1,39 @@
+"""Short names for the elements of one diagram, the same in every run."""
+
+import re
+from collections import Counter
+from collections.abc import KeysView
+
+
+class Aliases:
+    """Gives each key a name made of its words and a number; never a word of PlantUML's own.
+
+    The number counts equal words in the order of the diagram, so that an element that is
+    added elsewhere changes no other line.
+    """
+
+    def __init__(self) -> None:
+        self._of: dict[str, str] = {}
+        self._taken: Counter[str] = Counter()
+
+    def make(self, key: str, name: str, otherwise: str) -> str:
+        """The alias of ``key``, made from ``name`` or, if that has no letters, ``otherwise``."""
+        if key not in self._of:
+            words = _words(name) or _words(otherwise) or "e"
+            self._taken[words] += 1
+            self._of[key] = f"{words}_{self._taken[words]}"
+        return self._of[key]
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._of
+
+    def __getitem__(self, key: str) -> str:
+        return self._of[key]
+
+    def keys(self) -> KeysView[str]:
+        """What has an alias."""
+        return self._of.keys()
+
+
+def _words(name: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", name.lower())[:24].strip("_")

@@ -1,0 +1,91 @@
+"""All diagrams of a graph: views, file names, templates, and what no diagram shows."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+from sysmlc import naming
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.plantuml import act, bdd, ibd, missing, req, stm
+from sysmlc.backends.plantuml.render import Renderer
+from sysmlc.backends.plantuml.text import comment
+from sysmlc.backends.plantuml.views import Diagram
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
+from sysmlc.ir import Graph
+from sysmlc.output import Output
+
+BAD_TEMPLATE = rule(
+    "SM700",
+    "bad-diagram-template",
+    Severity.ERROR,
+    "the template for {kind} diagrams cannot be used: {fault}",
+    why="A template of yours replaces the shipped one of the same name; it has a fault.",
+    help="Compare it with templates/plantuml of sysmlc; docs/diagrams.md lists the names.",
+    wrong="bdd.puml.j2: {{ view.boxs }}",
+    right="bdd.puml.j2: {{ view.boxes }}",
+)
+
+KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
+    bdd.diagrams,
+    ibd.diagrams,
+    act.diagrams,
+    stm.diagrams,
+    req.diagrams,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PlantUml:
+    """Diagrams as PlantUML text."""
+
+    name: str = "plantuml"
+    summary: str = "block, internal block, activity, state machine, requirement diagrams"
+    is_default: bool = True
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Write every diagram that shows something; report what none of them shows."""
+        found = [diagram for kind in KINDS for diagram in kind(graph)]
+        missing.report(graph, found, sink)
+        if found:
+            _write(graph, found, output, sink, options)
+
+
+def _write(
+    graph: Graph, found: list[Diagram], output: Output, sink: Sink, options: EmitOptions
+) -> None:
+    from jinja2 import TemplateError
+
+    renderer = Renderer(options.templates)
+    for kind, group in groupby(found, lambda diagram: diagram.kind):
+        try:
+            for diagram, file in _named(list(group)):
+                text = renderer.text(diagram, _header(graph, diagram))
+                output.add(f"diagrams/{file}.{kind}.puml", text, diagram.trace(), "plantuml")
+        except TemplateError as error:
+            fault = f"{type(error).__name__}: {error}"
+            sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
+
+
+def _named(found: list[Diagram]) -> Iterable[tuple[Diagram, str]]:
+    """File name for each diagram of one kind; equal names are numbered in model order."""
+    keys: dict[str, Diagram] = {}
+    for diagram in found:
+        keys[_free(diagram.name, keys)] = diagram
+    files = naming.file_names(keys)
+    return [(diagram, files[key]) for key, diagram in keys.items()]
+
+
+def _free(name: str, taken: dict[str, Diagram]) -> str:
+    number, key = 1, name
+    while key in taken:
+        number += 1
+        key = f"{name} ({number})"
+    return key
+
+
+def _header(graph: Graph, diagram: Diagram) -> tuple[str, ...]:
+    kind, name = diagram.heading
+    about = graph.get(diagram.about)
+    parts = [f"{kind} of {name}", f"from {about.source}" if about and about.source else ""]
+    parts.append("made by sysmlc; change the model, not this file")
+    return tuple(comment(part) for part in parts if part)

@@ -1,0 +1,268 @@
+"""Block definition diagrams: one for each package that owns classifiers."""
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.relations import Relation, relations
+from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
+from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+CLASSIFIERS = (
+    Kind.CLASS,
+    Kind.COMPONENT,
+    Kind.INTERFACE,
+    Kind.DATA_TYPE,
+    Kind.ENUMERATION,
+    Kind.SIGNAL,
+    Kind.ACTOR,
+    Kind.ITEM,
+)
+_BY_ROLE = {
+    "value": "values",
+    "part": "parts",
+    "reference": "references",
+    "flow property": "flow properties",
+    "constraint property": "constraints",
+    "constraint parameter": "parameters",
+}
+_BY_KIND = {
+    Kind.PROPERTY: "attributes",
+    Kind.FLOW_PROPERTY: "flow properties",
+    Kind.PORT: "ports",
+    Kind.OPERATION: "operations",
+    Kind.RECEPTION: "receptions",
+    Kind.CONSTRAINT: "constraints",
+    Kind.ENUMERATION_LITERAL: "literals",
+    Kind.ACTIVITY: "behaviors",
+    Kind.STATE_MACHINE: "behaviors",
+    Kind.INTERACTION: "behaviors",
+}
+_TITLES = (
+    "literals values parts references attributes flow_properties ports "
+    "parameters constraints operations receptions behaviors"
+)
+_ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
+_ROW = 64
+_DRAWN_AS_LINE = frozenset(["part", "reference"])
+
+
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All block definition diagrams of the graph, in the order of its packages."""
+    every = relations(graph)
+    homes = _homes(graph)
+    drawn = {item.id for items in homes.values() for item in items}
+    for package, classifiers in homes.items():
+        yield from _of_package(graph, graph.get(package), classifiers, every, drawn)
+
+
+def _homes(graph: Graph) -> dict[str | None, list[Element]]:
+    """The classifiers that each package shows: its own and those inside its classifiers."""
+    homes: dict[str | None, list[Element]] = {}
+    for root in graph.roots():
+        for element in graph.subtree(root):
+            if is_block(element):
+                homes.setdefault(_package(graph, element), []).append(element)
+    return homes
+
+
+def is_block(element: Element) -> bool:
+    """Whether a block definition diagram has a box for it."""
+    is_kind = element.kind in CLASSIFIERS and element.role != "requirement"
+    return is_kind and not element.attrs.get("external")
+
+
+def _package(graph: Graph, element: Element) -> str | None:
+    for above in graph.ancestors(element):
+        if above.kind in (Kind.PACKAGE, Kind.PROFILE):
+            return above.id
+    return None
+
+
+def _of_package(
+    graph: Graph,
+    package: Element | None,
+    classifiers: list[Element],
+    every: Iterable[Relation],
+    drawn: set[str],
+) -> Iterator[Diagram]:
+    own = {item.id for item in classifiers}
+    ours = [relation for relation in every if _is_ours(graph, relation, own, drawn)]
+    ours += _containments(graph, classifiers)
+    near = neighbours(own, ours)
+    parts = split.chunks([item.id for item in classifiers], near)
+    whole = graph.qualified_name(package) if package is not None else "model"
+    for index, part in enumerate(parts):
+        shown = [graph[id] for id in part]
+        inside = [r for r in ours if _belongs(r, set(part), own)]
+        inside += _property_lines(graph, shown, inside)
+        yield Diagram(
+            kind="bdd",
+            name=split.numbered(whole, index, len(parts)),
+            frame=plain(f"bdd [package] {whole}"),
+            heading=("Block definition diagram", whole),
+            view=_view(graph, shown, inside),
+            about=package.id if package is not None else "",
+            footer=plain(split.footer(index, len(parts), whole)),
+        )
+
+
+def _is_ours(graph: Graph, relation: Relation, own: set[str], drawn: set[str]) -> bool:
+    """A line belongs to the package of its source; if that is in no diagram, of its target."""
+    if not (_is_boxable(graph, relation.source) and _is_boxable(graph, relation.target)):
+        return False
+    if relation.source in own:
+        return True
+    return relation.source not in drawn and relation.target in own
+
+
+def _is_boxable(graph: Graph, id: str) -> bool:
+    element = graph[id]
+    return element.kind in (*CLASSIFIERS, *_STUBS) and element.role != "requirement"
+
+
+_STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INSTANCE, Kind.USE_CASE, Kind.UNIT)
+
+
+def _containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
+    pairs = ((graph.owner(item), item) for item in classifiers)
+    return [
+        Relation(owner.id, item.id, "+--")
+        for owner, item in pairs
+        if owner is not None and owner.kind in CLASSIFIERS
+    ]
+
+
+def neighbours(own: set[str], found: Iterable[Relation]) -> dict[str, list[str]]:
+    """For each id in ``own`` what it is related to."""
+    near: dict[str, list[str]] = {id: [] for id in sorted(own)}
+    for relation in found:
+        for one, other in (
+            (relation.source, relation.target),
+            (relation.target, relation.source),
+        ):
+            if one in near and one != other:
+                near[one].append(other)
+    return near
+
+
+def _belongs(relation: Relation, part: set[str], own: set[str]) -> bool:
+    """In a split package a line stands with its source, or with its target when that is ours."""
+    return relation.source in part or (relation.source not in own and relation.target in part)
+
+
+def _property_lines(
+    graph: Graph, shown: list[Element], inside: Iterable[Relation]
+) -> list[Relation]:
+    """Parts and references without association whose type has a box: lines instead of rows."""
+    boxes = {item.id for item in shown}
+    taken = {id for relation in inside for id in relation.shows}
+    found = []
+    for owner in shown:
+        for item in graph.owned(owner):
+            type_ = graph.target(item, Edge.TYPED_BY)
+            is_line = item.role in _DRAWN_AS_LINE and item.id not in taken
+            if is_line and type_ is not None and type_.id in boxes:
+                found.append(_property_line(owner, item, type_))
+    return found
+
+
+def _property_line(owner: Element, item: Element, type_: Element) -> Relation:
+    arrow = {"composite": "*-->", "shared": "o-->"}.get(str(item.attrs.get("aggregation")), "-->")
+    far = " ".join(part for part in (item.name, labels.multiplicity(item)) if part)
+    return Relation(owner.id, type_.id, arrow, far=far, shows=(item.id,))
+
+
+def _view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView:
+    aliases = Aliases()
+    in_lines = {id for relation in inside for id in relation.shows}
+    boxes = [_box(graph, item, aliases, in_lines) for item in shown]
+    outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
+    boxes += [stub(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
+    return BoxView(tuple(boxes), tuple(line(relation, aliases) for relation in inside))
+
+
+def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
+    """The relation between the aliases of its ends."""
+    return Line(
+        aliases[relation.source],
+        relation.arrow,
+        aliases[relation.target],
+        keyword_label(relation.label),
+        label(relation.near),
+        label(relation.far),
+        relation.shows,
+    )
+
+
+def _box(graph: Graph, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
+    rows: dict[str, list[str]] = {}
+    shows = [item.id]
+    for feature in graph.owned(item):
+        title = _title(feature)
+        if title and feature.id not in in_lines:
+            rows.setdefault(title, []).extend(_rows(graph, feature))
+            shows += [part.id for part in _all(graph, feature)]
+    compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if t in rows)
+    alias = aliases.make(item.id, item.name, str(item.kind))
+    return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
+
+
+def _title(feature: Element) -> str:
+    if feature.kind is Kind.PROPERTY:
+        return _BY_ROLE.get(feature.role, "attributes")
+    return _BY_KIND.get(feature.kind, "")
+
+
+def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
+    if feature.kind is Kind.OPERATION:
+        return lines(labels.operation(graph, feature), _ROW)
+    if feature.kind is Kind.CONSTRAINT:
+        return lines(labels.condition(feature), _ROW)
+    if feature.kind in (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION):
+        return lines(f"{labels.guillemets(labels.keywords(graph, feature))} {feature.name}", _ROW)
+    if feature.kind is Kind.ENUMERATION_LITERAL:
+        return lines(labels.name(feature), _ROW)
+    words = _feature_words(graph, feature)
+    return lines(" ".join(p for p in (words, labels.feature(graph, feature)) if p), _ROW)
+
+
+def _feature_words(graph: Graph, feature: Element) -> str:
+    """Stereotypes of a feature, except those that its compartment says already."""
+    said = {"flowProperty", "partProperty", "valueProperty", "constraintProperty", "part", "value"}
+    words = labels.keywords(graph, feature) if feature.kind is not Kind.RECEPTION else ("signal",)
+    return labels.guillemets(
+        word for word in words if word not in said and feature.role != "constraint property"
+    )
+
+
+def heading(graph: Graph, item: Element, where: str = "") -> str:
+    """The head of a box: stereotypes, name, and where it comes from when it is foreign."""
+    words = small(plain(labels.guillemets(labels.keywords(graph, item))))
+    mark = "//" if item.attrs.get("abstract") else "**"
+    rows = [f"{mark}{row}{mark}" for row in lines(labels.name(item))]
+    return stack([words, *rows, *(small(row) for row in lines(where, 48))])
+
+
+def stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
+    """The box of something that another diagram defines."""
+    owner = graph.owner(item)
+    where = f"from {graph.qualified_name(owner)}" if owner is not None else ""
+    if item.attrs.get("external"):
+        where = f"in {item.attrs['href']}" if item.attrs.get("href") else "external"
+    alias = aliases.make(item.id, item.name, str(item.kind))
+    return Box(alias, heading(graph, item, where), "elsewhere", shows=(item.id,))
+
+
+def _style(item: Element) -> str:
+    if item.kind in (Kind.DATA_TYPE, Kind.ENUMERATION, Kind.SIGNAL):
+        return "value"
+    return "interface" if item.kind is Kind.INTERFACE or "interface" in item.role else "block"
+
+
+def _all(graph: Graph, feature: Element) -> Iterator[Element]:
+    """The feature, and the parameters that its signature shows."""
+    yield feature
+    if feature.kind is Kind.OPERATION:
+        yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)

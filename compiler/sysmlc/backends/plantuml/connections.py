@@ -1,0 +1,148 @@
+"""Connections inside a block: connectors with their item flows, and item flows between parts."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml.relations import conveyed
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """Where a connection ends: through ``parts`` and ``ports`` to ``port``.
+
+    All are ids, outermost first. Without a port it ends at the last part, without parts at
+    the frame.
+    """
+
+    parts: tuple[str, ...] = ()
+    ports: tuple[str, ...] = ()
+    port: str = ""
+
+    @property
+    def top(self) -> str:
+        """Id of the part of the frame's block that the path leads into, or nothing."""
+        return self.parts[0] if self.parts else ""
+
+    def ids(self) -> tuple[str, ...]:
+        """Everything on the path."""
+        return (*self.parts, *self.ports, *([self.port] if self.port else []))
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """One line of an internal block diagram; ``shows`` are the ids that it stands for."""
+
+    source: Path
+    target: Path
+    arrow: str
+    label: str = ""
+    near: str = ""
+    far: str = ""
+    shows: tuple[str, ...] = ()
+
+    def tops(self) -> set[str]:
+        """Ids of the parts of the frame's block that it connects."""
+        return {end.top for end in (self.source, self.target) if end.top}
+
+
+def connections(graph: Graph, block: Element) -> list[Connection]:
+    """Connectors of the block, and item flows between its own features without a connector."""
+    owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
+    drawn = [made for item in owned if (made := _connector(graph, item)) is not None]
+    return [*drawn, *_free_flows(graph, block)]
+
+
+def _connector(graph: Graph, connector: Element) -> Connection | None:
+    ends = graph.targets(connector, Edge.END)
+    paths = [path for end in ends if (path := _path(graph, end)) is not None]
+    if len(ends) != 2 or len(paths) != 2:
+        return None
+    flows = graph.sources(connector, Edge.REALIZING)
+    ways = [_way(graph, flow, paths[0], paths[1]) for flow in flows]
+    rows = [f"{sign} {conveyed(graph, flow)}" for sign, flow in zip(ways, flows, strict=True)]
+    named = _name(graph, connector)
+    return Connection(
+        paths[0],
+        paths[1],
+        _arrow(connector, ways),
+        "\n".join(row for row in (named, *rows) if row),
+        labels.multiplicity(ends[0]),
+        labels.multiplicity(ends[1]),
+        (connector.id, *(end.id for end in ends), *(flow.id for flow in flows)),
+    )
+
+
+def _path(graph: Graph, end: Element) -> Path | None:
+    role = graph.target(end, Edge.ROLE)
+    if role is None:
+        return None
+    steps = graph.targets(end, Edge.PATH)
+    parts = tuple(step.id for step in steps if not _is_port(step))
+    ports = tuple(step.id for step in steps if _is_port(step))
+    if _is_port(role):
+        return Path(parts, ports, role.id)
+    return Path((*parts, role.id), ports)
+
+
+def _is_port(item: Element) -> bool:
+    return item.kind is Kind.PORT or item.role == "constraint parameter"
+
+
+def _name(graph: Graph, connector: Element) -> str:
+    if connector.role == "binding connector":
+        return "«equal»"
+    type_ = labels.type_name(graph, connector)
+    words = labels.guillemets(labels.applied(graph, connector))
+    text = f"{connector.name} : {type_}".strip() if type_ else connector.name
+    return " ".join(part for part in (words, text) if part)
+
+
+def _arrow(connector: Element, ways: list[str]) -> str:
+    if connector.role == "binding connector":
+        return "-[dashed]-"
+    tail = "<" if "←" in ways else ""
+    tip = ">" if "→" in ways else ""
+    return f"{tail}--{tip}"
+
+
+def _way(graph: Graph, flow: Element, first: Path, second: Path) -> str:
+    """``→`` when the flow runs from the first end to the second, ``←`` back, else ``↔``."""
+    sources = {item.id for item in graph.targets(flow, Edge.FLOW_SOURCE)}
+    targets = {item.id for item in graph.targets(flow, Edge.FLOW_TARGET)}
+    forward = _fits(graph, first, sources) + _fits(graph, second, targets)
+    back = _fits(graph, second, sources) + _fits(graph, first, targets)
+    if forward == back:
+        return "↔"
+    return "→" if forward > back else "←"
+
+
+def _fits(graph: Graph, path: Path, named: set[str]) -> int:
+    """2 if the flow names something on the path, 1 if it names a type of something there."""
+    if named & set(path.ids()):
+        return 2
+    steps = [graph[id] for id in path.ids()]
+    types = {type_.id for step in steps for type_ in graph.targets(step, Edge.TYPED_BY)}
+    return 1 if named & types else 0
+
+
+def _free_flows(graph: Graph, block: Element) -> Iterator[Connection]:
+    """Item flows that no connector realises, between two features of this block."""
+    own = {item.id: item for item in graph.owned(block)}
+    for flow in graph.of_kind(Kind.ITEM_FLOW):
+        if graph.targets(flow, Edge.REALIZING):
+            continue
+        for source in graph.targets(flow, Edge.FLOW_SOURCE):
+            for target in graph.targets(flow, Edge.FLOW_TARGET):
+                if source.id in own and target.id in own:
+                    yield _free_flow(graph, flow, source, target)
+
+
+def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:
+    text = f"«flow» {conveyed(graph, flow)}"
+    return Connection(_direct(source), _direct(target), "..>", text, shows=(flow.id,))
+
+
+def _direct(feature: Element) -> Path:
+    return Path(port=feature.id) if _is_port(feature) else Path((feature.id,))

@@ -1,0 +1,229 @@
+"""Internal block diagrams: one for each block with connectors or item flows between its parts."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.connections import Connection, Path, connections
+from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
+from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+_FORMS = {"in": "portin", "out": "portout"}
+_CLASSES = (Kind.CLASS, Kind.COMPONENT)
+_DRAWN_ROLES = frozenset(["part", "reference", "constraint property", "constraint parameter"])
+_PORT_WIDTH = 24
+
+
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All internal block diagrams, in the order of the model."""
+    for block in graph.of_kind(*_CLASSES):
+        found = connections(graph, block)
+        if found:
+            yield from _of_block(graph, block, found)
+
+
+def _of_block(graph: Graph, block: Element, found: list[Connection]) -> Iterator[Diagram]:
+    whole = graph.qualified_name(block)
+    parts = _divided(graph, block, found)
+    for index, (shown, inside) in enumerate(parts):
+        drawing = _Drawing(graph, block, shown, inside)
+        yield Diagram(
+            kind="ibd",
+            name=split.numbered(whole, index, len(parts)),
+            frame=plain(f"ibd [block] {labels.name(block)}"),
+            heading=("Internal block diagram", whole),
+            view=drawing.view(),
+            about=block.id,
+            footer=plain(split.footer(index, len(parts), whole)),
+        )
+
+
+def _divided(
+    graph: Graph, block: Element, found: list[Connection]
+) -> list[tuple[list[Element], list[Connection]]]:
+    """Parts that are drawn together, and the connections that leave none of them out.
+
+    A connection between two groups is drawn in both; the foreign part is a neighbour there.
+    """
+    tops = _top_parts(graph, block, found)
+    near: dict[str, list[str]] = {part.id: [] for part in tops}
+    for connection in found:
+        one, other = connection.source.top, connection.target.top
+        if one in near and other in near and one != other:
+            near[one].append(other)
+            near[other].append(one)
+    sizes = {part.id: 1 + _nested_count(part.id, found) for part in tops}
+    groups = split.chunks([part.id for part in tops], near, sizes=sizes) or [[]]
+    if len(groups) == 1:
+        return [(tops, found)]
+    return [_group(graph, set(group), tops, found, index) for index, group in enumerate(groups)]
+
+
+def _group(
+    graph: Graph, group: set[str], tops: list[Element], found: list[Connection], index: int
+) -> tuple[list[Element], list[Connection]]:
+    """One group; what connects the frame with itself stands in the first."""
+    inside = [c for c in found if c.tops() & group or (not c.tops() and index == 0)]
+    near = {top for connection in inside for top in connection.tops()} | group
+    return [part for part in tops if part.id in near], inside
+
+
+def _nested_count(top: str, found: list[Connection]) -> int:
+    paths = (end for connection in found for end in (connection.source, connection.target))
+    return len({path.parts for path in paths if path.top == top and len(path.parts) > 1})
+
+
+def _top_parts(graph: Graph, block: Element, found: list[Connection]) -> list[Element]:
+    """Parts and references of the block, with inherited and foreign ones that connectors name."""
+    own = [item for item in graph.owned(block) if item.kind is Kind.PROPERTY]
+    named = [end.top for c in found for end in (c.source, c.target) if end.top]
+    wanted = [item for item in own if item.role in _DRAWN_ROLES - {"constraint parameter"}]
+    ids = dict.fromkeys([*(item.id for item in wanted), *named])
+    return [graph[id] for id in ids]
+
+
+@dataclass(slots=True)
+class _Drawing:
+    """One internal block diagram in the making."""
+
+    graph: Graph
+    block: Element
+    tops: list[Element]
+    connections: list[Connection]
+    aliases: Aliases = field(default_factory=Aliases)
+    has_ports: bool = False
+
+    def view(self) -> InternalView:
+        parts = tuple(self._part((part.id,), part) for part in self.tops)
+        words = labels.guillemets(labels.keywords(self.graph, self.block))
+        frame = PartView(
+            self.aliases.make("frame", self.block.name, "block"),
+            stack([small(plain(words)), label(labels.name(self.block))]),
+            "frame",
+            tuple(self._ports((), self.block)),
+            parts,
+            (self.block.id,),
+        )
+        drawn = tuple(self._line(connection) for connection in self.connections)
+        return InternalView(frame, drawn, self.has_ports, tuple(guides(frame)))
+
+    def _part(self, path: tuple[str, ...], part: Element) -> PartView:
+        alias = self.aliases.make(_key(path), part.name, "part")
+        inner = tuple(self._part((*path, item.id), item) for item in self._inner(path))
+        type_ = self.graph.target(part, Edge.TYPED_BY)
+        return PartView(
+            alias,
+            stack([small(plain(self._words(part))), label(labels.typed(self.graph, part))]),
+            _style(part),
+            tuple(self._ports(path, type_)),
+            inner,
+            (part.id,),
+        )
+
+    def _words(self, part: Element) -> str:
+        words = labels.applied(self.graph, part)
+        kept = [word for word in words if word not in ("partProperty", "referenceProperty")]
+        if not kept and part.role == "constraint property":
+            kept = ["constraint"]
+        return labels.guillemets(kept)
+
+    def _inner(self, path: tuple[str, ...]) -> list[Element]:
+        """Parts inside the part at ``path`` that a connection names, in order of first use."""
+        found: dict[str, None] = {}
+        for connection in self.connections:
+            for end in (connection.source, connection.target):
+                if len(end.parts) > len(path) and end.parts[: len(path)] == path:
+                    found[end.parts[len(path)]] = None
+        return [self.graph[id] for id in found]
+
+    def _ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
+        """All ports of the part's type, inherited ones too, and what connections name there."""
+        every = [port.id for port in _ports_of(self.graph, owner)] if owner is not None else []
+        ends = [(end.port,) for end in self._ends(path) if end.port]
+        keys = dict.fromkeys([*((id,) for id in every), *ends, *self._nested_ports(path)])
+        for key in keys:
+            yield self._port(path, key)
+
+    def _ends(self, path: tuple[str, ...]) -> Iterator[Path]:
+        for connection in self.connections:
+            for end in (connection.source, connection.target):
+                if end.parts == path and not end.ports:
+                    yield end
+
+    def _nested_ports(self, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+        for connection in self.connections:
+            for end in (connection.source, connection.target):
+                if end.parts == path and end.ports:
+                    yield (*end.ports, end.port)
+
+    def _port(self, path: tuple[str, ...], key: tuple[str, ...]) -> PortView:
+        port = self.graph[key[-1]]
+        self.has_ports = True
+        shown = ".".join(labels.name(self.graph[id]) for id in key)
+        alias = self.aliases.make(_key((*path, *key)), port.name, "port")
+        text = shown if port.name else labels.typed(self.graph, port)
+        form = _FORMS.get(str(port.attrs.get("direction", "")), "port")
+        rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
+        return PortView(alias, stack(rows), form, key)
+
+    def _line(self, connection: Connection) -> Line:
+        return Line(
+            self._end(connection.source),
+            connection.arrow,
+            self._end(connection.target),
+            keyword_label(connection.label),
+            label(connection.near),
+            label(connection.far),
+            connection.shows,
+        )
+
+    def _end(self, path: Path) -> str:
+        key = (*path.parts, *path.ports, path.port) if path.port else path.parts
+        return self.aliases[_key(key) if key else "frame"]
+
+
+def guides(part: PartView) -> Iterator[Line]:
+    """Invisible lines that keep ports on the border: dot ranks what is inside between them.
+
+    PlantUML puts the ports of a side on one rank, so that the first of each side is enough.
+    """
+    entry = next((port.alias for port in part.ports if port.form != "portout"), None)
+    exit_ = next((port.alias for port in part.ports if port.form == "portout"), None)
+    for inner in part.parts:
+        anchor = inner.ports[0].alias if inner.ports else inner.alias
+        if entry is not None:
+            yield Line(entry, "-[hidden]->", anchor)
+        if exit_ is not None:
+            yield Line(anchor, "-[hidden]---->", exit_)
+        yield from guides(inner)
+
+
+def _key(path: tuple[str, ...]) -> str:
+    return "\x1f".join(("part", *path))
+
+
+def _style(part: Element) -> str:
+    if part.role == "constraint property":
+        return "law"
+    shared = part.role == "reference" or part.attrs.get("aggregation") in (None, "shared")
+    return "reference" if shared and part.role != "part" else "part"
+
+
+def _ports_of(graph: Graph, classifier: Element) -> list[Element]:
+    """Ports of a classifier and of what it specialises; a redefined port does not count."""
+    found: dict[str, Element] = {}
+    seen: dict[str, None] = {}
+    queue = [classifier]
+    for type_ in queue:
+        if type_.id not in seen:
+            seen[type_.id] = None
+            found |= {p.id: p for p in graph.owned(type_) if _is_port(p)}
+            queue.extend(graph.targets(type_, Edge.SPECIALIZES))
+    gone = {old.id for port in found.values() for old in graph.targets(port, Edge.REDEFINES)}
+    return [port for port in found.values() if port.id not in gone]
+
+
+def _is_port(item: Element) -> bool:
+    return item.kind is Kind.PORT or item.role == "constraint parameter"

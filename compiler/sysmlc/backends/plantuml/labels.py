@@ -1,0 +1,155 @@
+"""How one element reads in a diagram, in UML notation (UML 2.5.1, clauses 9 and 11)."""
+
+from collections.abc import Iterable
+
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+_ROLE_WORDS = {
+    "block": "block",
+    "interface block": "interfaceBlock",
+    "constraint block": "constraint",
+    "value type": "valueType",
+    "requirement": "requirement",
+    "test case": "testCase",
+    "full port": "full",
+    "proxy port": "proxy",
+    "flow port": "flowPort",
+    "constraint property": "constraint",
+}
+_KIND_WORDS = {
+    Kind.INTERFACE: "interface",
+    Kind.COMPONENT: "component",
+    Kind.DATA_TYPE: "dataType",
+    Kind.ENUMERATION: "enumeration",
+    Kind.SIGNAL: "signal",
+    Kind.ACTOR: "actor",
+    Kind.ITEM: "item",
+    Kind.UNIT: "unit",
+    Kind.QUANTITY_KIND: "quantityKind",
+    Kind.INSTANCE: "instance",
+    Kind.REQUIREMENT: "requirement",
+    Kind.TEST_CASE: "testCase",
+    Kind.ACTIVITY: "activity",
+    Kind.STATE_MACHINE: "stateMachine",
+    Kind.USE_CASE: "useCase",
+    Kind.PACKAGE: "package",
+}
+
+
+def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
+    """Stereotypes as the model has them, else the word for the role, else for the kind."""
+    found = applied(graph, element)
+    by_kind = _KIND_WORDS.get(element.kind, "")
+    if found:
+        return (by_kind, *found) if element.kind in _ALWAYS_NAMED else found
+    word = _ROLE_WORDS.get(element.role, "") or by_kind
+    return (word,) if word else ()
+
+
+def applied(graph: Graph, element: Element) -> tuple[str, ...]:
+    """Names of the stereotypes that are applied to the element."""
+    found = (item for item in graph.owned(element) if item.kind is Kind.APPLICATION)
+    names = (_lower_first(str(item.attrs.get("stereotype", item.name))) for item in found)
+    return tuple(dict.fromkeys(name for name in names if name))
+
+
+_ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])
+
+
+def guillemets(words: Iterable[str]) -> str:
+    """``«a, b»``, or nothing."""
+    text = ", ".join(words)
+    return f"«{text}»" if text else ""
+
+
+def name(element: Element) -> str:
+    """The element's name, or its kind when it has none."""
+    return element.name or str(element.attrs.get("subkind") or element.kind)
+
+
+def type_name(graph: Graph, element: Element) -> str:
+    """Name of the element's type; a conjugated port shows ``~``."""
+    names = [name(type_) for type_ in graph.targets(element, Edge.TYPED_BY)]
+    return ("~" if element.attrs.get("conjugated") else "") + ", ".join(names) if names else ""
+
+
+def multiplicity(element: Element) -> str:
+    """``0..1``, or nothing for exactly one."""
+    value = element.attrs.get("multiplicity")
+    return "" if value is None else str(value)
+
+
+def typed(graph: Graph, element: Element, shown: str | None = None) -> str:
+    """``name : Type [multiplicity]``."""
+    own = element.name if shown is None else shown
+    type_ = type_name(graph, element)
+    text = f"{own} : {type_}".strip() if type_ else own or name(element)
+    bounds = multiplicity(element)
+    return f"{text} [{bounds}]" if bounds else text
+
+
+def feature(graph: Graph, element: Element) -> str:
+    """A property, port or parameter: ``/in name : Type [1..2] = 5 {ordered, redefines x}``."""
+    direction = element.attrs.get("direction")
+    slash = "/" if element.attrs.get("derived") else ""
+    value = element.attrs.get("default")
+    parts = [
+        _visibility(element),
+        f"{direction} " if direction else "",
+        slash + typed(graph, element),
+        "" if value is None else f" = {literal(value)}",
+        _modifiers(graph, element),
+    ]
+    return "".join(parts)
+
+
+def literal(value: object) -> str:
+    """A value in model notation: booleans in lower case, lists in braces."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return "{" + ", ".join(literal(item) for item in value) + "}"
+    return str(value)
+
+
+def operation(graph: Graph, element: Element) -> str:
+    """``name(in a : T) : R``."""
+    text = f"{_visibility(element)}{name(element)}{signature(graph, element) or '()'}"
+    return text + (" {abstract}" if element.attrs.get("abstract") else "")
+
+
+def signature(graph: Graph, element: Element) -> str:
+    """``(in a : T) : R`` of an operation or behaviour; nothing when it has no parameters."""
+    parameters = [item for item in graph.owned(element) if item.kind is Kind.PARAMETER]
+    taken = [feature(graph, p) for p in parameters if p.attrs.get("direction") != "return"]
+    text = f"({', '.join(taken)})" if parameters else ""
+    for result in parameters:
+        if result.attrs.get("direction") == "return":
+            shown = typed(graph, result)
+            text += f" {shown}" if shown.startswith(":") else f" : {shown}"
+    return text
+
+
+def condition(element: Element) -> str:
+    """``{name: body}`` of a constraint."""
+    body = str(element.attrs.get("body", ""))
+    inner = ": ".join(part for part in (element.name, body) if part)
+    return "{" + inner + "}"
+
+
+def _visibility(element: Element) -> str:
+    signs = {"private": "-", "protected": "#", "package": "~"}
+    return signs.get(str(element.attrs.get("visibility", "")), "")
+
+
+def _modifiers(graph: Graph, element: Element) -> str:
+    words = [word for word in ("ordered", "readonly", "static") if element.attrs.get(word)]
+    words += ["nonunique"] if element.attrs.get("unique") is False else []
+    for edge, verb in ((Edge.REDEFINES, "redefines"), (Edge.SUBSETS, "subsets")):
+        words += [f"{verb} {name(target)}" for target in graph.targets(element, edge)]
+    return " {" + ", ".join(words) + "}" if words else ""
+
+
+def _lower_first(text: str) -> str:
+    """``ValueType`` as SysML prints it, ``valueType``; abbreviations (``SD_DD``) stay."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text

@@ -1,0 +1,114 @@
+"""What no diagram shows: one finding for each owner and kind."""
+
+from collections.abc import Iterable
+
+from sysmlc.backends.plantuml.views import Diagram
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Element, Graph, Kind
+
+NOT_DRAWN = rule(
+    "SM701",
+    "in-no-diagram",
+    Severity.INFO,
+    "{count} {kind} of '{owner}' in no diagram: {names}",
+    why="The diagrams show structure, behaviour and requirements; some kinds have no place in "
+    "them, and a connection without both ends has none either.",
+    help="The element is still in the graph (--emit graph) and in the other outputs.",
+    wrong='Package p "Plant"\n  UseCase u "Start the line"',
+    right='Package p "Plant"\n  Class b "Line" role="block"',
+)
+
+DRAWN_KINDS = (
+    Kind.CLASS,
+    Kind.COMPONENT,
+    Kind.INTERFACE,
+    Kind.DATA_TYPE,
+    Kind.ENUMERATION,
+    Kind.ENUMERATION_LITERAL,
+    Kind.SIGNAL,
+    Kind.ACTOR,
+    Kind.ITEM,
+    Kind.ASSOCIATION,
+    Kind.PROPERTY,
+    Kind.PORT,
+    Kind.FLOW_PROPERTY,
+    Kind.OPERATION,
+    Kind.RECEPTION,
+    Kind.PARAMETER,
+    Kind.CONSTRAINT,
+    Kind.CONNECTOR,
+    Kind.CONNECTOR_END,
+    Kind.ITEM_FLOW,
+    Kind.DEPENDENCY,
+    Kind.REQUIREMENT,
+    Kind.TEST_CASE,
+    Kind.ACTIVITY,
+    Kind.ACTION,
+    Kind.STRUCTURED,
+    Kind.PIN,
+    Kind.ACTIVITY_PARAMETER,
+    Kind.OBJECT_NODE,
+    Kind.DATA_STORE,
+    Kind.CONTROL,
+    Kind.CONTROL_FLOW,
+    Kind.OBJECT_FLOW,
+    Kind.PARTITION,
+    Kind.STATE_MACHINE,
+    Kind.REGION,
+    Kind.STATE,
+    Kind.PSEUDOSTATE,
+    Kind.FINAL_STATE,
+    Kind.TRANSITION,
+    Kind.TRIGGER,
+)
+"""Kinds that have a place in the diagrams."""
+
+OTHER_KINDS = (
+    Kind.UNIT,
+    Kind.QUANTITY_KIND,
+    Kind.INSTANCE,
+    Kind.USE_CASE,
+    Kind.VIEW,
+    Kind.INTERACTION,
+    Kind.STEREOTYPE,
+    Kind.DOCUMENT,
+)
+"""Kinds with a meaning of their own that no diagram has a place for."""
+
+_NAMES_SHOWN = 3
+
+
+def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
+    """Report every element of the model that is in none of the diagrams.
+
+    What stands inside an element that is reported is not reported again.
+    """
+    shown = {id for diagram in found for id in diagram.trace()}
+    missed = [item for item in graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS) if _is_ours(item)]
+    missed = [item for item in missed if item.id not in shown]
+    gone = {item.id for item in missed}
+    groups: dict[tuple[str, Kind], list[Element]] = {}
+    for item in missed:
+        if not any(above.id in gone for above in graph.ancestors(item)):
+            groups.setdefault((item.owner or "", item.kind), []).append(item)
+    for (owner, kind), items in groups.items():
+        _report(graph, graph.get(owner), kind, items, sink)
+
+
+def _is_ours(item: Element) -> bool:
+    return not item.attrs.get("external")
+
+
+def _report(
+    graph: Graph, owner: Element | None, kind: Kind, items: list[Element], sink: Sink
+) -> None:
+    names = [item.name or f"<{item.kind}>" for item in items[:_NAMES_SHOWN]]
+    names += ["..."] if len(items) > _NAMES_SHOWN else []
+    sink.report(
+        NOT_DRAWN,
+        graph.subject(items[0]),
+        count=len(items),
+        kind=kind if len(items) == 1 else f"{kind} elements",
+        owner=graph.qualified_name(owner) if owner is not None else "the model",
+        names=", ".join(names),
+    )

@@ -1,0 +1,131 @@
+"""Relations between classifiers, as lines of a block definition diagram."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.backends.plantuml import labels
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+_SHAPES = {"composite": "*", "shared": "o"}
+_DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}
+REQUIREMENT_ROLES = frozenset(["satisfy", "derive", "verify", "refine", "trace", "copy"])
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A line from ``source`` to ``target`` (ids of classifiers).
+
+    ``shows`` are the ids of the elements that the line stands for; properties among them are
+    not repeated in compartments.
+    """
+
+    source: str
+    target: str
+    arrow: str
+    label: str = ""
+    near: str = ""
+    far: str = ""
+    shows: tuple[str, ...] = ()
+
+
+def relations(graph: Graph) -> list[Relation]:
+    """All relations between classifiers that are elements or edges of their own."""
+    return [
+        *_generalizations(graph),
+        *_associations(graph),
+        *_dependencies(graph),
+        *_flows(graph),
+    ]
+
+
+def _generalizations(graph: Graph) -> Iterator[Relation]:
+    represented = {
+        (client.id, supplier.id)
+        for item in graph.of_kind(Kind.DEPENDENCY)
+        for client in graph.targets(item, Edge.CLIENT)
+        for supplier in graph.targets(item, Edge.SUPPLIER)
+    }
+    for _, source, target in graph.edges(Edge.SPECIALIZES):
+        yield Relation(source, target, "--|>")
+    for _, source, target in graph.edges(Edge.REALIZES):
+        if (source, target) not in represented:
+            yield Relation(source, target, "..|>")
+
+
+def _associations(graph: Graph) -> Iterator[Relation]:
+    for association in graph.of_kind(Kind.ASSOCIATION):
+        ends = graph.targets(association, Edge.END)
+        types = [graph.target(end, Edge.TYPED_BY) for end in ends]
+        if len(ends) == 2 and types[0] is not None and types[1] is not None:
+            yield _association(graph, association, ends, (types[0], types[1]))
+
+
+def _association(
+    graph: Graph, association: Element, ends: list[Element], types: tuple[Element, Element]
+) -> Relation:
+    """The line starts at the whole; an end stands at the classifier that is its type."""
+    first, second = 0, 1
+    if ends[0].attrs.get("aggregation") in _SHAPES or _is_navigable(association, ends[0]):
+        first, second = 1, 0
+    if ends[second].attrs.get("aggregation") not in _SHAPES and (
+        ends[first].attrs.get("aggregation") in _SHAPES
+    ):
+        first, second = second, first
+    whole = _SHAPES.get(str(ends[second].attrs.get("aggregation")), "")
+    back = _SHAPES.get(str(ends[first].attrs.get("aggregation")), "")
+    tip = ">" if _is_navigable(association, ends[second]) else ""
+    tail = "<" if not whole and _is_navigable(association, ends[first]) else ""
+    if tip and tail:
+        tip = tail = ""
+    return Relation(
+        types[first].id,
+        types[second].id,
+        f"{whole or tail}--{back or tip}",
+        association.name,
+        _end(ends[first]),
+        _end(ends[second]),
+        (association.id, *(end.id for end in ends)),
+    )
+
+
+def _is_navigable(association: Element, end: Element) -> bool:
+    return end.owner != association.id
+
+
+def _end(end: Element) -> str:
+    return " ".join(part for part in (end.name, labels.multiplicity(end)) if part)
+
+
+def _dependencies(graph: Graph) -> Iterator[Relation]:
+    for item in graph.of_kind(Kind.DEPENDENCY):
+        if item.role in REQUIREMENT_ROLES:
+            continue
+        arrow = "..|>" if item.subkind in ("realization", "interface-realization") else "..>"
+        word = "" if arrow == "..|>" else _dependency_word(graph, item)
+        for client in graph.targets(item, Edge.CLIENT):
+            for supplier in graph.targets(item, Edge.SUPPLIER):
+                text = " ".join(part for part in (word, item.name) if part)
+                yield Relation(client.id, supplier.id, arrow, text, shows=(item.id,))
+
+
+def _dependency_word(graph: Graph, item: Element) -> str:
+    applied = labels.keywords(graph, item)
+    word = _DEPENDENCY_WORDS.get(item.role) or _DEPENDENCY_WORDS.get(item.subkind, "")
+    return labels.guillemets(applied or ([word] if word else []))
+
+
+def _flows(graph: Graph) -> Iterator[Relation]:
+    """Item flows drawn between classifiers, not over a connector."""
+    for item in graph.of_kind(Kind.ITEM_FLOW):
+        for source in graph.targets(item, Edge.FLOW_SOURCE):
+            for target in graph.targets(item, Edge.FLOW_TARGET):
+                text = f"«flow» {conveyed(graph, item)}"
+                yield Relation(source.id, target.id, "..>", text, shows=(item.id,))
+
+
+def conveyed(graph: Graph, flow: Element) -> str:
+    """Name of an item flow and what it conveys: ``pallet : Pallet``."""
+    names = ", ".join(labels.name(item) for item in graph.targets(flow, Edge.CONVEYS))
+    if flow.name and names:
+        return f"{flow.name} : {names}"
+    return names or flow.name

@@ -1,0 +1,170 @@
+"""View models: what the templates see. Every text in them is PlantUML text, already escaped."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Compartment:
+    """Titled rows of a box."""
+
+    title: str
+    rows: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A classifier or a requirement."""
+
+    alias: str
+    label: str
+    style: str
+    compartments: tuple[Compartment, ...] = ()
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A relation: ``source "near" arrow "far" target : label``."""
+
+    source: str
+    arrow: str
+    target: str
+    label: str = ""
+    near: str = ""
+    far: str = ""
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class BoxView:
+    """Boxes and lines: block definition and requirement diagrams."""
+
+    boxes: tuple[Box, ...]
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A state, an activity node or a group of them.
+
+    ``shape`` is the word by which PlantUML knows a special form (``choice``, ``fork``), or the
+    style of a box. ``rows`` stand below the name, ``note`` beside the node; ``tint`` is the style
+    of its partition.
+    """
+
+    alias: str
+    label: str
+    shape: str
+    rows: tuple[str, ...] = ()
+    children: tuple["Node", ...] = ()
+    note: str = ""
+    shows: tuple[str, ...] = ()
+    tint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Text in a corner of its own, tied to the nodes with the aliases in ``targets``."""
+
+    alias: str
+    text: str
+    targets: tuple[str, ...] = ()
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class GraphView:
+    """Nodes and lines: activities and state machines."""
+
+    nodes: tuple[Node, ...]
+    lines: tuple[Line, ...]
+    notes: tuple[Note, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PortView:
+    """A port on the border of a part; ``form`` is ``portin``, ``portout`` or ``port``."""
+
+    alias: str
+    label: str
+    form: str
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PartView:
+    """A part with its ports and what is shown inside."""
+
+    alias: str
+    label: str
+    style: str
+    ports: tuple[PortView, ...] = ()
+    parts: tuple["PartView", ...] = ()
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class InternalView:
+    """Parts in their frame: internal block diagrams. ``guides`` are invisible, for the layout."""
+
+    frame: PartView
+    lines: tuple[Line, ...]
+    has_ports: bool
+    guides: tuple[Line, ...] = ()
+
+
+View = BoxView | GraphView | InternalView
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """One diagram: what it is called, what it shows, and the element that it is about.
+
+    ``kind`` is the word of its file name and template (bdd, ibd, act, stm, req), ``name`` the
+    qualified name that makes its file name, ``about`` the id of the element, ``details`` those
+    of what the frame says of it.
+    """
+
+    kind: str
+    name: str
+    frame: str
+    heading: tuple[str, str]
+    view: View
+    about: str = ""
+    footer: str = ""
+    details: tuple[str, ...] = ()
+
+    def trace(self) -> tuple[str, ...]:
+        """Ids of everything that the diagram shows, each once."""
+        ids = [self.about, *self.details] if self.about else []
+        return tuple(dict.fromkeys([*ids, *_shown(self.view)]))
+
+
+def _shown(view: View) -> Iterator[str]:
+    for line in view.lines:
+        yield from line.shows
+    if isinstance(view, BoxView):
+        for box in view.boxes:
+            yield from box.shows
+    elif isinstance(view, GraphView):
+        for node in view.nodes:
+            yield from _shown_by_node(node)
+        for note in view.notes:
+            yield from note.shows
+    else:
+        yield from _shown_by_part(view.frame)
+
+
+def _shown_by_node(node: Node) -> Iterator[str]:
+    yield from node.shows
+    for child in node.children:
+        yield from _shown_by_node(child)
+
+
+def _shown_by_part(part: PartView) -> Iterator[str]:
+    yield from part.shows
+    for port in part.ports:
+        yield from port.shows
+    for inner in part.parts:
+        yield from _shown_by_part(inner)
