@@ -147,7 +147,7 @@ class _Answers:
 
 
 def _canonical(use: _Use) -> str:
-    name = primitive(use.target, use.path)
+    name = primitive(use.target, use.path, use.kind)
     return PRIMITIVE_TYPES + name if name else use.target
 
 

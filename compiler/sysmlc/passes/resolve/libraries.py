@@ -18,7 +18,6 @@ _STANDARD = re.compile(
     """,
     re.VERBOSE,
 )
-_PRIMITIVE_FILE = re.compile(r"Primitive(Value)?Types|::datatypes::|/UML\.xmi$")
 _ALIASES = {
     "bool": "Boolean",
     "boolean": "Boolean",
@@ -58,14 +57,13 @@ def is_standard(library: str) -> bool:
     return _STANDARD.match(unquote(library)) is not None
 
 
-def primitive(href: str, path: str) -> str:
+def primitive(href: str, path: str, kind: Kind) -> str:
     """UML primitive that an href leads to, or the empty string.
 
-    ``path`` is the qualified name of the target when the source gives it (MagicDraw's
-    referentPath). The primitive value types of SysML count as UML's, those of Ecore and Java
-    as the nearest one.
+    ``path`` and ``kind`` are what the source says of the target. The primitive value types of
+    SysML count as UML's, those of Ecore and Java as the nearest one.
     """
-    if not (_PRIMITIVE_FILE.search(unquote(href)) or _PRIMITIVE_FILE.search(path)):
+    if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split(href)[0]):
         return ""
     return _ALIASES.get(name_of(href, path).lower(), "")
 

@@ -57,8 +57,8 @@ class Targets:
         """Files of the unit that ``library``, as ``file`` names it, can mean."""
         plain = unquote(library)
         named = self._files.get(_basename(plain), set())
-        path = posixpath.normpath(posixpath.join(posixpath.dirname(file), plain))
-        exact = [name for name in named if name.partition("!")[0] == path]
+        beside = posixpath.normpath(posixpath.join(posixpath.dirname(file), plain))
+        exact = [name for name in named if name.partition("!")[0] in (beside, plain)]
         return tuple(sorted(exact or named))
 
     def _in(self, fragment: str, files: tuple[str, ...]) -> Element | None:

@@ -1,0 +1,41 @@
+"""Each rule of the structural passes: a model that has the fault, and one that nearly has it."""
+
+import pytest
+from passing import STRUCTURAL, codes, refined
+
+from sysmlc.diagnostics import catalogue
+from sysmlc.passes import pipeline
+
+for name in STRUCTURAL:
+    pipeline.load(name)
+
+MODULES = {
+    "resolve": range(150, 170),
+    "inherit": range(200, 210),
+    "classify": range(210, 260),
+    "ports": range(300, 310),
+    "flows": range(310, 350),
+    "behaviours": range(400, 410),
+}
+RULES = [
+    (pass_name, rule)
+    for rule in catalogue().values()
+    for pass_name, numbers in MODULES.items()
+    if int(rule.code[2:]) in numbers
+]
+
+
+@pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
+def test_rule_reports_its_wrong_model_and_not_its_right_one(pass_name, rule):
+    assert rule.code in codes(refined(rule.wrong, pass_name)[1])
+    assert rule.code not in codes(refined(rule.right, pass_name)[1])
+
+
+@pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
+def test_right_model_is_right_in_every_way(pass_name, rule):
+    found = [one for one in refined(rule.right, pass_name)[1] if one.severity != "info"]
+    assert found == []
+
+
+def test_there_are_rules():
+    assert {pass_name for pass_name, _ in RULES} == set(STRUCTURAL)
