@@ -79,8 +79,8 @@ def _complete(graph: TokenGraph, state: State, region: str) -> bool:
     if any(edge.id in state.tokens for edge in graph.ends(region)):
         return True
     edges, nodes = graph.inside(region)
-    left = [e for e in edges if e.id in state.tokens] or [n for n in nodes if n.id in state.running]
-    return not left
+    has_token = any(edge.id in state.tokens for edge in edges)
+    return not has_token and not any(node.id in state.running for node in nodes)
 
 
 class _Step:

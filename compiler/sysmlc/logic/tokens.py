@@ -89,7 +89,8 @@ class TokenNode:
     """One node; ``label`` is what the modeller calls it ("action 'read id'").
 
     ``region`` is the id of the structured node that owns it. ``run`` is the variable that says
-    that it runs, ``done`` the condition on inputs that ends a timed action.
+    that it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
+    of a decision whose guards never hold together.
     """
 
     id: str
@@ -100,6 +101,7 @@ class TokenNode:
     duration: Duration = Duration.TIMED
     run: str = ""
     done: Formula | None = None
+    exclusive: bool = False
 
     @property
     def firing(self) -> Firing:
@@ -150,6 +152,7 @@ class TokenGraph:
 
     ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand
     for an event or the end of an action; the others keep their value until they are changed.
+    ``finishes`` is false when no run can end.
     """
 
     activity: str
@@ -160,6 +163,7 @@ class TokenGraph:
     inputs: tuple[Variable, ...] = ()
     pulses: tuple[str, ...] = ()
     interruptibles: tuple[Interruptible, ...] = ()
+    finishes: bool = True
 
     @cached_property
     def _nodes(self) -> dict[str, TokenNode]:
@@ -208,12 +212,17 @@ class TokenGraph:
             region = node.region
 
     def can_empty(self, region: str) -> bool:
-        """Whether a token may vanish in the region, so that it may end by being empty."""
+        """Whether the region may end because no token is left in it.
+
+        Not when every node passes its tokens on to the final node.
+        """
+        if not self.ends(region) or not any(e.marked for e in self.edges if e.region == region):
+            return True
         return any(
             not self._outgoing[node.id]
             for node in self.nodes
             if node.region == region and node.firing not in (Firing.END, Firing.NEVER)
-        ) or not any(node.firing is Firing.END and node.region == region for node in self.nodes)
+        )
 
     def ends(self, region: str) -> list[TokenEdge]:
         """Edges whose token ends the region."""

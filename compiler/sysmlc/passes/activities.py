@@ -1,0 +1,62 @@
+"""The pass ``activities``: every activity becomes a token graph, or a rule says why not.
+
+It assumes that names are resolved and roles found; it then guarantees that each stored token
+graph is 1-safe and that every node and flow that is left out has been reported. The graph itself
+stays as it is.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.logic.tokens import TokenGraph
+from sysmlc.passes import activity_checks, activity_drawing, activity_tokens
+from sysmlc.passes import activity_rules as rules
+from sysmlc.passes.activity_collapse import collapse
+from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_inputs import Inputs
+
+
+@dataclass(frozen=True, slots=True)
+class Activities:
+    """Makes token graphs.
+
+    ``max_markings`` bounds the search for a second token on a flow; activities with more than
+    ``collapse_over`` edges lose the control nodes that only pass tokens on.
+    """
+
+    max_markings: int = 20_000
+    collapse_over: int = 40
+
+    name: ClassVar[str] = "activities"
+    after: ClassVar[tuple[str, ...]] = ("classify", "flows")
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Store a TokenGraph for each activity that can be played."""
+        graph.store(TokenGraph, self._token_graphs(graph, sink))
+
+    def _token_graphs(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
+        for activity in graph.of_kind(Kind.ACTIVITY):
+            if _is_drawn_elsewhere(activity):
+                continue
+            try:
+                yield self._token_graph(graph, activity, sink)
+            except activity_drawing.CannotPlayError:
+                continue
+
+    def _token_graph(self, graph: Graph, activity: Element, sink: Sink) -> TokenGraph:
+        drawing = activity_drawing.read(graph, activity, sink)
+        if not drawing.nodes:
+            sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
+            raise activity_drawing.CannotPlayError
+        inputs = Inputs(graph, Scope(graph, activity, sink), sink)
+        tokens = activity_tokens.build(graph, drawing, inputs, sink)
+        checked = activity_checks.check(graph, tokens, self.max_markings, sink)
+        return collapse(checked) if len(checked.edges) > self.collapse_over else checked
+
+
+def _is_drawn_elsewhere(activity: Element) -> bool:
+    """An opaque behaviour has a body instead of a drawing; a stub stands for another file."""
+    return activity.subkind in ("opaque", "function") or activity.attrs.get("external") is True

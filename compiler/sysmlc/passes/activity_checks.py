@@ -1,0 +1,216 @@
+"""Checks of a token graph: starts, reachability, guards, and one token a flow."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.logic import domains, evaluate, token_net
+from sysmlc.logic import formula as f
+from sysmlc.logic.formula import Formula, variables
+from sysmlc.logic.tokens import (
+    ACTIVITY_REGION,
+    Firing,
+    NodeKind,
+    TokenEdge,
+    TokenGraph,
+    TokenNode,
+)
+from sysmlc.passes import activity_rules as rules
+from sysmlc.passes.activity_drawing import CannotPlayError
+
+_MOST_VALUATIONS = 20_000
+"""Guards over more valuations than this are taken as neither exclusive nor exhaustive."""
+
+
+def check(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGraph:
+    """The token graph with what the checks found out; reports what is wrong with it.
+
+    Raises CannotPlayError when it can't start or is not shown to be 1-safe.
+    """
+    checker = _Checker(graph, tokens, sink)
+    checker.check_start()
+    checker.check_guards()
+    reached = checker.check_reached()
+    finishes = checker.check_tokens(limit, reached)
+    return replace(checker.tokens, finishes=finishes)
+
+
+class _Checker:
+    def __init__(self, graph: Graph, tokens: TokenGraph, sink: Sink) -> None:
+        self.graph = graph
+        self.tokens = tokens
+        self.sink = sink
+        self.activity = graph[tokens.activity]
+
+    # -- start ---------------------------------------------------------------------------------
+
+    def check_start(self) -> None:
+        name, subject = self.activity.name, self.graph.subject(self.activity)
+        starts = [e for e in self.tokens.edges if e.marked and e.region == ACTIVITY_REGION]
+        if not starts:
+            self.sink.report(rules.NO_START, subject, activity=name)
+            raise CannotPlayError
+        implied = [self.tokens.node(e.target) for e in starts if self._is_implied(e)]
+        if len(implied) == len(starts):
+            actions = ", ".join(node.label for node in implied)
+            self.sink.report(rules.STARTED_BY_ACTIONS, subject, activity=name, actions=actions)
+
+    def _is_implied(self, edge: TokenEdge) -> bool:
+        source = self.tokens.node(edge.source)
+        return source.kind is NodeKind.INITIAL and source.id not in self.graph
+
+    # -- guards --------------------------------------------------------------------------------
+
+    def check_guards(self) -> None:
+        nodes = tuple(self._checked(node) for node in self.tokens.nodes)
+        self.tokens = replace(self.tokens, nodes=nodes)
+
+    def _checked(self, node: TokenNode) -> TokenNode:
+        branches = self.tokens.outgoing(node)
+        stated = [branch for branch in branches if not _is_else(branch)]
+        if node.firing is not Firing.CHOICE or not branches:
+            return node
+        open_sets = self._open_sets(stated)
+        self._report_missing(node, branches, stated, open_sets)
+        overlap = _first_overlap(open_sets, stated) or _two_elses(branches)
+        if overlap:
+            names = " and ".join(self._branch(edge) for edge in overlap)
+            subject = self.graph.subject(self.graph[node.origin])
+            self.sink.report(rules.OVERLAP, subject, node=node.label, branches=names)
+        return replace(node, exclusive=not overlap)
+
+    def _open_sets(self, stated: list[TokenEdge]) -> list[list[TokenEdge]] | None:
+        """For each valuation of the inputs the branches that are open; None: too many."""
+        conditions = [(edge, _condition(edge)) for edge in stated]
+        names = {v.name for _, c in conditions for v in variables(c)}
+        read = {v.name: v.domain for v in self.tokens.inputs if v.name in names}
+        if domains.count(read) > _MOST_VALUATIONS:
+            return None
+        return [
+            [edge for edge, condition in conditions if evaluate.is_true(condition, valuation)]
+            for valuation in domains.valuations(read)
+        ]
+
+    def _report_missing(
+        self,
+        node: TokenNode,
+        branches: list[TokenEdge],
+        stated: list[TokenEdge],
+        open_sets: list[list[TokenEdge]] | None,
+    ) -> None:
+        is_complete = open_sets is not None and all(open_sets)
+        is_wait = self.graph[node.origin].kind in ("ControlFlow", "ObjectFlow")
+        if is_complete or is_wait or len(stated) < len(branches):
+            return
+        guards = ", ".join(edge.guard.text for edge in stated if edge.guard)
+        subject = self.graph.subject(self.graph[node.origin])
+        self.sink.report(rules.MISSING_BRANCH, subject, node=node.label, guards=guards)
+
+    def _branch(self, edge: TokenEdge) -> str:
+        target = self.tokens.node(edge.target).label
+        return f"[{edge.guard.text}] to {target}" if edge.guard else f"to {target}"
+
+    # -- reachability --------------------------------------------------------------------------
+
+    def check_reached(self) -> set[str]:
+        reached = self._closure(e.target for e in self.tokens.edges if self._starts(e))
+        lost = [n for n in self.tokens.nodes if n.id not in reached and self._is_drawn(n)]
+        told: set[str] = set()
+        for node in sorted(lost, key=lambda n: self._has_lost_source(n, reached)):
+            if node.id not in told:
+                subject = self.graph.subject(self.graph[node.origin])
+                self.sink.report(rules.UNREACHABLE, subject, node=node.label)
+                told |= self._closure([node.id])
+        return reached
+
+    def _starts(self, edge: TokenEdge) -> bool:
+        return edge.marked and edge.region == ACTIVITY_REGION
+
+    def _is_drawn(self, node: TokenNode) -> bool:
+        return node.id == node.origin and node.kind is not NodeKind.INITIAL
+
+    def _has_lost_source(self, node: TokenNode, reached: set[str]) -> bool:
+        return any(edge.source not in reached for edge in self.tokens.incoming(node))
+
+    def _closure(self, first: Iterable[str]) -> set[str]:
+        found: set[str] = set()
+        waiting = list(first)
+        while waiting:
+            id = waiting.pop()
+            if id in found:
+                continue
+            found.add(id)
+            node = self.tokens.node(id)
+            waiting += [edge.target for edge in self.tokens.outgoing(node)]
+            if node.kind is NodeKind.STRUCTURED:
+                edges, _ = self.tokens.inside(id)
+                waiting += [edge.target for edge in edges if edge.marked]
+        return found
+
+    # -- tokens --------------------------------------------------------------------------------
+
+    def check_tokens(self, limit: int, reached: set[str]) -> bool:
+        """Whether the activity may finish. Raises CannotPlayError unless it is 1-safe."""
+        regions = [ACTIVITY_REGION]
+        regions += [n.id for n in self.tokens.nodes if n.kind is NodeKind.STRUCTURED]
+        found = {region: token_net.check(self.tokens, region, limit) for region in regions}
+        for safety in found.values():
+            self._require_safe(safety, limit)
+        for node in self._stuck(found.values(), reached):
+            subject = self.graph.subject(self.graph[node.origin])
+            self.sink.report(rules.NEVER_FIRES, subject, node=node.label)
+        finishes = found[ACTIVITY_REGION].finishes
+        if not finishes:
+            subject = self.graph.subject(self.activity)
+            self.sink.report(rules.ENDLESS, subject, activity=self.activity.name)
+        return finishes
+
+    def _require_safe(self, safety: token_net.Safety, limit: int) -> None:
+        if safety.unsafe:
+            label, origin = self._place(safety.unsafe)
+            self.sink.report(rules.UNSAFE, self.graph.subject(self.graph[origin]), flow=label)
+            raise CannotPlayError
+        if not safety.is_complete:
+            subject = self.graph.subject(self.activity)
+            name = self.activity.name
+            self.sink.report(rules.TOO_LARGE, subject, activity=name, limit=limit)
+            raise CannotPlayError
+
+    def _place(self, id: str) -> tuple[str, str]:
+        for edge in self.tokens.edges:
+            if edge.id == id:
+                return edge.label, edge.origin
+        node = self.tokens.node(id)
+        return node.label, node.origin
+
+    def _stuck(self, found: Iterable[token_net.Safety], reached: set[str]) -> Iterator[TokenNode]:
+        """Dead nodes that are to blame: tokens reach them, but not all of their edges."""
+        dead = {id for safety in found for id in safety.dead}
+        for id in sorted(dead & reached, key=[n.id for n in self.tokens.nodes].index):
+            node = self.tokens.node(id)
+            sources = [edge.source for edge in self.tokens.incoming(node)]
+            if len(sources) > 1 and any(source not in dead for source in sources):
+                yield node
+
+
+def _is_else(edge: TokenEdge) -> bool:
+    return edge.guard is not None and edge.guard.condition is None
+
+
+def _condition(edge: TokenEdge) -> Formula:
+    condition = edge.guard.condition if edge.guard else None
+    return f.TRUE if condition is None else condition
+
+
+def _first_overlap(
+    open_sets: list[list[TokenEdge]] | None, stated: list[TokenEdge]
+) -> list[TokenEdge]:
+    if open_sets is None:
+        return stated if len(stated) > 1 else []
+    return max(open_sets, key=len, default=[]) if any(len(s) > 1 for s in open_sets) else []
+
+
+def _two_elses(branches: list[TokenEdge]) -> list[TokenEdge]:
+    others = [branch for branch in branches if _is_else(branch)]
+    return others if len(others) > 1 else []

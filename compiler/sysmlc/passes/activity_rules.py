@@ -1,0 +1,298 @@
+"""Rules about activities (SM450 to SM470), each with a small model that has it and one that nearly
+has it.
+"""
+
+from sysmlc.diagnostics import Rule, Severity, rule
+
+_KINDS = {
+    "initial": 'Control {} "" subkind="initial"',
+    "final": 'Control {} "" subkind="final"',
+    "end": 'Control {} "" subkind="flow-final"',
+    "decision": 'Control {} "" subkind="decision"',
+    "merge": 'Control {} "" subkind="merge"',
+    "fork": 'Control {} "" subkind="fork"',
+    "join": 'Control {} "" subkind="join"',
+    "or-join": 'Control {} "" subkind="join" join_spec="or"',
+    "action": 'Action {0} "{0}" subkind="opaque"',
+    "accept": 'Action {0} "{0}" subkind="accept"',
+    "raise": 'Action {0} "{0}" subkind="raise"',
+    "guarded-by-handler": 'Action {0} "{0}" subkind="opaque" handlers=["repair"]',
+    "data-store": 'DataStore {0} "{0}"',
+    "structured": 'Structured {0} "{0}" subkind="structured"',
+    "pin": 'Pin {0} "{0}" direction="in" subkind="argument"',
+    "on-pallet": 'Trigger {0} "pallet" subkind="signal"',
+    "on-tool": 'Trigger {0} "tool" subkind="signal"',
+}
+
+
+def sketch(text: str) -> str:
+    """IR text of one activity from a line a node (``kind id``) and a line a flow (``a -> b``).
+
+    A flow may end in its guard in brackets or in attributes; indented nodes are owned by the
+    node above.
+    """
+    lines = ['Activity a "a"']
+    flows = [line.strip() for line in text.splitlines() if "->" in line]
+    for line in text.splitlines():
+        if line.strip() and "->" not in line:
+            kind, name = line.split()
+            lines.append("  " + line[: len(line) - len(line.lstrip())] + _KINDS[kind].format(name))
+    for number, flow in enumerate(flows):
+        ends, _, rest = flow.partition(" [")
+        source, target = (end.strip() for end in ends.split("->"))
+        guard = f' guard="{rest.removesuffix("]")}"' if rest else ""
+        target, _, attrs = target.partition(" ")
+        lines.append(f"  ControlFlow f{number}{guard}{' ' + attrs if attrs else ''}")
+        lines.append(f"    -> flow-source {source}")
+        lines += [f"    -> flow-target {target}"] if target != "nothing" else []
+    return "\n".join(lines) + "\n"
+
+
+def _rule(
+    code: str,
+    name: str,
+    severity: Severity,
+    phrase: str,
+    why: str,
+    help: str,
+    wrong: str,
+    right: str,
+) -> Rule:
+    return rule(code, name, severity, phrase, why, help, sketch(wrong), sketch(right))
+
+
+NO_START = _rule(
+    "SM450",
+    "activity-without-start",
+    Severity.WARNING,
+    "activity '{activity}' can't start: it has no initial node, no input parameter and no action "
+    "without incoming flows",
+    "Without a node that gets the first token nothing in the activity ever happens, so it has no "
+    "contract.",
+    "Add an initial node with a flow to the first action.",
+    "merge m\naction work\nm -> work\nwork -> m",
+    "initial i\nmerge m\naction work\ni -> m\nm -> work\nwork -> m",
+)
+STARTED_BY_ACTIONS = _rule(
+    "SM451",
+    "start-without-initial-node",
+    Severity.INFO,
+    "activity '{activity}' has no initial node; it starts with {actions}",
+    "UML 2.5.1, 15.2.3: actions without incoming flows start at once when their activity starts.",
+    "Add an initial node if only one of them is meant to start.",
+    "action work\nfinal end\nwork -> end",
+    "initial i\naction work\nfinal end\ni -> work\nwork -> end",
+)
+UNREACHABLE = _rule(
+    "SM452",
+    "unreachable-activity-node",
+    Severity.WARNING,
+    "no token ever reaches {node}",
+    "No path of flows leads to it from where the activity starts. It is kept, and stays idle.",
+    "Connect it, or delete it.",
+    "initial i\naction work\naction lost\nfinal end\nmerge m\ni -> work\nwork -> end\n"
+    "m -> lost\nlost -> m",
+    "initial i\naction work\naction found\nfinal end\ni -> work\nwork -> found\nfound -> end",
+)
+NEVER_FIRES = _rule(
+    "SM453",
+    "node-waits-forever",
+    Severity.WARNING,
+    "{node} waits forever: its incoming flows never all hold a token",
+    "A join, and an action with several incoming flows, waits for all of them; flows that come "
+    "from alternative branches never bring their tokens together.",
+    "Bring alternative branches together in a merge node instead.",
+    "initial i\ndecision d\naction x\naction y\naction z\ni -> d\nd -> x [ok]\nd -> y [else]\n"
+    "x -> z\ny -> z",
+    "initial i\ndecision d\naction x\naction y\nmerge m\naction z\ni -> d\nd -> x [ok]\n"
+    "d -> y [else]\nx -> m\ny -> m\nm -> z",
+)
+UNSAFE = _rule(
+    "SM454",
+    "flow-with-two-tokens",
+    Severity.WARNING,
+    "{flow} may get a second token while it still holds one; the activity gets no contract",
+    "Contracts have one Boolean for each flow. Two tokens at one place usually mean that parallel "
+    "branches run into a merge node, or that something is started faster than it is finished.",
+    "Bring parallel branches together in a join node.",
+    "initial i\nfork k\naction x\naction y\nmerge m\naction z\ni -> k\nk -> x\nk -> y\nx -> m\n"
+    "y -> m\nm -> z",
+    "initial i\nfork k\naction x\naction y\njoin j\naction z\ni -> k\nk -> x\nk -> y\nx -> j\n"
+    "y -> j\nj -> z",
+)
+_CROSSED = (
+    "initial i\nfork k\naction x\naction y\nfork l\njoin j\njoin o\ni -> k\nk -> x\nk -> y\n"
+    "x -> l\nl -> j\nl -> o\ny -> {}\nj -> o"
+)
+TOO_LARGE = _rule(
+    "SM455",
+    "activity-too-large-to-check",
+    Severity.WARNING,
+    "activity '{activity}' has more than {limit} markings; whether each flow holds at most one "
+    "token was not decided, so it gets no contract",
+    "The check searches all distributions of tokens after it has removed series and parallel "
+    "parts. (The wrong model below is over a limit of three markings.)",
+    "Move parts of the activity into activities of their own, or raise the limit "
+    "(option max_markings of the pass activities).",
+    _CROSSED.format("k"),
+    _CROSSED.format("j"),
+)
+MISSING_BRANCH = _rule(
+    "SM456",
+    "decision-without-else",
+    Severity.WARNING,
+    "{node} has no branch for the case that none of its guards holds ({guards}); the token "
+    "waits there",
+    "When no guard holds, the token stays until one does (UML 2.5.1, 15.3.3.6). The contract "
+    "assumes that this happens sooner or later.",
+    "Give one of the branches the guard else.",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [bad]",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [else]",
+)
+OVERLAP = _rule(
+    "SM457",
+    "overlapping-branches",
+    Severity.WARNING,
+    "several branches of {node} may be open at the same time: {branches}",
+    "UML leaves open which of the open branches is taken. The contract allows each of them.",
+    "Make the guards exclude each other, or give one of the branches the guard else.",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x\nd -> y",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [else]",
+)
+UNREADABLE = _rule(
+    "SM458",
+    "guard-in-plain-words",
+    Severity.WARNING,
+    "{what} '{text}' is not an expression over known properties ({reason}); it becomes the input "
+    "{variable}",
+    "What it depends on isn't known, so the environment decides it freely.",
+    "Write it as an expression over properties of the block, for example 'angle > 90'.",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [is it ok?]\nd -> y [else]",
+    "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [true]\nd -> y [else]",
+)
+WEIGHT = _rule(
+    "SM459",
+    "weighted-flow",
+    Severity.WARNING,
+    "{flow} has the weight {weight}; the activity gets no contract",
+    "A flow with a weight waits for several tokens, but contracts have one Boolean for each flow.",
+    "Model the repetition as a loop.",
+    "initial i\naction x\ni -> x weight=2",
+    "initial i\naction x\ni -> x",
+)
+LOOSE_FLOW = _rule(
+    "SM460",
+    "activity-flow-without-end",
+    Severity.ERROR,
+    "{flow} has no {end}",
+    "A flow leads from one node to another (UML 2.5.1, 15.2.3).",
+    "Connect both ends of the flow, or delete it.",
+    "initial i\naction x\ni -> x\nx -> nothing",
+    "initial i\naction x\nfinal end\ni -> x\nx -> end",
+)
+CROSSING = _rule(
+    "SM461",
+    "flow-across-structured-node",
+    Severity.WARNING,
+    "{flow} crosses the border of a structured node; the activity gets no contract",
+    "A structured node is treated as one action from outside: it starts and ends as a whole.",
+    "Lead the flow to the structured node or to one of its pins.",
+    "initial i\nstructured s\n  action x\naction y\ni -> s\nx -> y",
+    "initial i\nstructured s\n  action x\naction y\ni -> s\ns -> y",
+)
+UNSUPPORTED = _rule(
+    "SM462",
+    "activity-node-without-token-meaning",
+    Severity.WARNING,
+    "{node} is {what}; the activity gets no contract",
+    "Data stores keep their tokens and expansion regions multiply them, which one Boolean for "
+    "each flow can't say.",
+    "Keep the value in a property of the block, or call an activity for each element.",
+    "initial i\naction x\ndata-store d\ni -> x\nx -> d",
+    "initial i\naction x\nfinal end\ni -> x\nx -> end",
+)
+HANDLER = _rule(
+    "SM463",
+    "exception-not-followed",
+    Severity.WARNING,
+    "{node} has exception handlers; they are left out",
+    "The token game has no exceptions: handlers never start, and what is raised ends nothing.",
+    "Model the exceptional case as a branch of a decision after the action.",
+    "initial i\nguarded-by-handler work\naction repair\ni -> work",
+    "initial i\naction work\naction repair\ni -> work\nwork -> repair",
+)
+OPEN_PIN = _rule(
+    "SM464",
+    "pin-without-flow",
+    Severity.INFO,
+    "nothing flows into pin '{pin}' of {node}; it is taken as always filled",
+    "By UML the action would never start (UML 2.5.1, 16.2.3). Tools add such pins to calls by "
+    "themselves.",
+    "Connect the pin, or delete it.",
+    "initial i\naction x\n  pin p\ni -> x",
+    "action w\naction x\n  pin p\nw -> p",
+)
+TWO_IN_ONE = _rule(
+    "SM465",
+    "control-node-with-two-jobs",
+    Severity.INFO,
+    "{node} is drawn with {drawn}; it is taken as {meaning}",
+    "UML asks for one symbol each: decisions have one incoming, merges and joins one outgoing and "
+    "forks one incoming flow (UML 2.5.1, 15.7).",
+    "Draw two control nodes.",
+    "initial i\nmerge m\naction x\nfinal end\ni -> m\nm -> x\nm -> end\nx -> m",
+    "initial i\nmerge m\naction x\ni -> m\nm -> x\nx -> m",
+)
+ENDLESS = _rule(
+    "SM466",
+    "activity-never-finishes",
+    Severity.INFO,
+    "activity '{activity}' never finishes",
+    "No run reaches an activity final node or uses up all tokens. Its contract promises that its "
+    "loops go on instead.",
+    "Add a way to an activity final node if it is meant to end.",
+    "initial i\nmerge m\naction x\ni -> m\nm -> x\nx -> m",
+    "initial i\naction x\nfinal end\ni -> x\nx -> end",
+)
+JOIN_SPEC = _rule(
+    "SM467",
+    "join-with-specification",
+    Severity.WARNING,
+    "{node} has the join specification '{text}'; the activity gets no contract",
+    "Only joins that wait for all their incoming flows are understood.",
+    "Use a join without a specification, or a merge.",
+    "initial i\nfork k\nor-join j\naction x\ni -> k\nk -> j\nk -> j\nj -> x",
+    "initial i\nfork k\njoin j\naction x\ni -> k\nk -> j\nk -> j\nj -> x",
+)
+WAITING_GUARD = _rule(
+    "SM468",
+    "guard-outside-decision",
+    Severity.INFO,
+    "the guard '{text}' is on {flow}, which does not leave a decision; the token waits until "
+    "it holds",
+    "fUML looks at guards only after decision nodes; UML lets the token wait.",
+    "Put a decision node before the flow and say what happens else.",
+    "initial i\naction x\naction y\ni -> x\nx -> y [true]",
+    "initial i\naction x\naction y\ni -> x\nx -> y",
+)
+EMPTY = _rule(
+    "SM469",
+    "activity-without-nodes",
+    Severity.INFO,
+    "activity '{activity}' has no nodes",
+    "There is nothing to derive a contract from.",
+    "Draw it, or give it a body.",
+    "",
+    "initial i\naction x\ni -> x",
+)
+SHARED_EVENT = _rule(
+    "SM470",
+    "event-with-two-takers",
+    Severity.INFO,
+    "{nodes} wait for the same event '{event}'; one occurrence ends both when both wait",
+    "By UML only one of them takes the occurrence. This makes a difference only when both can "
+    "wait at the same time.",
+    "Give the two events different signals.",
+    "initial i\naccept go\n  on-pallet t\naccept again\n  on-pallet u\ni -> go\ngo -> again",
+    "initial i\naccept go\n  on-pallet t\naccept again\n  on-tool u\ni -> go\ngo -> again",
+)
