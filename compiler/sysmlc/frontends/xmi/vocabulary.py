@@ -311,6 +311,8 @@ REDUNDANT = frozenset(
         "inGroup",
         "inStructuredNode",
         "node",
+        "partition",
+        "structuredNode",
         "owner",
         "ownedMember",
         "member",
