@@ -51,6 +51,7 @@ def command(
     from sysmlc.cli import session
     from sysmlc.driver import plan
 
+    _check_command_word(models)
     settings = session.Settings(**given)
     config = session.load_config(models, settings.config)
     units = session.units(models, config, output, settings.emit)
@@ -66,6 +67,19 @@ def command(
         else:
             _write(planned, unit, compilation, session.says_more(settings), settings.verbose)
     ctx.exit(code)
+
+
+def _check_command_word(models: tuple[Path, ...]) -> None:
+    """``sysmlc chekc plant.uml``: no file was meant."""
+    from difflib import get_close_matches
+
+    from sysmlc.cli.group import COMMANDS
+
+    word = str(models[0]) if models else ""
+    if word.isalpha() and not Path(word).exists():
+        near = get_close_matches(word, COMMANDS, n=1, cutoff=0.6)
+        if near:
+            raise click.UsageError(f"no command or file '{word}'; did you mean '{near[0]}'?")
 
 
 def _compare(planned: "Plan") -> int:

@@ -1,0 +1,205 @@
+"""The other commands: explain, show, diff, watch, and how the command line starts."""
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from sysmlc.cli import watch
+from sysmlc.cli.group import COMMANDS
+from sysmlc.cli.progress import Progress
+from sysmlc.cli.session import Settings
+
+HEAVY = ("lxml", "networkx", "lark", "jinja2", "pyecore", "jsonschema", "ruamel")
+
+
+def test_explain_shows_why_and_a_wrong_and_a_right_model(here):
+    lines = here.sysmlc("explain", "test-nameless-port").stdout.splitlines()
+    assert lines[0] == "SM942 test-nameless-port (error)"
+    assert lines[-6:] == [
+        '  Class gate "Gate"',
+        "    Port gate.in",
+        "",
+        "Right:",
+        '  Class gate "Gate"',
+        '    Port gate.in "in"',
+    ]
+    assert here.sysmlc("explain", "sm942").stdout == here.sysmlc("explain", "SM942").stdout
+
+
+def test_explain_without_a_code_lists_all_rules_in_order(here):
+    codes = [line.split()[0] for line in here.sysmlc("explain").stdout.splitlines()]
+    assert codes == sorted(codes)
+    assert {"SM170", "SM176", "SM900"} <= set(codes)
+
+
+def test_show_prints_the_graph_that_can_be_compiled_again(here):
+    text = here.sysmlc("show", "plant.ir").stdout
+    here.write("again.ir", text)
+    assert here.sysmlc("show", "again.ir").stdout == text
+
+
+def test_show_finds_an_element_by_qualified_name_name_or_id(here):
+    shown = {
+        here.sysmlc("show", "plant.ir", "-e", e).stdout for e in ("Plant::Gate", "Gate", "gate")
+    }
+    assert shown == {
+        'Class gate "Gate" @plant.ir:-1\n'
+        '  Port gate.in "in" @plant.ir:-1\n'
+        "    -> typed-by pallet\n"
+        "  <- owns Plant\n"
+    }
+
+
+def test_show_asks_which_one_when_there_are_several(here):
+    here.write("two.ir", 'Package a "A"\n  Class x "X"\nPackage b "B"\n  Class y "X"\n')
+    done = here.sysmlc("show", "two.ir", "-e", "X")
+    assert done.exit_code == 2
+    assert "A::X (Class, id x)" in done.stderr
+    assert "B::X (Class, id y)" in done.stderr
+
+
+def test_diff_is_0_when_equal_and_1_when_not(here):
+    here.write("new.ir", here.read("plant.ir") + 'Package more "More"\n')
+    equal = here.sysmlc("diff", "plant.ir", "plant.ir")
+    assert (equal.exit_code, equal.stdout) == (0, "no differences\n")
+    done = here.sysmlc("diff", "plant.ir", "new.ir", "--ignore", "source")
+    assert (done.exit_code, done.stdout) == (
+        1,
+        "+ More: added Package\n1 added, 0 removed, 0 changed\n",
+    )
+
+
+def test_diff_for_reviews_and_for_programs(here):
+    here.write("new.ir", here.read("plant.ir").replace('"Gate"', '"Lift"'))
+    args = ["diff", "plant.ir", "new.ir", "--ignore", "source", "--format"]
+    assert here.sysmlc(*args, "markdown").stdout == (
+        "**0 added, 0 removed, 1 changed**\n\n"
+        "- `Plant::Gate`\n  - attribute name: 'Gate' -> 'Lift'\n"
+    )
+    changes = json.loads(here.sysmlc(*args, "json").stdout)["changes"]
+    assert [change["element"] for change in changes] == ["Plant::Gate"]
+
+
+def test_diff_with_a_file_that_cannot_be_read_is_2(here):
+    here.write("bad.ir", "Klass x\n")
+    assert here.sysmlc("diff", "plant.ir", "bad.ir").exit_code == 2
+
+
+# -- watch ---------------------------------------------------------------------------------------
+
+
+def test_watch_keeps_the_last_good_outputs_while_the_model_has_errors(here):
+    settings = Settings(emit=("graph",))
+    model = here.folder / "plant.ir"
+    assert watch.rebuild((model,), None, settings)
+    good = here.read("out/graph.json")
+    here.write("plant.ir", 'Package pkg "Plant"\n  Class gate "Gate"\n    Port gate.in\n')
+    assert not watch.rebuild((model,), None, settings)
+    assert here.read("out/graph.json") == good
+    here.write("plant.ir", 'Package pkg "Plant"\n')
+    assert watch.rebuild((model,), None, settings)
+    assert here.read("out/graph.json") != good
+
+
+def test_watch_without_watchfiles_says_how_to_get_it(here, monkeypatch):
+    monkeypatch.setitem(sys.modules, "watchfiles", None)
+    done = here.sysmlc("watch", "plant.ir", "--emit", "graph")
+    assert done.exit_code == 2
+    assert "pip install 'sysmlc[watch]'" in done.stderr
+
+
+def test_watch_does_not_start_again_because_of_its_own_outputs():
+    assert watch._is_input(1, "/x/plant.uml")
+    assert watch._is_input(1, "/x/sysmlc.toml")
+    assert not watch._is_input(1, "/x/out/graph.json")
+
+
+def test_watch_rebuilds_when_a_file_is_saved(here, monkeypatch):
+    import watchfiles
+
+    def saves(*folders, **_):
+        here.write("plant.ir", 'Package pkg "Other"\n')
+        yield {(1, "plant.ir")}
+
+    monkeypatch.setattr(watchfiles, "watch", saves)
+    done = here.sysmlc("watch", "plant.ir", "--emit", "graph")
+    assert done.stdout == "out: 4 files changed\nout: 4 files changed\n"
+    assert '"Other"' in here.read("out/graph.json")
+
+
+# -- start-up ------------------------------------------------------------------------------------
+
+
+def executable() -> str:
+    return str(Path(sysconfig.get_path("scripts")) / "sysmlc")
+
+
+def test_the_installed_command_and_the_module_say_the_version():
+    for command in ([executable()], [sys.executable, "-m", "sysmlc"]):
+        done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=True)
+        assert done.stdout.startswith("sysmlc 0.")
+
+
+@pytest.mark.parametrize("args", [["--version"], ["--help"], ["build", "--help"]])
+def test_help_and_version_import_nothing_heavy(args):
+    script = (
+        "import sys\nfrom sysmlc.cli.group import sysmlc\n"
+        f"sysmlc({args!r}, standalone_mode=False)\n"
+        f"print('imported:', [m for m in {HEAVY!r} if m in sys.modules])"
+    )
+    run = [sys.executable, "-c", script]
+    assert "imported: []" in subprocess.run(run, capture_output=True, text=True, check=True).stdout
+
+
+def test_the_version_takes_a_tenth_of_a_second_of_cpu():
+    resource = pytest.importorskip("resource")
+
+    def cpu() -> float:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([executable(), "--version"], capture_output=True, check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    assert min(cpu() for _ in range(5)) < 0.10
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(here, command):
+    done = here.sysmlc(command, "--help")
+    assert done.exit_code == 0
+    assert f"sysmlc {command}" in done.stdout
+
+
+def test_a_fault_of_ours_is_one_sentence(tmp_path):
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    script = (
+        "import sys, sysmlc.config\n"
+        "def fails(*_): raise ZeroDivisionError('by zero')\n"
+        "sysmlc.config.find = fails\n"
+        "from sysmlc.cli import main\nsys.argv = ['sysmlc', 'x.uml']\nmain()"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=env)
+    assert done.returncode == 2
+    assert done.stderr.startswith("sysmlc: fault of sysmlc: ZeroDivisionError: by zero\n")
+    assert "Traceback" not in done.stderr
+
+
+# -- progress ------------------------------------------------------------------------------------
+
+
+def test_progress_is_drawn_on_terminals_only_and_after_a_second(capsys, monkeypatch):
+    times = iter([0.0, 0.5, 1.5, 2.0])
+    progress = Progress(clock=lambda: next(times))
+    progress._on_terminal = True
+    progress.step("read", 0, 3)
+    assert capsys.readouterr().err == ""
+    progress.step("pass ports", 1, 2)
+    assert "[############------------] pass ports" in capsys.readouterr().err
+    piped = Progress(clock=lambda: 9.0)
+    piped.step("read", 0, 3)
+    assert capsys.readouterr().err == ""
