@@ -1,8 +1,9 @@
 """What became of every element of a file: coverage, and findings about what is not read."""
 
+from collections import Counter
+
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
-from sysmlc.frontends.xmi import rules
-from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi.context import Context
 
 
@@ -10,10 +11,8 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
     """Count every element of the file once, and report what is not or not wholly read."""
     document = context.document
     counts = coverage.file(document.name)
-    table: dict[tuple[str, Verdict], int] = {}
-    for row in range(len(document)):
-        key = _type(context, row), context.verdicts[row] or Verdict.UNSUPPORTED
-        table[key] = table.get(key, 0) + 1
+    verdicts = (verdict or Verdict.UNSUPPORTED for verdict in context.verdicts)
+    table = Counter(zip(_types(context), verdicts, strict=True))
     for (type_name, verdict), number in table.items():
         counts.count(type_name, verdict, number)
     for feature, number in document.drawn.items():
@@ -25,28 +24,33 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
         sink.report(rules.NO_MODEL, subject, file=document.name)
 
 
-def _type(context: Context, row: int) -> str:
+def _types(context: Context) -> list[str]:
+    """Name of each row's type: as written, else the default of its feature, else its tag."""
     document = context.document
-    type_name = document.type(row)
-    if type_name:
-        return document.attributes[row][document.type_key]
-    feature = document.features[row]
-    known = v.DEFAULT_TYPES.get(feature)
-    return f"uml:{known}" if known and context.lowered.own[row] else feature
+    names = {name: f"uml:{name}" for name in dict.fromkeys(document.types) if name}
+    rows = zip(document.types, document.features, context.lowered.own, strict=True)
+    return [
+        names.get(type_name) or (_default(feature) if is_own else feature)
+        for type_name, feature, is_own in rows
+    ]
+
+
+def _default(feature: str) -> str:
+    known = metaclasses.DEFAULT_TYPES.get(feature)
+    return f"uml:{known}" if known else feature
 
 
 def _report_unsupported(context: Context, sink: Sink) -> None:
+    if Verdict.UNSUPPORTED not in context.verdicts:
+        return
     document = context.document
     found: dict[str, list[tuple[int, int]]] = {}
-    row = 0
-    while row < len(document):
-        verdict = context.verdicts[row]
-        if verdict is Verdict.UNSUPPORTED and row not in context.reported:
+    types = _types(context)
+    end = -1
+    for row, verdict in enumerate(context.verdicts):
+        if verdict is Verdict.UNSUPPORTED and row >= end and row not in context.reported:
             end = document.ends[row]
-            found.setdefault(_type(context, row), []).append((row, end - row))
-            row = end
-        else:
-            row += 1
+            found.setdefault(types[row], []).append((row, end - row))
     for type_name, rows in found.items():
         number = sum(size for _, size in rows)
         subject = Subject(document.name, place=context.place(rows[0][0]))
@@ -56,8 +60,9 @@ def _report_unsupported(context: Context, sink: Sink) -> None:
 
 def _report_approximated(context: Context, sink: Sink) -> None:
     found: dict[tuple[str, str], list[int]] = {}
+    types = _types(context) if context.lost else []
     for row, lost in context.lost.items():
-        found.setdefault((_type(context, row), lost), []).append(row)
+        found.setdefault((types[row], lost), []).append(row)
     for (type_name, lost), rows in found.items():
         subject = Subject(context.document.name, place=context.place(rows[0]))
         count = _count(len(rows))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.structure import text_of, value_in
@@ -60,7 +60,7 @@ FEATURES: dict[str, _Reader] = {
 }
 
 TYPES: dict[str, _Reader] = {
-    **dict.fromkeys(v.EVENT_TYPES, _part_of_others),
+    **dict.fromkeys(metaclasses.EVENT_TYPES, _part_of_others),
     "MessageOccurrenceSpecification": _part_of_others,
 }
 
@@ -109,7 +109,7 @@ def _trigger(context: Context, element: Element, row: int) -> None:
     if event is None:
         return
     holder, at = event
-    subkind = v.EVENT_TYPES.get(holder.document.type(at))
+    subkind = metaclasses.EVENT_TYPES.get(holder.document.types[at])
     if subkind is None:
         return
     element.attrs["subkind"] = subkind

@@ -1,7 +1,7 @@
 """What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
-from sysmlc.frontends.xmi import rules
+from sysmlc.frontends.xmi import details, metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -70,7 +70,7 @@ class Context:
         parent = self.document.parents[row]
         owner = self.gids[parent] if parent >= 0 else ""
         above = self.graph.get(owner) if owner else None
-        allowed = v.OWNERS.get(kind)
+        allowed = metaclasses.OWNERS.get(kind)
         if allowed is not None and (above is None or above.kind not in allowed):
             return False
         document = self.document
@@ -89,9 +89,9 @@ class Context:
         self.gids[row] = element.id
         self.lowered.own[row] = 1
         self.verdicts[row] = Verdict.MAPPED
-        _DETAILS.get(kind, _nothing)(self, element, row, type_name, feature)
+        details.of(kind)(self, element, row, type_name, feature)
         for name, value in values.items():
-            if name != "name" and "}" not in name:
+            if name not in _PASSED_OVER and "}" not in name:
                 self.attribute(element, row, name, value)
         return True
 
@@ -150,8 +150,8 @@ class Context:
             self.conditions(value.split(), name)
         elif name == "kind" and element.kind in _KINDS:
             if value != _KINDS[element.kind]:
-                element.attrs["subkind"] = v.hyphenated(value)
-        elif name not in v.REDUNDANT and name not in _HANDLED:
+                element.attrs["subkind"] = metaclasses.hyphenated(value)
+        elif name not in _PASSED_OVER and name not in v.REDUNDANT:
             self.keep(element, v.snake(name), value)
 
     def keep(self, element: Element, key: str, value: str) -> None:
@@ -254,98 +254,8 @@ def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
 _HANDLED = frozenset({"partWithPort", "guard", "event", "sendEvent", "receiveEvent", "value"})
 """Attributes that the readers of single kinds take themselves."""
 
+_PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}
+"""Attributes that never need a look at the other tables; most of a large file's."""
+
 _KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
 """Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""
-
-
-def _nothing(
-    _context: Context, _element: Element, _row: int, _type_name: str, _feature: str
-) -> None:
-    return None
-
-
-def _parameter(
-    _context: Context, element: Element, _row: int, _type_name: str, _feature: str
-) -> None:
-    element.attrs["direction"] = "in"
-
-
-def _pin(_context: Context, element: Element, _row: int, type_name: str, feature: str) -> None:
-    element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
-    element.attrs["subkind"] = v.hyphenated(feature)
-
-
-def _pseudostate(
-    _context: Context, element: Element, _row: int, _type_name: str, _feature: str
-) -> None:
-    element.attrs["subkind"] = "initial"
-
-
-def _constraint(
-    context: Context, element: Element, _row: int, _type_name: str, feature: str
-) -> None:
-    owner = context.graph.owner(element)
-    if feature in v.CONDITIONS:
-        element.attrs["subkind"] = v.CONDITIONS[feature]
-    if feature == "guard" and owner is not None:
-        context.guards.append((owner, element.id))
-
-
-def _transition(
-    context: Context, element: Element, row: int, _type_name: str, _feature: str
-) -> None:
-    for target in context.document.targets(row, "guard"):
-        context.guards.append((element, target))
-
-
-def _behaviour(
-    context: Context, element: Element, _row: int, _type_name: str, feature: str
-) -> None:
-    owner = context.graph.owner(element)
-    edge = v.STATE_BEHAVIOURS.get(feature)
-    if edge is not None and owner is not None:
-        context.graph.connect(edge, owner, element)
-
-
-def _trigger(context: Context, element: Element, row: int, _type_name: str, feature: str) -> None:
-    owner = context.graph.owner(element)
-    context.triggers.append((element, row))
-    if feature == "deferrableTrigger":
-        element.attrs["deferred"] = True
-    elif owner is not None:
-        context.graph.connect(Edge.TRIGGER, owner, element)
-
-
-def _message(context: Context, element: Element, row: int, _type_name: str, _feature: str) -> None:
-    context.messages.append((element, row))
-
-
-def _connector_end(
-    context: Context, element: Element, row: int, _type_name: str, _feature: str
-) -> None:
-    owner = context.graph.owner(element)
-    if owner is not None:
-        context.graph.connect(Edge.END, owner, element)
-    context.ends.append((element, row))
-
-
-def _activity_parameter(
-    context: Context, element: Element, row: int, _type_name: str, _feature: str
-) -> None:
-    context.parameters.append((element, row))
-
-
-_DETAILS = {
-    Kind.PARAMETER: _parameter,
-    Kind.PIN: _pin,
-    Kind.PSEUDOSTATE: _pseudostate,
-    Kind.CONSTRAINT: _constraint,
-    Kind.TRANSITION: _transition,
-    Kind.ACTIVITY: _behaviour,
-    Kind.STATE_MACHINE: _behaviour,
-    Kind.INTERACTION: _behaviour,
-    Kind.TRIGGER: _trigger,
-    Kind.MESSAGE: _message,
-    Kind.CONNECTOR_END: _connector_end,
-    Kind.ACTIVITY_PARAMETER: _activity_parameter,
-}

@@ -15,7 +15,8 @@ class Document:
     """Columns of one file; a row stands for one XML element.
 
     ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
-    the attribute has a namespace. ``ends[row]`` is the first row after the row's content.
+    the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
+    ``xmi:type`` (or empty); ``ends[row]`` is the first row after the row's content.
     """
 
     __slots__ = (
@@ -33,6 +34,7 @@ class Document:
         "tags",
         "texts",
         "type_key",
+        "types",
     )
 
     def __init__(self, name: str) -> None:
@@ -45,6 +47,7 @@ class Document:
         self.texts: dict[int, str] = {}
         self.drawn: Counter[str] = Counter()
         self.features: list[str] = []
+        self.types: list[str] = []
         self.ids: dict[str, int] = {}
         self.repeated: dict[str, list[int]] = {}
         self.id_key = self.type_key = self.idref_key = ""
@@ -55,10 +58,6 @@ class Document:
     def id(self, row: int) -> str:
         """The row's ``xmi:id``, or the empty string."""
         return self.attributes[row].get(self.id_key, "")
-
-    def type(self, row: int) -> str:
-        """Local name of the row's ``xmi:type``, or the empty string."""
-        return self.attributes[row].get(self.type_key, "").rpartition(":")[2]
 
     def idref(self, row: int) -> str:
         """The row's ``xmi:idref``, or the empty string."""
@@ -164,7 +163,11 @@ def _index(document: Document) -> None:
     xmi = _xmi_namespace(document)
     document.id_key, document.type_key = f"{xmi}}}id", f"{xmi}}}type"
     document.idref_key = f"{xmi}}}idref"
-    key, ids = document.id_key, document.ids
+    key, ids = document.type_key, document.ids
+    written = [values.get(key, "") for values in document.attributes]
+    short = {name: name.rpartition(":")[2] for name in dict.fromkeys(written)}
+    document.types = [short[name] for name in written]
+    key = document.id_key
     for row, values in enumerate(document.attributes):
         if key in values:
             first = ids.setdefault(values[key], row)

@@ -5,11 +5,13 @@ import re
 from urllib.parse import unquote
 
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.vocabulary import HINTS, kind_of
+from sysmlc.frontends.xmi.metaclasses import kind_of
+from sysmlc.frontends.xmi.vocabulary import HINTS
 from sysmlc.ir import Kind
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
+_PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
 _UNMISTAKABLE = 20
 """Ids that tools make are at least this long; such an id means the same element everywhere."""
 
@@ -35,12 +37,23 @@ def base_name(path: str) -> str:
     return unquote(posixpath.basename(path.partition("!")[0].partition("?")[0]))
 
 
-def hint(document: Document, row: int, feature: str) -> tuple[Kind, str]:
-    """Kind and name of the external element that a row with an ``href`` refers to."""
+def hint(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
+    """Kind, if it is written, and name of the external element that an ``href`` refers to."""
     path, type_name = _reference_extension(document, row)
-    kind = kind_of(document.type(row) or type_name)
-    name = path.rpartition("::")[2] or name_in(document.attributes[row].get("href", ""))
-    return kind[0] if kind else HINTS.get(feature, Kind.CLASS), name
+    href = document.attributes[row].get("href", "")
+    name = path.rpartition("::")[2] or name_in(href)
+    known = kind_of(document.types[row] or type_name)
+    kind = known[0] if known else None
+    if kind is None and feature == "type" and name in _PRIMITIVES:
+        kind = Kind.DATA_TYPE
+    if not name and feature in ("appliedProfile", "importedPackage"):
+        name = base_name(href.partition("#")[0]).partition(".")[0]
+    return kind, name
+
+
+def likely(feature: str) -> Kind:
+    """What the target of a feature is when nothing else says so."""
+    return HINTS.get(feature, Kind.CLASS)
 
 
 def name_in(href: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Sink, Verdict
-from sysmlc.frontends.xmi import behaviour, namespaces, structure, vocabulary
+from sysmlc.frontends.xmi import behaviour, metaclasses, namespaces, structure, vocabulary
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 
@@ -19,7 +19,8 @@ def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
     document = lowered.document
     roots = _roots(context)
     row = 0
-    while row < len(document):
+    end = len(document)
+    while row < end:
         row = _root(context, row) if row in roots else _row(context, row)
     context.finish()
     return context
@@ -40,7 +41,7 @@ def _root(context: Context, row: int) -> int:
     if row == 0 and context.verdicts[0] is not None:
         return 1
     if namespaces.is_uml(namespace):
-        return _element(context, row, document.type(row) or feature, feature)
+        return _element(context, row, document.types[row] or feature, feature)
     if namespaces.is_settings(namespace) and not _names_package(context, row):
         return context.subtree(row, Verdict.IGNORED_NOTATION)
     if not namespace or namespaces.is_xmi(namespace):
@@ -69,13 +70,13 @@ def _row(context: Context, row: int) -> int:
     if special is not None and structure.is_value(context, row, feature):
         special(context, row)
         return document.ends[row]
-    type_name = document.type(row)
-    if not type_name:
-        if structure.is_text(context, row, feature):
-            context.text(row, feature)
-            return document.ends[row]
-        type_name = vocabulary.DEFAULT_TYPES.get(feature, "")
-    return _element(context, row, type_name, feature)
+    type_name = document.types[row]
+    if type_name:
+        return _element(context, row, type_name, feature)
+    if structure.is_text(context, row, feature):
+        context.text(row, feature)
+        return document.ends[row]
+    return _element(context, row, metaclasses.DEFAULT_TYPES.get(feature, ""), feature)
 
 
 def _element(context: Context, row: int, type_name: str, feature: str) -> int:
@@ -83,7 +84,7 @@ def _element(context: Context, row: int, type_name: str, feature: str) -> int:
     if reader is not None:
         reader(context, row)
         return context.next_row(row)
-    kind = vocabulary.kind_of(type_name)
+    kind = metaclasses.kind_of(type_name)
     if kind is None or not context.make(row, kind[0], kind[1], type_name, feature):
         return context.subtree(row, Verdict.UNSUPPORTED)
     return row + 1

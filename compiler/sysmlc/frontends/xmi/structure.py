@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import hrefs
+from sysmlc.frontends.xmi import hrefs, metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.values import ValueText, value_of
@@ -17,15 +17,15 @@ _Reader = Callable[[Context, int], None]
 
 def is_value(context: Context, row: int, feature: str) -> bool:
     """Whether the row holds a value, not an element of the same feature (a pin, a constraint)."""
-    type_name = context.document.type(row)
+    type_name = context.document.types[row]
     if feature in _ALWAYS:
         return True
     if type_name:
-        return type_name in v.VALUE_TYPES
+        return type_name in metaclasses.VALUE_TYPES
     if feature == "value":
         owner = context.owner(row)
         return owner is not None and (owner.kind is Kind.SLOT or owner.subkind == "value")
-    return feature not in v.DEFAULT_TYPES
+    return feature not in metaclasses.DEFAULT_TYPES
 
 
 def is_text(context: Context, row: int, feature: str) -> bool:
@@ -33,7 +33,7 @@ def is_text(context: Context, row: int, feature: str) -> bool:
     document = context.document
     is_leaf = document.ends[row] == row + 1
     has_attributes = any("}" not in name for name in document.attributes[row])
-    return is_leaf and not has_attributes and feature not in v.DEFAULT_TYPES
+    return is_leaf and not has_attributes and feature not in metaclasses.DEFAULT_TYPES
 
 
 # -- notation ----------------------------------------------------------------------------------
@@ -269,7 +269,7 @@ FEATURES: dict[str, _Reader] = {
 }
 
 TYPES: dict[str, _Reader] = {
-    **dict.fromkeys(v.EDGE_TYPES, _edge),
+    **dict.fromkeys(metaclasses.EDGE_TYPES, _edge),
     "Extension": _extension,
     "ExtensionEnd": _extension,
     "Property": _property,

@@ -9,6 +9,8 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
 from sysmlc.ir import Edge, Graph, Kind, Reference
 
+_NOT_KEPT = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
+
 
 class Lowered:
     """One document and what became of its rows.
@@ -90,7 +92,7 @@ class Unit:
         if found is None:
             return hrefs.normalised(target, lowered.document.name) if is_href else target
         holder, row = found
-        if holder.verdicts[row] in (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED):
+        if not holder.own[row] and holder.verdicts[row] in _NOT_KEPT:
             return None
         return holder.gids[row] or None
 
@@ -99,23 +101,27 @@ class Unit:
         for link in self.links:
             target = self.target_id(link.lowered, link.target, link.is_href)
             if target is not None:
-                self._refer(link, target)
+                self.graph.refer(self._reference(link, target))
         self.links.clear()
 
-    def _refer(self, link: Link, target: str) -> None:
-        document = link.lowered.document
-        ordinal = document.ordinals[link.row]
-        kind, name = Kind.CLASS, ""
-        if link.is_href and target not in self.graph:
-            kind, name = hrefs.hint(document, link.row, link.feature)
-            if link.lowered.verdicts[link.row] is Verdict.MAPPED:
-                link.lowered.verdicts[link.row] = Verdict.EXTERNAL
-        source = link.source
-        if link.is_reversed:
-            if target not in self.graph:
-                return
-            source, target = target, source
-        self.graph.refer(Reference(link.edge, source, target, kind, name, ordinal))
+    def _reference(self, link: Link, target: str) -> Reference:
+        edge, source, lowered, _, row, _, is_href, is_reversed = link
+        ordinal = lowered.document.ordinals[row]
+        if is_reversed and target in self.graph:
+            return Reference(edge, target, source, ordinal=ordinal)
+        if not is_href or target in self.graph:
+            return Reference(edge, source, target, ordinal=ordinal)
+        if lowered.verdicts[row] is Verdict.MAPPED:
+            lowered.verdicts[row] = Verdict.EXTERNAL
+        known = hrefs.hint(lowered.document, row, link.feature)
+        kind = known[0] or self._likely(link)
+        return Reference(edge, source, target, kind, known[1], ordinal)
+
+    def _likely(self, link: Link) -> Kind:
+        """What is general or redefined is most likely of the kind of what refers to it."""
+        if link.edge in (Edge.SPECIALIZES, Edge.REDEFINES):
+            return self.graph[link.source].kind
+        return hrefs.likely(link.feature)
 
 
 def _archive(name: str) -> str:

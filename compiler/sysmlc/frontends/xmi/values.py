@@ -31,7 +31,7 @@ class ValueText(NamedTuple):
 
 def value_of(document: Document, row: int) -> ValueText:
     """The value that the value specification in this row means (UML 2.5.1 clause 8)."""
-    type_name = document.type(row)
+    type_name = document.types[row]
     if type_name in _LITERALS:
         return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
     if type_name == "InstanceValue":

@@ -1,0 +1,114 @@
+"""What is special about the elements of single kinds when they are made."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.ir import Edge, Element, Kind
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.xmi.context import Context
+
+Detail = Callable[["Context", Element, int, str, str], None]
+"""Completes an element; takes its row, the name of its metaclass and its feature."""
+
+
+def of(kind: Kind) -> Detail:
+    """What completes elements of this kind."""
+    return _DETAILS.get(kind, _nothing)
+
+
+def _nothing(
+    _context: "Context", _element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    return None
+
+
+def _parameter(
+    _context: "Context", element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    element.attrs["direction"] = "in"
+
+
+def _pin(_context: "Context", element: Element, _row: int, type_name: str, feature: str) -> None:
+    element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
+    element.attrs["subkind"] = metaclasses.hyphenated(feature)
+
+
+def _pseudostate(
+    _context: "Context", element: Element, _row: int, _type_name: str, _feature: str
+) -> None:
+    element.attrs["subkind"] = "initial"
+
+
+def _constraint(
+    context: "Context", element: Element, _row: int, _type_name: str, feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    if feature in v.CONDITIONS:
+        element.attrs["subkind"] = v.CONDITIONS[feature]
+    if feature == "guard" and owner is not None:
+        context.guards.append((owner, element.id))
+
+
+def _transition(
+    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    for target in context.document.targets(row, "guard"):
+        context.guards.append((element, target))
+
+
+def _behaviour(
+    context: "Context", element: Element, _row: int, _type_name: str, feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    edge = v.STATE_BEHAVIOURS.get(feature)
+    if edge is not None and owner is not None:
+        context.graph.connect(edge, owner, element)
+
+
+def _trigger(context: "Context", element: Element, row: int, _type_name: str, feature: str) -> None:
+    owner = context.graph.owner(element)
+    context.triggers.append((element, row))
+    if feature == "deferrableTrigger":
+        element.attrs["deferred"] = True
+    elif owner is not None:
+        context.graph.connect(Edge.TRIGGER, owner, element)
+
+
+def _message(
+    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    context.messages.append((element, row))
+
+
+def _connector_end(
+    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    owner = context.graph.owner(element)
+    if owner is not None:
+        context.graph.connect(Edge.END, owner, element)
+    context.ends.append((element, row))
+
+
+def _activity_parameter(
+    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+) -> None:
+    context.parameters.append((element, row))
+
+
+_DETAILS: dict[Kind, Detail] = {
+    Kind.PARAMETER: _parameter,
+    Kind.PIN: _pin,
+    Kind.PSEUDOSTATE: _pseudostate,
+    Kind.CONSTRAINT: _constraint,
+    Kind.TRANSITION: _transition,
+    Kind.ACTIVITY: _behaviour,
+    Kind.STATE_MACHINE: _behaviour,
+    Kind.INTERACTION: _behaviour,
+    Kind.TRIGGER: _trigger,
+    Kind.MESSAGE: _message,
+    Kind.CONNECTOR_END: _connector_end,
+    Kind.ACTIVITY_PARAMETER: _activity_parameter,
+}
