@@ -1,0 +1,58 @@
+"""The pass ``recipe``: three-level recipe models from activities (thesis 3.5, 6.5.4)."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_model import recipe_model
+from sysmlc.passes.recipe_remarks import remark
+from sysmlc.passes.recipe_steps import activity_nodes
+from sysmlc.recipe.model import Model
+from sysmlc.recipe.validate import validate
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """Finds the recipes, derives what follows, and reports what is wrong with them.
+
+    Assumes names resolved and roles and levels set; then ``graph.derived(recipe.model.Model)``
+    holds one model a recipe, sorted by id. The graph itself stays as it is.
+    ``levels`` maps ids or qualified names of elements to recipe levels and wins over the model;
+    ``tolerance`` is the share by which the times of two levels may differ.
+    """
+
+    name: ClassVar[str] = "recipe"
+    after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
+
+    levels: Mapping[str, str] = field(default_factory=dict)
+    tolerance: float = 0.1
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Store the recipe models of the graph."""
+        context = Context(graph, dict(self.levels))
+        models = [recipe_model(context, one) for one in recipes(context)]
+        models.sort(key=lambda model: model.recipe.id)
+        for model in models:
+            remark(context, model, sink)
+            validate(model, sink, lambda id: _subject(graph, id), self.tolerance)
+        graph.store(Model, models)
+
+
+def recipes(context: Context) -> Iterator[Element]:
+    """Activities at the level recipe, and those that only call tasks without being one."""
+    for activity in context.graph.of_kind(Kind.ACTIVITY):
+        level = context.own_level(activity)
+        if level == "recipe" or (not level and _has_task(context, activity)):
+            yield activity
+
+
+def _has_task(context: Context, activity: Element) -> bool:
+    return any(context.level(node) == "task" for node in activity_nodes(context, activity))
+
+
+def _subject(graph: Graph, id: str) -> Subject:
+    element = graph.get(id)
+    return Subject(id) if element is None else graph.subject(element)

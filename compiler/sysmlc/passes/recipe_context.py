@@ -1,0 +1,156 @@
+"""What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.recipe.model import Range
+
+NAMESPACE = "urn:sysmlc:profile:1"
+"""Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
+
+LEVELS = {
+    "Recipe": "recipe",
+    "Task": "task",
+    "MachineService": "machine service",
+    "InfrastructureService": "infrastructure service",
+    "MachineFunction": "machine function",
+    "Machine": "machine",
+    "Material": "material",
+}
+SERVICES = ("machine service", "infrastructure service")
+_TYPED = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.PIN, Kind.ACTIVITY_PARAMETER)
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """The graph with what the user said about levels; it remembers what it has computed."""
+
+    graph: Graph
+    levels: Mapping[str, str] = field(default_factory=dict)
+    _segments: dict[str, str] = field(default_factory=dict)
+
+    # -- levels --------------------------------------------------------------------------------
+
+    def own_level(self, element: Element) -> str:
+        """Level that the options, ``classify`` or a stereotype give the element itself."""
+        chosen = self.levels.get(element.id) or self.levels.get(self.name(element))
+        if chosen:
+            return chosen
+        found = str(element.attrs.get("level", ""))
+        if found in LEVELS.values():
+            return found
+        applied = (name for name in LEVELS if self.applied(element, name))
+        return next((LEVELS[name] for name in applied), "")
+
+    def level(self, element: Element | None) -> str:
+        """Level of an element: its own, or that of its type, of what it calls or specialises."""
+        if element is None:
+            return ""
+        family = [element, *query.generals(self.graph, element)]
+        own = next((found for one in family if (found := self.own_level(one))), "")
+        if own:
+            return own
+        definition = self.definition(element)
+        return "" if definition is None or definition is element else self.level(definition)
+
+    def definition(self, element: Element) -> Element | None:
+        """What defines a use: the behaviour or operation that it calls, or its type."""
+        if element.kind is Kind.ACTION:
+            return self.graph.target(element, Edge.CALLS)
+        return query.type_of(self.graph, element)
+
+    # -- stereotypes and tagged values ---------------------------------------------------------
+
+    def applied(self, element: Element, stereotype: str) -> Element | None:
+        """Application of a stereotype of the shipped profile, or of one that specialises it."""
+        for application in query.applications(self.graph, element):
+            names = query.lineage(application)
+            ours = application.attrs.get("namespace") in (NAMESPACE, None)
+            if stereotype in names and (ours or len(names) > 1):
+                return application
+        return None
+
+    def tags(self, element: Element, stereotype: str) -> "Tags":
+        """Tagged values of one stereotype of the profile; empty when it is not applied."""
+        application = self.applied(element, stereotype)
+        return Tags({} if application is None else application.attrs)
+
+    # -- ids -----------------------------------------------------------------------------------
+
+    def name(self, element: Element) -> str:
+        """Qualified name; an unnamed part shows its kind, siblings of one name get ``#2``."""
+        path = [element, *self.graph.ancestors(element)]
+        return "::".join(self._segment(part) for part in reversed(path))
+
+    def reference(self, value: str) -> str:
+        """Id for the JSON of what a tagged value names: an element of the graph, or its text."""
+        element = self.graph.get(value)
+        return value if element is None else self.name(element)
+
+    def _segment(self, element: Element) -> str:
+        if element.id not in self._segments:
+            owner = self.graph.owner(element)
+            siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
+            self._segments.update(_numbered(siblings))
+        return self._segments[element.id]
+
+
+@dataclass(frozen=True, slots=True)
+class Tags:
+    """Tagged values as the types that the profile gives them; None or empty when absent."""
+
+    attrs: Mapping[str, object]
+
+    def text(self, name: str) -> str:
+        """Text, or the empty string."""
+        return next(iter(self.texts(name)), "")
+
+    def texts(self, name: str) -> list[str]:
+        """All texts; a list of ids in one attribute is split."""
+        value = self.attrs.get(f"tag.{name}")
+        if value is None:
+            return []
+        return [str(one) for one in value] if isinstance(value, tuple) else [str(value)]
+
+    def ids(self, name: str) -> list[str]:
+        """References: ids of elements, or names."""
+        return [one for text in self.texts(name) for one in text.split()]
+
+    def flag(self, name: str) -> bool | None:
+        """Truth value."""
+        text = self.text(name).lower()
+        return None if not text else text == "true"
+
+    def number(self, name: str) -> int | float | None:
+        """A number; None when there is none or it cannot be read."""
+        return number(self.text(name))
+
+    def integer(self, name: str) -> int | None:
+        """A whole number."""
+        value = self.number(name)
+        return int(value) if value is not None and value == int(value) else None
+
+    def range(self, low: str, high: str) -> Range | None:
+        """Two numbers; one of them stands for both."""
+        values = [v for v in (self.number(low), self.number(high)) if v is not None]
+        return Range(values[0], values[-1]) if values else None
+
+
+def number(text: str) -> int | float | None:
+    """The number that a text is; whole numbers are integers."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    if value != value or value in (float("inf"), float("-inf")):
+        return None
+    return int(value) if value == int(value) else value
+
+
+def _numbered(siblings: list[Element]) -> Iterator[tuple[str, str]]:
+    seen: dict[str, int] = {}
+    for element in siblings:
+        word = element.name or element.subkind or element.kind.lower()
+        seen[word] = seen.get(word, 0) + 1
+        yield element.id, word if seen[word] == 1 else f"{word}#{seen[word]}"

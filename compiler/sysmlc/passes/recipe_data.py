@@ -1,0 +1,129 @@
+"""Data of an activity: which variables its guards, pins and parameters stand for."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_expressions import is_data, parameter, read
+from sysmlc.recipe.expression import Expr, Lit, Var
+from sysmlc.recipe.model import Parameter
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """Variables of one activity.
+
+    An output pin is the variable of its own name: an attribute or parameter of the activity, or
+    one that the pin declares; two undeclared pins of one name become ``action.pin``.
+    """
+
+    context: Context
+    activity: Element
+    declared: frozenset[str]
+    shared: frozenset[str]
+
+    @classmethod
+    def of(cls, context: Context, activity: Element) -> "Data":
+        """The data of an activity."""
+        owned = context.graph.owned(activity)
+        names = {one.name for one in owned if one.kind in (Kind.PARAMETER, Kind.PROPERTY)}
+        pins = Counter(pin.name for pin in _outputs(context, activity))
+        shared = {name for name, count in pins.items() if count > 1}
+        return cls(context, activity, frozenset(names), frozenset(shared - names))
+
+    # -- what an action reads and writes -------------------------------------------------------
+
+    def bind(self, node: Element) -> tuple[tuple[str, Expr], ...]:
+        """Input pins of an action with the expressions that fill them, by name."""
+        found = ((pin.name, self._filled(pin)) for pin in self._pins(node, "in"))
+        return tuple(sorted((name, value) for name, value in found if value is not None))
+
+    def assign(self, node: Element) -> tuple[tuple[str, str], ...]:
+        """Output pins of an action with the variables that they set, by name."""
+        return tuple(sorted((pin.name, self.variable(pin)) for pin in self._pins(node, "out")))
+
+    def variable(self, pin: Element) -> str:
+        """Variable that an output pin sets."""
+        for flow in query.outgoing(self.context.graph, pin):
+            target = query.flow_target(self.context.graph, flow)
+            if target is not None and target.kind is Kind.ACTIVITY_PARAMETER:
+                return self._parameter_name(target)
+        if pin.name in self.shared:
+            owner = self.context.graph.owner(pin)
+            return f"{'' if owner is None else owner.name}.{pin.name}"
+        return pin.name
+
+    def source_of(self, flow: Element) -> Expr | None:
+        """Value that an object flow carries: the variable of the pin or parameter it starts at."""
+        graph, seen = self.context.graph, {flow.id}
+        stack = [flow]
+        while stack:
+            start = query.flow_source(graph, stack.pop())
+            if start is None:
+                continue
+            if start.kind is Kind.PIN:
+                return Var(self.variable(start))
+            if start.kind is Kind.ACTIVITY_PARAMETER:
+                return Var(self._parameter_name(start))
+            before = [one for one in query.incoming(graph, start) if one.id not in seen]
+            seen.update(one.id for one in before)
+            stack.extend(one for one in before if one.kind is Kind.OBJECT_FLOW)
+        return None
+
+    # -- declarations --------------------------------------------------------------------------
+
+    def parameters(self, *directions: str) -> tuple[Parameter, ...]:
+        """Parameters with one of the directions; machines and materials are left out."""
+        return data_parameters(self.context, self.activity, *directions)
+
+    def variables(self) -> tuple[Parameter, ...]:
+        """Attributes of the activity, and what output pins declare, by name."""
+        owned = self.context.graph.owned(self.activity)
+        attributes = [
+            one for one in owned if one.kind is Kind.PROPERTY and is_data(self.context, one)
+        ]
+        found = {one.name: parameter(self.context, one) for one in attributes}
+        names = self.declared
+        for pin in _outputs(self.context, self.activity):
+            name = self.variable(pin)
+            if name not in names and is_data(self.context, pin):
+                made = parameter(self.context, pin)
+                found.setdefault(name, Parameter(name, made.type, made.unit))
+        return tuple(found[name] for name in sorted(found))
+
+    def _pins(self, node: Element, direction: str) -> Iterator[Element]:
+        for pin in self.context.graph.owned(node):
+            fits = pin.kind is Kind.PIN and pin.attrs.get("direction") == direction
+            if fits and is_data(self.context, pin):
+                yield pin
+
+    def _filled(self, pin: Element) -> Expr | None:
+        value = pin.attrs.get("value")
+        if isinstance(value, str):
+            return read(value)
+        if isinstance(value, bool | int | float):
+            return Lit(value)
+        for flow in query.incoming(self.context.graph, pin):
+            found = self.source_of(flow)
+            if found is not None:
+                return found
+        return Var(pin.name) if pin.name in self.declared else None
+
+    def _parameter_name(self, node: Element) -> str:
+        found = self.context.graph.target(node, Edge.REFERENCES)
+        return node.name if found is None else found.name
+
+
+def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:
+    """Parameters that hold values, in order."""
+    found = query.parameters(context.graph, element, *directions)
+    return tuple(parameter(context, one) for one in found if is_data(context, one))
+
+
+def _outputs(context: Context, activity: Element) -> Iterator[Element]:
+    for node in context.graph.owned(activity):
+        for pin in context.graph.owned(node) if node.kind is Kind.ACTION else ():
+            if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
+                yield pin

@@ -1,0 +1,189 @@
+"""Machines, materials, and the relations of tasks and services to machines."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_expressions import is_data, optional, value
+from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """What relates a task or a service to machines: a dependency, object flow or partition."""
+
+    element: Element
+    machines: tuple[Element, ...]
+
+
+def machine_of(context: Context, element: Element | None) -> Element | None:
+    """The machine that an element is or stands for; None when it is none.
+
+    An object node or pin stands for its type; a property, instance or class is itself one.
+    """
+    if element is None or context.level(element) != "machine":
+        return None
+    if element.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.PIN, Kind.ACTIVITY_PARAMETER):
+        type_ = query.type_of(context.graph, element)
+        return element if type_ is None else type_
+    return element
+
+
+# -- relations ---------------------------------------------------------------------------------
+
+
+def by_dependency(context: Context, client: Element) -> Iterator[Relation]:
+    """Dependencies and allocations from a task or service to machines."""
+    for one in context.graph.sources(client, Edge.CLIENT):
+        is_allocation = one.role == "allocate" or context.applied(one, "Capability") is not None
+        suppliers = context.graph.targets(one, Edge.SUPPLIER)
+        if is_allocation and suppliers:
+            yield Relation(one, tuple(suppliers))
+
+
+def by_partition(context: Context, node: Element) -> Iterator[Relation]:
+    """Partitions that represent machines."""
+    for partition in context.graph.targets(node, Edge.IN_PARTITION):
+        represented = context.graph.target(partition, Edge.REPRESENTS)
+        machine = machine_of(context, represented) or machine_of(context, partition)
+        if machine is not None:
+            yield Relation(partition, (machine,))
+
+
+def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
+    """Machines whose class owns the operation or behaviour, or an operation that it implements."""
+    operations = context.graph.sources(behavior, Edge.METHOD)
+    for feature in [behavior, *operations]:
+        owner = context.graph.owner(feature)
+        if owner is None or owner.kind not in (Kind.CLASS, Kind.COMPONENT):
+            continue
+        for machine in _machines_like(context, owner):
+            yield Relation(feature, (machine,))
+
+
+def _machines_like(context: Context, owner: Element) -> Iterator[Element]:
+    for one in context.graph.of_kind(Kind.CLASS, Kind.COMPONENT):
+        is_machine = context.level(one) == "machine" and not one.attrs.get("abstract")
+        if is_machine and query.conforms(context.graph, one, owner):
+            yield one
+
+
+# -- modes and providers -----------------------------------------------------------------------
+
+
+def modes(context: Context, relations: Iterator[Relation]) -> tuple[Mode, ...]:
+    """Ways to equip a task; relations with one ``mode`` are needed at the same time."""
+    groups: dict[str, list[Mode]] = {}
+    for relation in relations:
+        tags = context.tags(relation.element, "Capability")
+        key = tags.text("mode") or f"\x00{relation.element.id}"
+        groups.setdefault(key, []).append(_mode(context, relation))
+    return tuple(sorted(map(_together, groups.values()), key=lambda mode: mode.machines))
+
+
+def _mode(context: Context, relation: Relation) -> Mode:
+    tags = context.tags(relation.element, "Capability")
+    return Mode(
+        tuple(sorted(context.name(one) for one in relation.machines)),
+        tags.integer("duration"),
+        tags.range("minPower", "maxPower"),
+        tuple(sorted(map(context.reference, tags.ids("tools")))),
+        tags.flag("available"),
+    )
+
+
+def _together(parts: list[Mode]) -> Mode:
+    durations = [part.duration for part in parts if part.duration is not None]
+    powers = [part.power for part in parts if part.power is not None]
+    known = [part.available for part in parts if part.available is not None]
+    return Mode(
+        tuple(sorted({machine for part in parts for machine in part.machines})),
+        max(durations, default=None),
+        _sum(powers),
+        tuple(sorted({tool for part in parts for tool in part.tools})),
+        all(known) if known else None,
+    )
+
+
+def _sum(powers: list[Range]) -> Range | None:
+    if not powers:
+        return None
+    highs = [one.max for one in powers if one.max is not None]
+    return Range(sum(one.min for one in powers), sum(highs))
+
+
+def providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider, ...]:
+    """Machines that offer a service, each once, sorted."""
+    found: dict[str, Provider] = {}
+    for relation in relations:
+        mode = _mode(context, relation)
+        for machine in mode.machines:
+            call = opcua(context, relation.element)
+            made = Provider(machine, mode.duration, mode.power, mode.tools, call)
+            found.setdefault(machine, made)
+    return tuple(found[machine] for machine in sorted(found))
+
+
+def opcua(context: Context, element: Element) -> OpcUa | None:
+    """The OPC UA call on an element, or None."""
+    application = context.applied(element, "OpcUaCall")
+    if application is None:
+        return None
+    tags = context.tags(element, "OpcUaCall")
+    return OpcUa(
+        tags.text("kind") or "call",
+        tags.text("object"),
+        tags.text("method"),
+        tags.text("endpoint"),
+        tags.text("namespaceUri"),
+        optional(tags.text("doneWhen")),
+        tags.integer("timeout"),
+        element.id,
+    )
+
+
+# -- machines and materials --------------------------------------------------------------------
+
+
+def machine(context: Context, element: Element) -> Machine:
+    """An element at the level machine as a value; tags may stand on its class."""
+    family = [element, *query.generals(context.graph, element)]
+    type_ = query.type_of(context.graph, element)
+    family += [] if type_ is None else [type_]
+    holder = next((one for one in family if context.applied(one, "Machine")), element)
+    tags = context.tags(holder, "Machine")
+    plant = tags.text("plantElement")
+    return Machine(
+        context.name(element),
+        tags.text("machineClass"),
+        tags.text("amlId"),
+        tags.text("endpoint"),
+        context.reference(plant) if plant else "",
+        element.id,
+    )
+
+
+def material(context: Context, element: Element) -> Material:
+    """An element at the level material as a value, with its attributes as properties."""
+    tags = context.tags(element, "Material")
+    return Material(
+        context.name(element),
+        tags.number("available"),
+        tags.text("unit"),
+        tags.text("position"),
+        tags.integer("buffer"),
+        bool(tags.flag("noWait")),
+        tuple(sorted(_properties(context, element))),
+        element.id,
+    )
+
+
+def _properties(
+    context: Context, element: Element
+) -> Iterator[tuple[str, bool | int | float | str]]:
+    for one in query.features(context.graph, element):
+        found = value(one)
+        if one.kind is Kind.PROPERTY and found is not None and is_data(context, one):
+            named = context.graph.get(found) if isinstance(found, str) else None
+            yield one.name, found if named is None else named.name

@@ -1,0 +1,122 @@
+"""One recipe with the closure of what it refers to."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Protocol, TypeVar
+
+from sysmlc.ir import Element
+from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_graphs import flow_graph
+from sysmlc.passes.recipe_machines import machine, material
+from sysmlc.passes.recipe_services import function, service
+from sysmlc.passes.recipe_steps import activity_flows, activity_nodes, step_kind
+from sysmlc.passes.recipe_tasks import (
+    Step,
+    material_of,
+    precedence,
+    refinement,
+    steps,
+    task,
+)
+from sysmlc.recipe.derive import derive
+from sysmlc.recipe.model import FlowGraph, Model, Recipe
+
+
+class _Named(Protocol):
+    @property
+    def id(self) -> str: ...
+
+
+_T = TypeVar("_T", bound=_Named)
+
+
+@dataclass(slots=True)
+class _Closure:
+    """Definitions that a recipe needs, each with the nodes that use it, by element id."""
+
+    services: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
+    functions: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
+    service_graphs: dict[str, FlowGraph] = field(default_factory=dict)
+    function_graphs: dict[str, FlowGraph] = field(default_factory=dict)
+
+
+def recipe_model(context: Context, activity: Element) -> Model:
+    """The recipe of an activity, with everything derived."""
+    found = steps(context, activity)
+    closure = _Closure()
+    for step in found:
+        if step.refinement is not None:
+            _refine(context, step.refinement, "task", closure)
+    recipe = _recipe(context, activity, found)
+    services = [service(context, *one) for one in closure.services.values()]
+    functions = [function(context, *one) for one in closure.functions.values()]
+    named = {m for one in recipe.tasks for mode in one.equipment for m in mode.machines}
+    named |= {provider.machine for one in services for provider in one.providers}
+    return derive(
+        Model(
+            recipe,
+            _known(context, named, machine, "machine"),
+            _known(context, _materials(context, recipe, activity), material, "material"),
+            _sorted(services),
+            _sorted(functions),
+            _sorted(closure.service_graphs.values()),
+            _sorted(closure.function_graphs.values()),
+        )
+    )
+
+
+def _recipe(context: Context, activity: Element, found: list[Step]) -> Recipe:
+    tags = context.tags(activity, "Recipe")
+    product = tags.text("product")
+    tasks = [task(context, activity, step) for step in found]
+    return Recipe(
+        context.name(activity),
+        _sorted(tasks),
+        precedence(context, activity, found),
+        tags.text("version"),
+        context.reference(product) if product else "",
+        tags.integer("priority"),
+        bool(tags.flag("noWait")),
+        activity.id,
+    )
+
+
+def _refine(context: Context, activity: Element, inside: str, closure: _Closure) -> None:
+    """The graph of an activity, and what its nodes call, level by level; cycles end it."""
+    graphs = closure.service_graphs if inside == "task" else closure.function_graphs
+    if activity.id in graphs:
+        return
+    graphs[activity.id] = flow_graph(context, activity, inside)
+    for node in activity_nodes(context, activity):
+        kind = step_kind(context, node, inside)
+        table = {"service": closure.services, "function": closure.functions}.get(kind)
+        if table is None:
+            continue
+        definition = context.definition(node) or node
+        table.setdefault(definition.id, (definition, []))[1].append(node)
+        refined = refinement(context, definition) if kind == "service" else None
+        if refined is not None:
+            _refine(context, refined, "service", closure)
+
+
+def _materials(context: Context, recipe: Recipe, activity: Element) -> set[str]:
+    flows = activity_flows(context, activity)
+    found = (material_of(context, flow) for flow in flows)
+    named = {context.name(one) for one in found if one is not None}
+    return named | ({recipe.product} if recipe.product else set())
+
+
+def _known(
+    context: Context, names: set[str], make: Callable[[Context, Element], _T], level: str
+) -> tuple[_T, ...]:
+    """Values for the names that are elements of the level, sorted by name."""
+    found = {context.name(one): one for one in _of_level(context, level)}
+    return tuple(make(context, found[name]) for name in sorted(names) if name in found)
+
+
+def _of_level(context: Context, level: str) -> Iterator[Element]:
+    return (one for one in context.graph if context.level(one) == level)
+
+
+def _sorted(values: Iterable[_T]) -> tuple[_T, ...]:
+    return tuple(sorted(values, key=lambda one: one.id))

@@ -1,0 +1,152 @@
+"""What the nodes of an activity are in a recipe graph: services, functions, control, the rest."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.passes.recipe_context import SERVICES, Context
+from sysmlc.passes.recipe_data import Data
+from sysmlc.passes.recipe_expressions import assignments, optional, read
+from sysmlc.recipe.model import Node
+
+CONTROL_KINDS = {
+    "initial": "initial",
+    "final": "final",
+    "flow-final": "flowFinal",
+    "decision": "decision",
+    "merge": "merge",
+    "fork": "fork",
+    "join": "join",
+}
+_HELPERS = ("opaque", "function")
+
+
+def step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
+    """Kind of the recipe node that an activity node becomes; empty for a buffer of data.
+
+    ``inside`` is the level of the activity: what a task calls is a service, what a service
+    calls is a function, unless a level says otherwise.
+    """
+    if node.kind is Kind.CONTROL:
+        return CONTROL_KINDS.get(node.subkind, "action")
+    level = context.level(node)
+    if level in SERVICES:
+        return "service"
+    if level == "machine function":
+        return "function"
+    if node.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER, Kind.PIN):
+        return ""
+    called = context.definition(node) if node.kind is Kind.ACTION else None
+    if called is None or node.subkind not in ("call-behavior", "call-operation"):
+        return _plain_kind(context, node)
+    if called.subkind in _HELPERS:
+        return "call"
+    return "service" if inside == "task" else "function"
+
+
+def by_position(context: Context, node: Element, kind: str) -> bool:
+    """Whether only its position made the node a service or a function."""
+    return kind in ("service", "function") and not context.level(node)
+
+
+def _plain_kind(context: Context, node: Element) -> str:
+    if node.subkind == "opaque" and assignments(str(node.attrs.get("body", ""))):
+        return "assign"
+    trigger = next(_triggers(context, node), None) if node.subkind == "accept" else None
+    if trigger is None:
+        return "wait" if node.subkind == "accept" else "action"
+    return "delay" if trigger.subkind == "time" else "wait"
+
+
+def _triggers(context: Context, node: Element) -> Iterator[Element]:
+    for one in context.graph.targets(node, Edge.TRIGGER):
+        yield one
+    for one in context.graph.owned(node):
+        if one.kind is Kind.TRIGGER:
+            yield one
+
+
+def nodes_of(context: Context, node: Element, kind: str, data: Data) -> list[Node]:
+    """Nodes of the recipe graph for one node; an effect of several assignments is a chain."""
+    made = Node(context.name(node), kind, element=node.id)
+    return _MAKERS.get(kind, _bare)(context, node, made, data)
+
+
+def _bare(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    return [made]
+
+
+def _called(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    definition = context.definition(node)
+    ref = context.name(node if definition is None else definition)
+    return [_with(made, ref=ref, bind=data.bind(node), assign=data.assign(node))]
+
+
+def _assigned(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    body = str(node.attrs.get("body", ""))
+    return [
+        _with(made, id=f"{made.id}#{number}" if number else made.id, variable=v, expression=e)
+        for number, (v, e) in enumerate(assignments(body) or ())
+    ]
+
+
+def _action(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    text = str(node.attrs.get("body", "") or node.attrs.get("value", "") or node.subkind)
+    return [_with(made, text=text, bind=data.bind(node), assign=data.assign(node))]
+
+
+def _wait(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    trigger = next(_triggers(context, node), None)
+    event = None if trigger is None else context.graph.target(trigger, Edge.TYPED_BY)
+    condition = "" if trigger is None else str(trigger.attrs.get("condition", ""))
+    text = condition or (node.name if event is None else context.name(event))
+    return [_with(made, expression=optional(condition), text=text, assign=data.assign(node))]
+
+
+def _delay(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    trigger = next(_triggers(context, node), None)
+    when = "" if trigger is None else str(trigger.attrs.get("when", ""))
+    return [_with(made, expression=read(when), text=when)]
+
+
+def _with(node: Node, **changes: object) -> Node:
+    return replace(node, **changes)  # type: ignore[arg-type]
+
+
+_Maker = Callable[[Context, Element, Node, Data], list[Node]]
+_MAKERS: dict[str, _Maker] = {
+    "service": _called,
+    "function": _called,
+    "call": _called,
+    "assign": _assigned,
+    "action": _action,
+    "wait": _wait,
+    "delay": _delay,
+}
+
+
+def activity_nodes(context: Context, activity: Element) -> list[Element]:
+    """Nodes that the activity owns, directly or in an interruptible or plain structured node."""
+    kinds = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED, Kind.OBJECT_NODE, Kind.DATA_STORE)
+    owned = context.graph.owned(activity)
+    return [one for one in owned if one.kind in kinds or one.kind is Kind.ACTIVITY_PARAMETER]
+
+
+def activity_flows(context: Context, activity: Element) -> list[Element]:
+    """Control flows and object flows of the activity."""
+    kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
+    return [one for one in context.graph.owned(activity) if one.kind in kinds]
+
+
+def end_node(context: Context, end: Element | None) -> Element | None:
+    """The node that an end of a flow belongs to: a pin stands for its action."""
+    if end is None or end.kind is not Kind.PIN:
+        return end
+    return context.graph.owner(end)
+
+
+def flow_ends(context: Context, flow: Element) -> tuple[Element | None, Element | None]:
+    """Source and target nodes of a flow."""
+    graph = context.graph
+    ends = query.flow_source(graph, flow), query.flow_target(graph, flow)
+    return end_node(context, ends[0]), end_node(context, ends[1])

@@ -1,0 +1,96 @@
+"""Checks of materials and of OPC UA calls (REC011, REC012)."""
+
+import re
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.recipe import samples
+from sysmlc.recipe.checks import Finding
+from sysmlc.recipe.derive import Tables
+from sysmlc.recipe.model import Function, Model, OpcUa, Service, Task
+
+MATERIAL_MISSING = rule(
+    "SM611",
+    "material-not-listed",
+    Severity.ERROR,
+    "the services of task '{task}' consume {needed} of '{material}', but the task lists {listed}",
+    "The scheduler reserves the materials of the task; what its services need beyond that would "
+    "be missing.",
+    "give the task an object flow from '{material}' with that quantity",
+    samples.task(need="2"),
+    samples.task(need="2", have="2"),
+)
+NODE_ID = rule(
+    "SM612",
+    "opc-ua-node-id-unstable",
+    Severity.WARNING,
+    "the OPC UA call on '{element}' {problem}",
+    "The index of a namespace can change when a server starts again; only its URI stays "
+    "(OPC 10000-3, 8.2.2).",
+    "state namespaceUri, or write the node id with nsu=",
+    samples.task(uri=""),
+    samples.task(),
+)
+
+_NODE_ID = re.compile(r"(?:(ns)=\d+;|nsu=[^;]+;)?[isgb]=.+", re.DOTALL)
+
+
+def materials(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC011: what services consume, their task lists, at least as much."""
+    for task in model.recipe.tasks:
+        listed = {one.material: one.quantity for one in task.materials if one.use != "produced"}
+        for material, needed in sorted(_needed(task, tables).items()):
+            if needed > listed.get(material, 0):
+                facts = {
+                    "task": task.id,
+                    "material": material,
+                    "needed": needed,
+                    "listed": listed.get(material, "none"),
+                }
+                yield Finding(MATERIAL_MISSING, task.element, facts)
+
+
+def _needed(task: Task, tables: Tables) -> dict[str, float]:
+    graph = tables.service_graphs.get(task.implementation)
+    found: dict[str, float] = {}
+    for node in () if graph is None else graph.nodes:
+        service = tables.service(node)
+        for use in () if service is None else service.materials:
+            if use.use == "consumed":
+                found[use.material] = found.get(use.material, 0) + use.quantity
+    return found
+
+
+def calls(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC012: node ids are well-formed and do not depend on a session; calls name a method."""
+    for call in _calls(model):
+        for problem in _call_problems(call):
+            facts = {"element": _owner(model, call), "problem": problem}
+            yield Finding(NODE_ID, call.element, facts)
+
+
+def _calls(model: Model) -> Iterator[OpcUa]:
+    owners: tuple[Service | Function, ...] = (*model.services, *model.functions)
+    direct = [one.opcua for one in owners]
+    offered = [one.opcua for service in model.services for one in service.providers]
+    yield from dict.fromkeys(one for one in (*direct, *offered) if one is not None)
+
+
+def _owner(model: Model, call: OpcUa) -> str:
+    for service in model.services:
+        for provider in service.providers:
+            if provider.opcua == call:
+                return f"{service.id} on {provider.machine}"
+    owners: tuple[Service | Function, ...] = (*model.services, *model.functions)
+    return next((one.id for one in owners if one.opcua == call), call.object)
+
+
+def _call_problems(call: OpcUa) -> Iterator[str]:
+    if call.kind == "call" and not call.method:
+        yield "names no method"
+    for id in (call.object, call.method):
+        match = _NODE_ID.fullmatch(id)
+        if id and match is None:
+            yield f"has '{id}', which is no node id"
+        elif match is not None and match[1] and not call.namespace_uri:
+            yield f"has '{id}', which names its namespace by an index only"

@@ -1,0 +1,288 @@
+"""Three-level recipe model as values (thesis 3.5; JSON form: metamodels/sysmlc-recipe.schema.json).
+
+Ids are qualified names of the model; levels refer to one another by id and are never nested.
+Times are integers in milliseconds.
+"""
+
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from sysmlc.recipe.expression import Expr
+
+Number = int | float
+Scalar = bool | int | float | str
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Smallest and largest value; ``max`` None is unbounded."""
+
+    min: Number
+    max: Number | None
+
+
+@dataclass(frozen=True, slots=True)
+class EnumType:
+    """An enumeration with its literals in order."""
+
+    name: str
+    literals: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceType:
+    """A reference to a machine, a material or another element."""
+
+    to: OneOf["machine", "material", "element"]
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class ListType:
+    """A list of values of one type."""
+
+    of: "ValueType"
+
+
+ValueType = OneOf["boolean", "integer", "real", "string"] | EnumType | ReferenceType | ListType
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """An input, output, constant or variable; ``type`` None when the model gives none."""
+
+    name: str
+    type: ValueType | None = None
+    unit: str = ""
+    value: Scalar | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OpcUa:
+    """Where on an OPC UA server a service or function is found; node ids as written."""
+
+    kind: str
+    object: str
+    method: str = ""
+    endpoint: str = ""
+    namespace_uri: str = ""
+    done_when: Expr | None = None
+    timeout: int | None = None
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """A machine that tasks and services can be allocated to."""
+
+    id: str
+    machine_class: str = ""
+    aml_id: str = ""
+    endpoint: str = ""
+    plant_element: str = ""
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A kind of material: what there is of it, where, and how much may wait between tasks."""
+
+    id: str
+    available: Number | None = None
+    unit: str = ""
+    position: str = ""
+    buffer: int | None = None
+    no_wait: bool = False
+    properties: tuple[tuple[str, Scalar], ...] = ()
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialUse:
+    """How much of a material a task uses, and whether it is consumed, produced or carried."""
+
+    material: str
+    quantity: Number
+    use: str
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """One way to equip a task or a service: machines needed at once, with what it costs there."""
+
+    machines: tuple[str, ...]
+    duration: int | None = None
+    power: Range | None = None
+    tools: tuple[str, ...] = ()
+    available: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SubTask:
+    """A service node of a task, as the scheduler sees it (thesis 6.5.1: ``st_ij`` and PA)."""
+
+    node: str
+    alternatives: tuple[Mode, ...]
+    after: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SameMachine:
+    """Service nodes that must run on one machine, and the functions and resources that say so."""
+
+    nodes: tuple[str, ...]
+    because: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Derived:
+    """What can be computed again from the rest of the model."""
+
+    sub_tasks: tuple[SubTask, ...] = ()
+    same_machine: tuple[SameMachine, ...] = ()
+    duration: Range | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A step of a recipe: one use of a task definition."""
+
+    id: str
+    name: str = ""
+    max_duration: int | None = None
+    materials: tuple[MaterialUse, ...] = ()
+    equipment: tuple[Mode, ...] = ()
+    implementation: str = ""
+    pre: Expr | None = None
+    post: Expr | None = None
+    interruptible: bool = False
+    no_wait: bool = False
+    derived: Derived | None = None
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """Tasks and the order between them."""
+
+    id: str
+    tasks: tuple[Task, ...]
+    precedence: tuple[tuple[str, str], ...] = ()
+    version: str = ""
+    product: str = ""
+    priority: int | None = None
+    no_wait: bool = False
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Provider:
+    """A machine that offers a service, with its own duration there."""
+
+    machine: str
+    duration: int | None = None
+    power: Range | None = None
+    tools: tuple[str, ...] = ()
+    opcua: OpcUa | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Service:
+    """A machine service or an infrastructure service (thesis 3.5.2)."""
+
+    id: str
+    kind: OneOf["machine", "infrastructure"]
+    inputs: tuple[Parameter, ...] = ()
+    outputs: tuple[Parameter, ...] = ()
+    constants: tuple[Parameter, ...] = ()
+    materials: tuple[MaterialUse, ...] = ()
+    providers: tuple[Provider, ...] = ()
+    duration: int | None = None
+    implementation: str = ""
+    pre: Expr | None = None
+    post: Expr | None = None
+    interruptible: bool = False
+    opcua: OpcUa | None = None
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Resource:
+    """What a function does with something that only one may have: acquire, hold, release, use."""
+
+    id: str
+    mode: str
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A machine function, at the level of the programmable controller (thesis 3.5.3)."""
+
+    id: str
+    inputs: tuple[Parameter, ...] = ()
+    outputs: tuple[Parameter, ...] = ()
+    duration: Range | None = None
+    resources: tuple[Resource, ...] = ()
+    interruptible: bool = False
+    opcua: OpcUa | None = None
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A node of a service or function graph; which fields count depends on ``kind``.
+
+    Kinds: initial final flowFinal decision merge fork join service function call action assign
+    wait delay loop.
+    """
+
+    id: str
+    kind: str
+    ref: str = ""
+    bind: tuple[tuple[str, Expr], ...] = ()
+    assign: tuple[tuple[str, str], ...] = ()
+    variable: str = ""
+    expression: Expr | None = None
+    text: str = ""
+    max_iterations: int | None = None
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FlowEdge:
+    """An edge of a graph. ``role`` is body or exit on the edges that leave a loop node."""
+
+    source: str
+    target: str
+    guard: Expr | None = None
+    text: str = ""
+    is_else: bool = False
+    item: str = ""
+    role: str = ""
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FlowGraph:
+    """Order of services in a task, or of machine functions in a service."""
+
+    id: str
+    inputs: tuple[Parameter, ...] = ()
+    outputs: tuple[Parameter, ...] = ()
+    variables: tuple[Parameter, ...] = ()
+    nodes: tuple[Node, ...] = ()
+    edges: tuple[FlowEdge, ...] = ()
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """One recipe with everything that it refers to; each tuple is sorted by id."""
+
+    recipe: Recipe
+    machines: tuple[Machine, ...] = ()
+    materials: tuple[Material, ...] = ()
+    services: tuple[Service, ...] = ()
+    functions: tuple[Function, ...] = ()
+    service_graphs: tuple[FlowGraph, ...] = ()
+    function_graphs: tuple[FlowGraph, ...] = ()
