@@ -19,13 +19,14 @@ class Roots:
         """The file that ``href`` in the file ``base`` names, if it is there and allowed.
 
         Anything with a scheme (http, pathmap, platform) is never followed; symbolic links
-        count as where they lead.
+        count as where they lead. A path that no file system can hold leads nowhere, which
+        ``os.path.isfile`` answers and ``Path.is_file`` raises.
         """
         path = unquote(href.partition("#")[0])
         if not path or _SCHEME.match(path) or "\0" in path:
             return None
         target = Path(os.path.realpath(base.parent / path))
-        return target if self.allows(target) and target.is_file() else None
+        return target if self.allows(target) and os.path.isfile(target) else None  # noqa: PTH113
 
     def allows(self, path: Path) -> bool:
         """Whether the real place of the path is inside one of the folders."""
