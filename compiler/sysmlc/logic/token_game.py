@@ -47,8 +47,16 @@ def start(graph: TokenGraph) -> State:
 
 def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
     """The value of every variable that the state decides."""
-    of_edges: dict[str, Literal] = {e.variable: e.id in state.tokens for e in graph.edges}
-    return of_edges | {node.run: node.id in state.running for node in graph.workers()}
+    runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
+    return runs | {edge.variable: edge.id in state.tokens for edge in graph.edges}
+
+
+def state_of(graph: TokenGraph, valuation: Inputs) -> State:
+    """The state that decides these values: the inverse of ``values``."""
+    return State(
+        frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
+        frozenset(node.id for node in graph.workers() if valuation[node.run]),
+    )
 
 
 def step(

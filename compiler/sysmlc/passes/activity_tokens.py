@@ -47,6 +47,7 @@ _PULSE_WORDS = (
 )
 _SILENT = frozenset(_SILENT_WORDS.split(" "))
 _PULSES = frozenset(_PULSE_WORDS.split(" "))
+_SHORT = {"initial": "start", "final": "end"}
 _OUTPUTS = {"send": "send", "broadcast": "send", "send-object": "send", "reply": "reply"}
 _ACCEPTS = ("accept", "accept-call")
 
@@ -124,7 +125,7 @@ class _Builder:
     def _add_node(self, node: Element) -> None:
         label = self.drawing.labels[node.id]
         kind = self._kind(node)
-        short = identifier(node.name or label)
+        short = identifier(node.name or _SHORT.get(node.subkind, label))
         self._put(TokenNode(node.id, kind, label, node.id, self.drawing.region[node.id]), short)
         if kind is NodeKind.ACTION:
             self._put(self._action(node, self.nodes[node.id]), short)

@@ -1,0 +1,6 @@
+"""Scenarios played on the reference interpreters of activities and state machines."""
+
+from sysmlc.simulation.report import Report
+from sysmlc.simulation.runner import run
+
+__all__ = ["Report", "run"]

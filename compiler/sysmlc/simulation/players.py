@@ -1,0 +1,184 @@
+"""What can be simulated: activities and state machines behind one interface."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.logic import evaluate, step, token_game
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Domain,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
+from sysmlc.logic.domains import contains, values
+from sysmlc.logic.formula import Literal
+from sysmlc.logic.machine import Machine
+from sysmlc.logic.machine_reader import read_machine
+from sysmlc.logic.tokens import TokenEdge, TokenGraph, TokenNode
+
+Valuation = dict[str, Literal]
+_LASTING = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+
+
+class Player(Protocol):
+    """A component that makes steps; several results where its diagram leaves a choice."""
+
+    @property
+    def component(self) -> str:
+        """Qualified name."""
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """All variables."""
+
+    @property
+    def pulses(self) -> frozenset[str]:
+        """Inputs that last one step."""
+
+    def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
+        """All first steps with these inputs."""
+
+    def successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> list[Valuation]:
+        """All steps that may follow ``now`` when the next step has these inputs."""
+
+
+def players(graph: Graph) -> dict[str, Player]:
+    """Everything that can be simulated, by qualified name."""
+    found: dict[str, Player] = {}
+    for tokens in graph.derived(TokenGraph):
+        found.setdefault(tokens.component, ActivityPlayer(tokens))
+    for element in graph.of_kind(Kind.STATE_MACHINE):
+        # What is wrong with the machine has been reported by the pass that derives contracts.
+        machine = read_machine(graph, element, Sink())
+        if machine is not None:
+            name = query.component_name(graph, element)
+            found.setdefault(name, MachinePlayer(graph, machine, name))
+    return found
+
+
+def resting_value(graph: Graph, variable: Variable) -> Literal:
+    """The value of an input until a scenario gives another: the default, else false, 0 or the
+    first value.
+    """
+    element = graph.get(variable.origin)
+    default = _default(graph, element, variable.domain) if element is not None else None
+    if default is not None:
+        return default
+    return 0 if contains(variable.domain, 0) else values(variable.domain)[0]
+
+
+def _default(graph: Graph, element: Element, domain: Domain) -> Literal | None:
+    written = element.attrs.get("default")
+    if element.kind not in _LASTING or written is None:
+        return None
+    value = _read(graph, str(written), domain)
+    return value if value is not None and contains(domain, value) else None
+
+
+def _read(graph: Graph, text: str, domain: Domain) -> Literal | None:
+    match domain:
+        case BooleanDomain():
+            return {"true": True, "false": False}.get(text.lower())
+        case IntegerDomain():
+            return int(text) if text.removeprefix("-").isdecimal() else None
+        case EnumerationDomain():
+            named = graph.get(text)
+            return text.rpartition("::")[2] if named is None else named.name
+
+
+@dataclass(frozen=True)
+class ActivityPlayer:
+    """Plays the token game."""
+
+    tokens: TokenGraph
+
+    @property
+    def component(self) -> str:
+        return self.tokens.component
+
+    @property
+    def pulses(self) -> frozenset[str]:
+        return frozenset(self.tokens.pulses)
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        tokens = self.tokens
+        runs = [Variable(n.run, Owner.SYSTEM, BooleanDomain(), n.origin) for n in tokens.workers()]
+        at = [Variable(e.variable, Owner.SYSTEM, BooleanDomain(), e.origin) for e in tokens.edges]
+        return (*tokens.inputs, *runs, *at)
+
+    def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
+        return [{**inputs, **token_game.values(self.tokens, token_game.start(self.tokens))}]
+
+    def successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> list[Valuation]:
+        state = token_game.state_of(self.tokens, now)
+        found: dict[token_game.State, None] = {}
+        waiting: list[list[int]] = [[]]
+        while waiting:
+            chooser = _Chooser(waiting.pop())
+            found[token_game.step(self.tokens, state, now, evaluate.is_true, chooser.choose)] = None
+            waiting += chooser.others()
+        return [{**inputs, **token_game.values(self.tokens, after)} for after in found]
+
+
+class _Chooser:
+    """Takes the given branches, then first ones, and knows what else could be taken."""
+
+    def __init__(self, given: list[int]) -> None:
+        self._given = given
+        self._counts: list[int] = []
+
+    def choose(self, node: TokenNode, branches: Sequence[TokenEdge]) -> TokenEdge:
+        del node
+        self._counts.append(len(branches))
+        place = len(self._counts) - 1
+        return branches[self._given[place] if place < len(self._given) else 0]
+
+    def others(self) -> Iterator[list[int]]:
+        """The choices that differ from this one at a place that was not given."""
+        taken = [*self._given, *[0] * (len(self._counts) - len(self._given))]
+        for place in range(len(self._given), len(self._counts)):
+            for branch in range(1, self._counts[place]):
+                yield [*taken[:place], branch]
+
+
+@dataclass(frozen=True)
+class MachinePlayer:
+    """Runs a state machine."""
+
+    graph: Graph
+    machine: Machine
+    component: str
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        return self.machine.variables
+
+    @property
+    def pulses(self) -> frozenset[str]:
+        return frozenset(
+            variable.name
+            for variable in step.inputs_of(self.machine)
+            if not self._is_lasting(variable)
+        )
+
+    def _is_lasting(self, variable: Variable) -> bool:
+        element = self.graph.get(variable.origin)
+        return element is not None and element.kind in _LASTING
+
+    def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
+        return step.initial(self.machine, inputs)
+
+    def successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> list[Valuation]:
+        return step.successors(self.machine, now, inputs)
