@@ -9,6 +9,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+import plantuml_jar
 import pytest
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -86,6 +87,14 @@ def corpus() -> Path:
     if not folder:
         pytest.skip("SYSMLC_CORPUS is not set")
     return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def plantuml(tmp_path_factory) -> plantuml_jar.PlantUml:
+    """Real PlantUML; a test that uses it carries the mark ``plantuml``."""
+    if missing := plantuml_jar.missing():
+        pytest.skip(f"PlantUML cannot run without {missing}")
+    return plantuml_jar.PlantUml(tmp_path_factory.mktemp("plantuml"))
 
 
 @pytest.hookimpl(wrapper=True)

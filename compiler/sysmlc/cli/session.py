@@ -12,6 +12,7 @@ import click
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
     from sysmlc.config import Config
+    from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation
 
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
@@ -169,20 +170,26 @@ def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
             fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
 
 
-def report(compilations: "Sequence[Compilation]", settings: Settings) -> None:
+def report(compilations: "Iterable[Compilation]", settings: Settings) -> None:
     """Show the findings of all compilations as one report."""
-    from sysmlc.diagnostics.render import Report, make_report, render
+    show([finding for made in compilations for finding in findings(made)], settings)
 
-    findings = [
-        finding
-        for compilation in compilations
-        for finding in make_report(
-            compilation.diagnostics, compilation.sources, _Shown(compilation.root)
-        ).findings
-    ]
+
+def findings(compilation: "Compilation") -> "list[Finding]":
+    """The findings of a compilation, with places as the reader knows them."""
+    from sysmlc.diagnostics.render import make_report
+
+    shown = _Shown(compilation.root)
+    return list(make_report(compilation.diagnostics, compilation.sources, shown).findings)
+
+
+def show(found: "Iterable[Finding]", settings: Settings) -> None:
+    """Print findings in the form that was asked for."""
+    from sysmlc.diagnostics.render import Report, render
+
     on_stdout = settings.form in _ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
-    text = render(Report(tuple(findings)), settings.form, color=_has_color(stream))
+    text = render(Report(tuple(found)), settings.form, color=_has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
 
 

@@ -53,6 +53,7 @@ def command(
     """
     from sysmlc.cli import session
     from sysmlc.diagnostics import Sink
+    from sysmlc.diagnostics.render import make_report
     from sysmlc.simulation import run
 
     settings = session.Settings(**given)
@@ -60,15 +61,15 @@ def command(
     made = session.compile_unit(models, config, settings)
     source = _read(scenario)
     sink = Sink(config.rules)
-    result = None if made.exit_code() == 2 else run(made.graph, source, sink)
-    made = made.with_findings(sink)
-    session.report([made], settings)
+    result = run(made.graph, source, sink) if made.exit_code() < 2 else None
+    session.show([*session.findings(made), *make_report(sink, [source]).findings], settings)
     if result is not None:
-        click.echo(result.text(), nl=False)
+        click.echo(result.text(), nl=False, err=not session.says_more(settings))
         _save(junit, result.junit())
         _save(output and output / f"{scenario.stem}.seq.puml", result.sequence_diagram())
     passed = result is not None and result.passed
-    ctx.exit(max(made.exit_code(settings.strict or config.strict), 0 if passed else 1))
+    code = session.exit_code([made], config, settings)
+    ctx.exit(max(code, 0 if passed else 1))
 
 
 def _read(scenario: Path) -> "Source":
@@ -85,7 +86,7 @@ def _save(target: Path | None, text: str) -> None:
     from sysmlc.cli.session import fail
     from sysmlc.output import write_if_changed
 
-    if target is None:
+    if target is None or not text:
         return
     try:
         write_if_changed(target, text)

@@ -33,19 +33,22 @@ def command(
 
     While the model has errors nothing in the output folder changes.
     """
+    from contextlib import suppress
+
     from sysmlc.cli import session
 
     settings = session.Settings(**given)
     changes = _changes(_watched(models, settings))
     rebuild(models, output, settings)
     for _ in changes:
-        rebuild(models, output, settings)
+        with suppress(SystemExit):
+            rebuild(models, output, settings)
 
 
 def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings") -> bool:
     """Compile each unit once; write those that have no error. Say whether all were written."""
     from sysmlc.cli import session
-    from sysmlc.driver import apply, plan
+    from sysmlc.driver import OutputError, apply, plan
 
     config = session.load_config(models, settings.config)
     good = True
@@ -56,7 +59,10 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
             good = False
             click.echo(f"{unit.output}: kept as it is, the model has errors")
         else:
-            changed = apply(plan(made, unit.output))
+            try:
+                changed = apply(plan(made, unit.output))
+            except OutputError as problem:
+                session.fail(str(problem))
             click.echo(f"{unit.output}: {len(changed)} files changed")
     return good
 

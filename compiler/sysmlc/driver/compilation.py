@@ -2,7 +2,7 @@
 
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from sysmlc.backends.base import Backend, EmitOptions, InputFile
@@ -76,11 +76,6 @@ class Compilation:
     def written(self) -> list[Artefact]:
         """The artefacts that are not withheld, sorted by path."""
         return [artefact for artefact in self.artefacts if artefact.path not in self.withheld]
-
-    def with_findings(self, sink: Sink) -> "Compilation":
-        """The same with what a command found later."""
-        found = sorted([*self.diagnostics, *sink], key=_by_place)
-        return replace(self, diagnostics=tuple(found))
 
     def exit_code(self, strict: bool = False) -> int:
         """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""

@@ -2,6 +2,7 @@
 
 import pkgutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
@@ -88,10 +89,14 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
 
 
 def full_catalogue() -> dict[str, Rule]:
-    """Every rule there is: imports every module that may hold one."""
+    """Every rule there is: imports every module that may hold one, and the plug-ins that load."""
     for package in _RULE_PACKAGES:
         for module in _modules(f"sysmlc.{package}"):
             import_module(module)
+    plug_ins = {entry.name: entry for entry in _plug_ins()}
+    for name in plug_ins:
+        with suppress(BackendError):
+            _load(name, plug_ins)
     return catalogue()
 
 

@@ -1,0 +1,86 @@
+"""What CONTRIBUTING tells newcomers works: the back end is installed and run, the rule is tried."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sysmlc.diagnostics
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+def block(title: str) -> str:
+    """The code below the comment with this title."""
+    found = re.search(rf"<!-- {re.escape(title)} -->\n```python\n(.*?)```", TEXT, re.DOTALL)
+    assert found, title
+    return found[1]
+
+
+def test_the_back_end_shown_is_the_one_that_is_tested():
+    shown = block("tests/plugin/sysmlc_outline.py")
+    assert shown == (ROOT / "tests/plugin/sysmlc_outline.py").read_text(encoding="utf-8")
+    project = (ROOT / "tests/plugin/pyproject.toml").read_text(encoding="utf-8")
+    assert 'outline = "sysmlc_outline:BACKEND"' in project
+    assert 'outline = "sysmlc_outline:BACKEND"' in TEXT
+
+
+@pytest.fixture(scope="module")
+def plugin(tmp_path_factory):
+    """An environment in which the plug-in is installed beside sysmlc."""
+    folder = tmp_path_factory.mktemp("plugin")
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    options = ["--no-deps", "--no-build-isolation", "--target", str(folder)]
+    subprocess.run([*pip, *options, str(ROOT / "tests/plugin")], check=True)
+    return {**os.environ, "PYTHONPATH": str(folder)}
+
+
+def sysmlc(env, folder, *args):
+    run = [sys.executable, "-m", "sysmlc", *args]
+    return subprocess.run(run, env=env, cwd=folder, capture_output=True, text=True)
+
+
+@pytest.mark.slow
+def test_the_back_end_is_listed_emitted_and_explained(plugin, tmp_path):
+    (tmp_path / "plant.ir").write_text(
+        'Package p "Plant"\n  Class gate "Gate"\n    Port gate.in "in"\n  Class lamp "Lamp"\n'
+    )
+    assert "outline" in sysmlc(plugin, tmp_path, "backends").stdout
+    done = sysmlc(plugin, tmp_path, "plant.ir", "--emit", "outline", "--format", "concise")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out/outlines/Plant.Gate.md").read_text() == "# Gate\n\n- in\n"
+    assert "warning[SM949 outline-without-ports]: block 'Lamp' has no ports to outline" in (
+        done.stderr
+    )
+    explained = sysmlc(plugin, tmp_path, "explain", "outline-without-ports")
+    assert explained.stdout.startswith("SM949 outline-without-ports (warning)")
+
+
+@pytest.mark.slow
+def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
+    broken = Path(plugin["PYTHONPATH"]) / "sysmlc_outline.py"
+    whole = broken.read_text()
+    broken.write_text("import no_such_module\n")
+    try:
+        done = sysmlc(plugin, tmp_path, "backends")
+    finally:
+        broken.write_text(whole)
+    assert done.returncode == 2
+    assert "back end 'outline' cannot be loaded: ModuleNotFoundError" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch):
+    catalogue = sys.modules["sysmlc.diagnostics.rule"]
+    monkeypatch.setattr(catalogue, "_rules", dict(catalogue._rules))
+    names: dict[str, object] = {"__name__": "contributing"}
+    exec(compile(block("rule"), "rule", "exec"), names)
+    exec(compile(block("rule test"), "rule test", "exec"), names)
+    tests = [value for name, value in names.items() if name.startswith("test_")]
+    assert len(tests) == 2
+    for test in tests:
+        test()
