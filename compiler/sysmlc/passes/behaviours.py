@@ -12,7 +12,7 @@ CALL_OF_NOTHING = rule(
     "call-of-nothing",
     Severity.WARNING,
     "action '{action}' does not say which {what} it calls",
-    why="Nothing is known of what the action does: contracts treat it as an elementary one.",
+    why="Nobody receives what the action sends, or carries out what it asks for.",
     help="choose the {what} in the modelling tool",
     wrong="""\
 Activity pull "Pull in"
@@ -24,6 +24,25 @@ Class gate "Gate"
 Activity pull "Pull in"
   Action pull.read "read tag" subkind="call-operation"
     -> calls gate.read
+""",
+)
+CALL_WITHOUT_BEHAVIOR = rule(
+    "SM406",
+    "call-without-behavior",
+    Severity.INFO,
+    "action '{action}' calls no behaviour, so it counts as an elementary action",
+    why="MagicDraw draws every plain action as a call; contracts know only its name, when it "
+    "starts and when it is done.",
+    help="choose the behaviour in the modelling tool if there is one",
+    wrong="""\
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-behavior"
+""",
+    right="""\
+Activity pull "Pull in"
+  Action pull.read "read tag" subkind="call-behavior"
+    -> calls read
+Activity read "Read"
 """,
 )
 CALL_ARGUMENTS = rule(
@@ -252,8 +271,9 @@ def _check_call(graph: Graph, sink: Sink, action: Element) -> None:
     called = graph.target(action, Edge.CALLS)
     if called is None:
         if Edge.CALLS.value not in _unresolved(action):
+            empty = CALL_WITHOUT_BEHAVIOR if what == "behaviour" else CALL_OF_NOTHING
             name = graph.qualified_name(action)
-            sink.report(CALL_OF_NOTHING, graph.subject(action), action=name, what=what)
+            sink.report(empty, graph.subject(action), action=name, what=what)
     elif called.kind in kinds and not called.attrs.get("external"):
         _check_pins(graph, sink, action, called)
 

@@ -26,7 +26,7 @@ UNDIRECTED_PORTS = rule(
     "SM300",
     "undirected-ports",
     Severity.INFO,
-    "'{block}' has {count} ports without a direction: {ports}",
+    "ports of '{block}' without a direction ({count}): {ports}",
     why="Neither flow properties, operations nor item flows say which side of these ports "
     "decides, so contracts treat what passes there as an input and diagrams draw no arrow.",
     help="give the ports' types flow properties with a direction, or draw item flows",

@@ -44,6 +44,7 @@ _BY_KIND = {
     Kind.VIEW: "view",
     Kind.FLOW_PROPERTY: "flow property",
 }
+_SYSML_PORTS = frozenset(PORT_ROLES.values())
 _VALUES = frozenset({Kind.DATA_TYPE, Kind.ENUMERATION})
 _OBJECTS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})
 _OTHERS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
@@ -59,7 +60,20 @@ def by_structure(graph: Graph, element: Element) -> str:
     """Role that kind, type and owner give; the roles of the types must be known already."""
     if element.kind is Kind.PROPERTY:
         return _property_role(graph, element)
+    if element.kind is Kind.CLASS:
+        return _class_role(graph, element)
     return _BY_KIND.get(element.kind, "")
+
+
+def _class_role(graph: Graph, class_: Element) -> str:
+    """What SysML's ports say of a class whose own stereotype is not known.
+
+    Proxy ports are typed by interface blocks, and ports are owned by blocks (SysML 1.6 clauses
+    9.3.2.1 and 9.3.2.13).
+    """
+    if any(one.role == "proxy port" for one in graph.sources(class_, Edge.TYPED_BY)):
+        return "interface block"
+    return "block" if any(one.role in _SYSML_PORTS for one in graph.owned(class_)) else ""
 
 
 def _property_role(graph: Graph, feature: Element) -> str:

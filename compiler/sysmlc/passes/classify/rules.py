@@ -6,7 +6,7 @@ LOOK_ALIKE = rule(
     "SM210",
     "stereotype-by-name",
     Severity.INFO,
-    "stereotype {stereotype} is taken for SysML's {known} because of its name ({count} times)",
+    "stereotype {stereotype} is taken for SysML's {known} because of its name (applied: {count})",
     why="No profile of the compile unit says that the stereotype specialises SysML's, so only "
     "its name tells what it means.",
     help="give the profile as a further input, and let the stereotype specialise SysML's {known}",
@@ -32,7 +32,7 @@ UNKNOWN_STEREOTYPE = rule(
     "SM211",
     "unknown-stereotype",
     Severity.INFO,
-    "no profile of the compile unit defines stereotype {stereotype}, applied {count} times",
+    "no profile of the compile unit defines stereotype {stereotype} (applied: {count})",
     why="What the stereotype specialises is unknown, so the elements that have it count as plain "
     "UML.",
     help="give the file of the profile as a further input",

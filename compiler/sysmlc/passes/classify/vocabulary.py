@@ -68,6 +68,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
             r"""https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/MagicDraw
             | https?://www\.magicdraw\.com/schemas/(DSL_Customization|Validation_Profile
               |Dependency_Matrix_Profile|Matrix_Templates_Profile|matrix_templates)
+            | https?://UML_Standard_Profile/
             | https?://www\.eclipse\.org/uml2/schemas/Ecore/
             | https?://www\.magicdraw\.com/spec/Customization/
             """,

@@ -15,6 +15,7 @@ _STANDARD = re.compile(
     | https?://www\.eclipse\.org/(uml2|emf)/
     | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/)
     | (.*/)?(UML_Standard_Profile|SysML\ Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)$
+    | (.*/)?UML_Standard_Profile\.[\w.]*profile\.uml$
     """,
     re.VERBOSE,
 )

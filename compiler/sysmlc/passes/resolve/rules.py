@@ -42,7 +42,7 @@ MISSING_LIBRARY = rule(
     "SM152",
     "missing-library",
     Severity.WARNING,
-    "'{library}' is not part of the compile unit: {count} of its elements are only known by name",
+    "'{library}' is not part of the compile unit; what it holds ({count}) is known by name only",
     why="What the model takes from a file that is not read has a name and a kind, nothing more: "
     "no features, no stereotypes, no behaviour.",
     help="give the file '{library}' as a further input",
