@@ -60,12 +60,12 @@ def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) 
         return False
     is_state = vertex.kind == "state"
     return any(
-        (not is_state or _coincide(one, other)) and _compatible(one, other, scope)
+        (not is_state or coincide(one, other)) and _compatible(one, other, scope)
         for one, other in combinations(outgoing, 2)
     )
 
 
-def _coincide(one: Transition, other: Transition) -> bool:
+def coincide(one: Transition, other: Transition) -> bool:
     """Whether both can have an occurrence in one step; completion goes before the rest."""
     if not one.occurrences or not other.occurrences:
         return not one.occurrences and not other.occurrences
@@ -80,8 +80,8 @@ def _same_step(left: object, right: object) -> bool:
     return True
 
 
-def _simultaneous(one: Transition, other: Transition) -> bool:
-    """As ``_coincide``, for sources that can be active at the same time."""
+def simultaneous(one: Transition, other: Transition) -> bool:
+    """As ``coincide``, for sources that can be active at the same time."""
     if not one.occurrences or not other.occurrences:
         return True
     events = [
@@ -89,7 +89,7 @@ def _simultaneous(one: Transition, other: Transition) -> bool:
         for occurrence in (*one.occurrences, *other.occurrences)
         if not isinstance(occurrence, OnEvent)
     ]
-    return bool(events) or _coincide(one, other)
+    return bool(events) or coincide(one, other)
 
 
 def _compatible(one: Transition, other: Transition, scope: Scope) -> bool:
@@ -179,7 +179,7 @@ def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition
     sources = [one for one in machine.transitions() if machine.vertices[one.source].kind == "state"]
     for one, other in combinations(sources, 2):
         common = _common_state(machine, one.source, other.source)
-        if common is not None and _simultaneous(one, other):
+        if common is not None and simultaneous(one, other):
             yield one, other, common
 
 

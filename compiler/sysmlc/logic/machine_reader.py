@@ -376,6 +376,7 @@ def _occurrence(parts: _Parts, trigger: Element, vertex: Vertex) -> Occurrence:
     if kind == "change" or (not kind and "condition" in trigger.attrs):
         return _change(parts, trigger)
     if kind == "any":
+        parts.events.setdefault("any", unique([*parts.events.values(), "other"], "", NO_EVENT)[-1])
         return OnEvent(None)
     return OnEvent(_event(parts, trigger))
 

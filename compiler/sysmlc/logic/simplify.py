@@ -1,0 +1,141 @@
+"""Substitution into formulas, constant folding, and satisfiability over small domains."""
+
+from collections.abc import Callable, Mapping
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Domain
+from sysmlc.logic.evaluate import is_true, value_of
+from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+
+_LIMIT = 4096
+"""Valuations tried; beyond them the answer is that a formula may be true and may be false."""
+_TIDY_LIMIT = 300
+"""The same for what only serves the reader."""
+
+
+def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
+    """The formula with unprimed variables replaced, constants folded."""
+    match formula:
+        case Var(name, False):
+            return values.get(name, formula)
+        case Apply(op, args):
+            return rebuild(op, tuple(substitute(arg, values) for arg in args))
+        case _:
+            return formula
+
+
+def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """An operator applied, with what is constant folded away."""
+    if all(isinstance(arg, Const) for arg in args) and op not in _TEMPORAL:
+        return Const(value_of(Apply(op, args), {}))
+    if op in _CONNECTIVES:
+        return _CONNECTIVES[op](*args)
+    return _shifted(op, args) if op in _OPPOSITE else Apply(op, args)
+
+
+def _shifted(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """A comparison with the constant moved to the right: ``x + 1 = 3`` is ``x = 2``."""
+    match args:
+        case (Apply(Op.ADD, (inner, Const(int(by)))), Const(int(limit))):
+            return Apply(op, (inner, Const(limit - by)))
+        case (Apply(Op.SUB, (inner, Const(int(by)))), Const(int(limit))):
+            return Apply(op, (inner, Const(limit + by)))
+        case _:
+            return Apply(op, args)
+
+
+def _same(left: Formula, right: Formula) -> Formula:
+    for one, other in ((left, right), (right, left)):
+        if isinstance(one, Const):
+            return other if one.value else f.negate(other)
+    return f.iff(left, right)
+
+
+def is_satisfiable(formula: Formula, known: Mapping[str, Domain], limit: int = _LIMIT) -> bool:
+    """Whether some values make the formula true; yes when there are too many to try.
+
+    Primed and unprimed variables are independent of one another.
+    """
+    if isinstance(formula, Const):
+        return bool(formula.value)
+    found = {(v.name, v.primed): known[v.name] for v in f.variables(formula)}
+    now = {name: domain for (name, primed), domain in found.items() if not primed}
+    then = {name: domain for (name, primed), domain in found.items() if primed}
+    if domains.count(now) * domains.count(then) > limit:
+        return True
+    return any(
+        is_true(formula, before, after)
+        for after in domains.valuations(then)
+        for before in domains.valuations(now)
+    )
+
+
+def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
+    """True or false when the formula is always that, else the formula."""
+    if not is_satisfiable(formula, known):
+        return f.FALSE
+    return formula if is_satisfiable(f.negate(formula), known) else f.TRUE
+
+
+# -- tidying -----------------------------------------------------------------------------------
+
+
+def tidy(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...] = ()) -> Formula:
+    """An equivalent formula, given the facts, without the parts that the rest implies."""
+    match formula:
+        case Apply(Op.AND, args):
+            return _tidy_and(args, known, facts)
+        case Apply(Op.OR, args):
+            return f.either(*(tidy(arg, known, facts) for arg in args))
+        case Apply(Op.NOT, (inner,)):
+            return opposite(tidy(inner, known, facts))
+        case Apply(Op.IMPLIES, (left, right)):
+            return f.implies(tidy(left, known, facts), right)
+        case _:
+            return _leaf(formula, known, facts)
+
+
+def opposite(formula: Formula) -> Formula:
+    """The negation; a comparison is turned into the opposite one."""
+    if isinstance(formula, Apply) and formula.op in _OPPOSITE:
+        return Apply(_OPPOSITE[formula.op], formula.args)
+    return f.negate(formula)
+
+
+def _tidy_and(
+    args: tuple[Formula, ...], known: Mapping[str, Domain], facts: tuple[Formula, ...]
+) -> Formula:
+    parts = list(args)
+    for index in reversed(range(len(parts))):
+        others = (*facts, *parts[:index], *parts[index + 1 :])
+        parts[index] = tidy(parts[index], known, others)
+    return f.both(*parts)
+
+
+def _leaf(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
+    mine = set(f.variables(formula))
+    near = f.both(*(fact for fact in facts if not mine.isdisjoint(f.variables(fact))))
+    if not is_satisfiable(f.both(near, f.negate(formula)), known, _TIDY_LIMIT):
+        return f.TRUE
+    if not is_satisfiable(f.both(near, formula), known, _TIDY_LIMIT):
+        return f.FALSE
+    return formula
+
+
+_TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
+_CONNECTIVES: dict[Op, Callable[..., Formula]] = {
+    Op.AND: f.both,
+    Op.OR: f.either,
+    Op.NOT: f.negate,
+    Op.IMPLIES: f.implies,
+    Op.IFF: _same,
+}
+_OPPOSITE = {
+    Op.EQ: Op.NE,
+    Op.NE: Op.EQ,
+    Op.LT: Op.GE,
+    Op.GE: Op.LT,
+    Op.GT: Op.LE,
+    Op.LE: Op.GT,
+}
