@@ -63,7 +63,6 @@ def test_a_warning_is_exit_code_0_and_with_strict_1(here, option, code):
         (["plant.ir", "--print-after", "port"], "unknown pass 'port'; did you mean 'ports'?"),
         (["plant.ir", "--fromat", "json"], "No such option"),
         (["plant.ir", "--format", "xml"], "is not one of"),
-        (["explain", "SM1700"], "unknown rule 'SM1700'; did you mean 'SM170'?"),
         (["explain", "missing-fiel"], "did you mean 'missing-file'?"),
         (["show", "plant.ir", "-e", "Gata"], "no element 'Gata'; did you mean 'Gate'?"),
         (["build"], "name a model, or list [[model]] units in sysmlc.toml"),

@@ -175,12 +175,13 @@ def report(compilations: "Iterable[Compilation]", settings: Settings) -> None:
     show([finding for made in compilations for finding in findings(made)], settings)
 
 
-def findings(compilation: "Compilation") -> "list[Finding]":
+def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
     """The findings of a compilation, with places as the reader knows them."""
     from sysmlc.diagnostics.render import make_report
 
+    chosen = [found for found in compilation.diagnostics if found.is_error or not only_errors]
     shown = _Shown(compilation.root)
-    return list(make_report(compilation.diagnostics, compilation.sources, shown).findings)
+    return list(make_report(chosen, compilation.sources, shown).findings)
 
 
 def show(found: "Iterable[Finding]", settings: Settings) -> None:

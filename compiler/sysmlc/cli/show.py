@@ -38,7 +38,7 @@ def command(
     settings = session.Settings(**given)
     config = session.load_config(models, settings.config)
     made = session.compile_unit(models, config, settings)
-    session.report([made], settings)
+    session.show(session.findings(made, only_errors=not settings.verbose), settings)
     if made.exit_code() < 2:
         text = print_text(made.graph) if element is None else _one(made.graph, element)
         click.echo(text, nl=False)

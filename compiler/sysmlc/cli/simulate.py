@@ -62,7 +62,8 @@ def command(
     source = _read(scenario)
     sink = Sink(config.rules)
     result = run(made.graph, source, sink) if made.exit_code() < 2 else None
-    session.show([*session.findings(made), *make_report(sink, [source]).findings], settings)
+    of_model = session.findings(made, only_errors=not settings.verbose)
+    session.show([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
         click.echo(result.text(), nl=False, err=not session.says_more(settings))
         _save(junit, result.junit())
