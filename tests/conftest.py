@@ -9,8 +9,9 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-import plantuml_jar
 import pytest
+
+import plantuml_jar
 
 GOLDEN = Path(__file__).parent / "golden"
 _SHOWN = 80

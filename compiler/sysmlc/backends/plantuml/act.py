@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import actions, labels
 from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.bdd import ACTIVITY_NODES
 from sysmlc.backends.plantuml.lanes import can_be_boxes, tint
 from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
@@ -12,18 +13,11 @@ from sysmlc.backends.plantuml.text import label, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 
-NODES = (
-    Kind.ACTION,
-    Kind.STRUCTURED,
-    Kind.CONTROL,
-    Kind.OBJECT_NODE,
-    Kind.DATA_STORE,
-    Kind.ACTIVITY_PARAMETER,
-)
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"
 _OBJECT_FLOW = "-->"
 _LABEL = 30
+_FRAME = 60
 
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
@@ -32,10 +26,10 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
         drawing = _Drawing(graph, activity)
         view = drawing.view()
         if view.nodes:
-            signature = labels.signature(graph, activity)
+            signature = drawing.signature()
             said = [item.id for item in graph.owned(activity) if item.kind is Kind.PARAMETER]
-            title = "Activity diagram"
-            yield from divided(graph, activity, view, "act", title, signature, tuple(said))
+            details = tuple(said) if signature else ()
+            yield from divided(graph, activity, view, "act", "Activity diagram", signature, details)
 
 
 @dataclass(slots=True)
@@ -54,9 +48,13 @@ class _Drawing:
         loose = nodes if self.tints else [node for node in nodes if self._lane(node) is None]
         held = [] if self.tints else nodes
         drawn = (*self._lanes(self.activity, held), *map(self._node, loose))
-        return GraphView(
-            drawn, tuple(self._lines()), notes(self.graph, self.activity, self.aliases)
-        )
+        said = notes(self.graph, self.activity, self.aliases, not self.signature())
+        return GraphView(drawn, tuple(self._lines()), said)
+
+    def signature(self) -> str:
+        """Parameters for the frame; nothing when they are too long for it."""
+        text = labels.signature(self.graph, self.activity)
+        return text if len(text) <= _FRAME else ""
 
     def _boxed(self, nodes: list[Element]) -> bool:
         """Whether partitions are drawn as boxes around their nodes."""
@@ -83,7 +81,7 @@ class _Drawing:
         return self.graph.owned(owner)
 
     def _nodes(self, owner: Element) -> list[Element]:
-        return [item for item in self._owned(owner) if item.kind in NODES]
+        return [item for item in self._owned(owner) if item.kind in ACTIVITY_NODES]
 
     def _lane(self, node: Element) -> Element | None:
         """The first partition of a node."""

@@ -17,6 +17,7 @@ _CONTROL = {
     "fork": "fork",
     "join": "join",
 }
+_PLAIN = frozenset(["initial", "final"])
 _QUIET = frozenset(["call-behavior", "call-operation", "opaque", ""])
 _WORDS = {
     "send": "send signal",
@@ -54,7 +55,7 @@ def look(graph: Graph, node: Element) -> Look:
 def _control(graph: Graph, node: Element) -> Look:
     shape = _CONTROL.get(node.subkind, "control")
     if shape == "flowfinal":
-        return Look("flowfinal", "<size:22>⊗</size>", note=label(node.name))
+        return Look("flowfinal", "<size:22>⊗</size>")
     return Look(shape, label(labels.name(node)), note=label(_control_note(graph, node)))
 
 
@@ -62,7 +63,7 @@ def _control_note(graph: Graph, node: Element) -> str:
     """What PlantUML does not print inside a diamond or a bar."""
     behaviour = graph.get(str(node.attrs.get("decision_input", "")))
     parts = [
-        node.name,
+        "" if node.subkind in _PLAIN else node.name,
         f"«decisionInput» {labels.name(behaviour)}" if behaviour is not None else "",
         f"{{joinSpec = {node.attrs['join_spec']}}}" if node.attrs.get("join_spec") else "",
     ]
@@ -135,7 +136,7 @@ def _body(node: Element) -> Iterator[str]:
 
 def _called(node: Element, called: list[Element]) -> Iterator[str]:
     for item in called:
-        if node.name and item.name != node.name:
+        if node.name and item.name.lower() != node.name.lower():
             yield from lines(f"calls {labels.name(item)}", _ROW)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
@@ -18,6 +19,17 @@ CLASSIFIERS = (
     Kind.SIGNAL,
     Kind.ACTOR,
     Kind.ITEM,
+)
+BOXES = (*CLASSIFIERS, Kind.INSTANCE)
+ACTIVITY_NODES = frozenset(
+    [
+        Kind.ACTION,
+        Kind.STRUCTURED,
+        Kind.CONTROL,
+        Kind.OBJECT_NODE,
+        Kind.DATA_STORE,
+        Kind.ACTIVITY_PARAMETER,
+    ]
 )
 _BY_ROLE = {
     "value": "values",
@@ -38,13 +50,16 @@ _BY_KIND = {
     Kind.ACTIVITY: "behaviors",
     Kind.STATE_MACHINE: "behaviors",
     Kind.INTERACTION: "behaviors",
+    Kind.SLOT: "slots",
+    Kind.PARAMETER: "parameters",
 }
 _TITLES = (
     "literals values parts references attributes flow_properties ports "
-    "parameters constraints operations receptions behaviors"
+    "parameters constraints operations receptions slots behaviors"
 )
 _ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
 _ROW = 64
+_UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 
@@ -62,15 +77,25 @@ def _homes(graph: Graph) -> dict[str | None, list[Element]]:
     homes: dict[str | None, list[Element]] = {}
     for root in graph.roots():
         for element in graph.subtree(root):
-            if is_block(element):
+            if _is_shown(graph, element):
                 homes.setdefault(_package(graph, element), []).append(element)
     return homes
 
 
 def is_block(element: Element) -> bool:
     """Whether a block definition diagram has a box for it."""
-    is_kind = element.kind in CLASSIFIERS and element.role != "requirement"
+    is_kind = element.kind in BOXES and element.role != "requirement"
     return is_kind and not element.attrs.get("external")
+
+
+def _is_shown(graph: Graph, element: Element) -> bool:
+    """A behaviour has a box when it stands in a package and has no diagram of its own."""
+    if element.kind is not Kind.ACTIVITY:
+        return is_block(element)
+    owner = graph.owner(element)
+    is_free = owner is None or owner.kind is Kind.PACKAGE
+    is_drawn = any(item.kind in ACTIVITY_NODES for item in graph.owned(element))
+    return is_free and not is_drawn and not element.attrs.get("external")
 
 
 def _package(graph: Graph, element: Element) -> str | None:
@@ -89,6 +114,8 @@ def _of_package(
 ) -> Iterator[Diagram]:
     own = {item.id for item in classifiers}
     ours = [relation for relation in every if _is_ours(graph, relation, own, drawn)]
+    in_rows = {r.row: r.shows for r in ours if r.row and r.target not in own}
+    ours = [relation for relation in ours if relation.row not in in_rows]
     ours += _containments(graph, classifiers)
     near = neighbours(own, ours)
     parts = split.chunks([item.id for item in classifiers], near)
@@ -102,7 +129,7 @@ def _of_package(
             name=split.numbered(whole, index, len(parts)),
             frame=plain(f"bdd [package] {whole}"),
             heading=("Block definition diagram", whole),
-            view=_view(graph, shown, inside),
+            view=_view(graph, shown, inside, in_rows),
             about=package.id if package is not None else "",
             footer=plain(split.footer(index, len(parts), whole)),
         )
@@ -119,10 +146,10 @@ def _is_ours(graph: Graph, relation: Relation, own: set[str], drawn: set[str]) -
 
 def _is_boxable(graph: Graph, id: str) -> bool:
     element = graph[id]
-    return element.kind in (*CLASSIFIERS, *_STUBS) and element.role != "requirement"
+    return element.kind in (*BOXES, *_STUBS) and element.role != "requirement"
 
 
-_STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INSTANCE, Kind.USE_CASE, Kind.UNIT)
+_STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
 
 
 def _containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
@@ -174,17 +201,27 @@ def _property_line(owner: Element, item: Element, type_: Element) -> Relation:
     return Relation(owner.id, type_.id, arrow, far=far, shows=(item.id,))
 
 
-def _view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView:
+def _view(
+    graph: Graph,
+    shown: list[Element],
+    inside: list[Relation],
+    in_rows: Mapping[str, tuple[str, ...]],
+) -> BoxView:
+    """``in_rows`` maps properties to what their row stands for, besides themselves."""
     aliases = Aliases()
     in_lines = {id for relation in inside for id in relation.shows}
-    boxes = [_box(graph, item, aliases, in_lines) for item in shown]
+    boxes = [_box(graph, item, aliases, in_lines, in_rows) for item in shown]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
     boxes += [stub(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
-    return BoxView(tuple(boxes), tuple(line(relation, aliases) for relation in inside))
+    return box_view(boxes, [line(relation, aliases) for relation in inside])
 
 
 def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
-    """The relation between the aliases of its ends."""
+    """The relation between the aliases of its ends; the general classifier stands above."""
+    if relation.arrow in _UPWARDS:
+        upper, lower = aliases[relation.target], aliases[relation.source]
+        text = keyword_label(relation.label)
+        return Line(upper, _UPWARDS[relation.arrow], lower, text, shows=relation.shows)
     return Line(
         aliases[relation.source],
         relation.arrow,
@@ -196,7 +233,13 @@ def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
     )
 
 
-def _box(graph: Graph, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
+def _box(
+    graph: Graph,
+    item: Element,
+    aliases: Aliases,
+    in_lines: set[str],
+    in_rows: Mapping[str, tuple[str, ...]],
+) -> Box:
     rows: dict[str, list[str]] = {}
     shows = [item.id]
     for feature in graph.owned(item):
@@ -204,6 +247,7 @@ def _box(graph: Graph, item: Element, aliases: Aliases, in_lines: set[str]) -> B
         if title and feature.id not in in_lines:
             rows.setdefault(title, []).extend(_rows(graph, feature))
             shows += [part.id for part in _all(graph, feature)]
+            shows += in_rows.get(feature.id, ())
     compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if t in rows)
     alias = aliases.make(item.id, item.name, str(item.kind))
     return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
@@ -221,7 +265,11 @@ def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
     if feature.kind is Kind.CONSTRAINT:
         return lines(labels.condition(feature), _ROW)
     if feature.kind in (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION):
-        return lines(f"{labels.guillemets(labels.keywords(graph, feature))} {feature.name}", _ROW)
+        words = labels.guillemets(labels.keywords(graph, feature))
+        text = labels.name(feature) + labels.signature(graph, feature)
+        return lines(f"{words} {text}".strip(), _ROW)
+    if feature.kind is Kind.SLOT:
+        return lines(labels.slot(graph, feature), _ROW)
     if feature.kind is Kind.ENUMERATION_LITERAL:
         return lines(labels.name(feature), _ROW)
     words = _feature_words(graph, feature)
@@ -241,7 +289,8 @@ def heading(graph: Graph, item: Element, where: str = "") -> str:
     """The head of a box: stereotypes, name, and where it comes from when it is foreign."""
     words = small(plain(labels.guillemets(labels.keywords(graph, item))))
     mark = "//" if item.attrs.get("abstract") else "**"
-    rows = [f"{mark}{row}{mark}" for row in lines(labels.name(item))]
+    text = labels.instance(graph, item) if item.kind is Kind.INSTANCE else labels.name(item)
+    rows = [f"{mark}{row}{mark}" for row in lines(text)]
     return stack([words, *rows, *(small(row) for row in lines(where, 48))])
 
 
@@ -250,13 +299,14 @@ def stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
     owner = graph.owner(item)
     where = f"from {graph.qualified_name(owner)}" if owner is not None else ""
     if item.attrs.get("external"):
-        where = f"in {item.attrs['href']}" if item.attrs.get("href") else "external"
+        file = str(item.attrs.get("href", "")).partition("#")[0]
+        where = f"in {file}" if file else "external"
     alias = aliases.make(item.id, item.name, str(item.kind))
     return Box(alias, heading(graph, item, where), "elsewhere", shows=(item.id,))
 
 
 def _style(item: Element) -> str:
-    if item.kind in (Kind.DATA_TYPE, Kind.ENUMERATION, Kind.SIGNAL):
+    if item.kind in (Kind.DATA_TYPE, Kind.ENUMERATION, Kind.SIGNAL, Kind.INSTANCE):
         return "value"
     return "interface" if item.kind is Kind.INTERFACE or "interface" in item.role else "block"
 
@@ -264,5 +314,5 @@ def _style(item: Element) -> str:
 def _all(graph: Graph, feature: Element) -> Iterator[Element]:
     """The feature, and the parameters that its signature shows."""
     yield feature
-    if feature.kind is Kind.OPERATION:
+    if feature.kind in (Kind.OPERATION, Kind.ACTIVITY, Kind.STATE_MACHINE):
         yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)

@@ -92,7 +92,7 @@ def _is_port(item: Element) -> bool:
 
 def _name(graph: Graph, connector: Element) -> str:
     if connector.role == "binding connector":
-        return "«equal»"
+        return "="
     type_ = labels.type_name(graph, connector)
     words = labels.guillemets(labels.applied(graph, connector))
     text = f"{connector.name} : {type_}".strip() if type_ else connector.name

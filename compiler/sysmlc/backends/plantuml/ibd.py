@@ -32,7 +32,7 @@ def _of_block(graph: Graph, block: Element, found: list[Connection]) -> Iterator
         yield Diagram(
             kind="ibd",
             name=split.numbered(whole, index, len(parts)),
-            frame=plain(f"ibd [block] {labels.name(block)}"),
+            frame=plain(f"ibd [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"),
             heading=("Internal block diagram", whole),
             view=drawing.view(),
             about=block.id,
@@ -97,10 +97,9 @@ class _Drawing:
 
     def view(self) -> InternalView:
         parts = tuple(self._part((part.id,), part) for part in self.tops)
-        words = labels.guillemets(labels.keywords(self.graph, self.block))
         frame = PartView(
             self.aliases.make("frame", self.block.name, "block"),
-            stack([small(plain(words)), label(labels.name(self.block))]),
+            " ",
             "frame",
             tuple(self._ports((), self.block)),
             parts,
@@ -207,8 +206,8 @@ def _key(path: tuple[str, ...]) -> str:
 def _style(part: Element) -> str:
     if part.role == "constraint property":
         return "law"
-    shared = part.role == "reference" or part.attrs.get("aggregation") in (None, "shared")
-    return "reference" if shared and part.role != "part" else "part"
+    is_shared = not part.role and part.attrs.get("aggregation") != "composite"
+    return "reference" if is_shared or part.role == "reference" else "part"
 
 
 def _ports_of(graph: Graph, classifier: Element) -> list[Element]:

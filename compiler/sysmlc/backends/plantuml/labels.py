@@ -1,9 +1,12 @@
 """How one element reads in a diagram, in UML notation (UML 2.5.1, clauses 9 and 11)."""
 
+import re
 from collections.abc import Iterable
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 
+_TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
+"""Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
 _ROLE_WORDS = {
     "block": "block",
     "interface block": "interfaceBlock",
@@ -29,7 +32,6 @@ _KIND_WORDS = {
     Kind.INSTANCE: "instance",
     Kind.REQUIREMENT: "requirement",
     Kind.TEST_CASE: "testCase",
-    Kind.ACTIVITY: "activity",
     Kind.STATE_MACHINE: "stateMachine",
     Kind.USE_CASE: "useCase",
     Kind.PACKAGE: "package",
@@ -42,6 +44,8 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
     by_kind = _KIND_WORDS.get(element.kind, "")
     if found:
         return (by_kind, *found) if element.kind in _ALWAYS_NAMED else found
+    if element.kind is Kind.ACTIVITY:
+        by_kind = f"{element.subkind} behavior" if element.subkind else "activity"
     word = _ROLE_WORDS.get(element.role, "") or by_kind
     return (word,) if word else ()
 
@@ -63,7 +67,9 @@ def guillemets(words: Iterable[str]) -> str:
 
 
 def name(element: Element) -> str:
-    """The element's name, or its kind when it has none."""
+    """The element's name, or its kind when it has none; a stub is called by its id at times."""
+    if element.attrs.get("external") and _TOOL_ID.fullmatch(element.name):
+        return "external"
     return element.name or str(element.attrs.get("subkind") or element.kind)
 
 
@@ -128,6 +134,21 @@ def signature(graph: Graph, element: Element) -> str:
             shown = typed(graph, result)
             text += f" {shown}" if shown.startswith(":") else f" : {shown}"
     return text
+
+
+def instance(graph: Graph, element: Element) -> str:
+    """``name : Class`` of an instance specification."""
+    classes = ", ".join(name(item) for item in graph.targets(element, Edge.INSTANCE_OF))
+    return f"{element.name} : {classes}" if classes else name(element)
+
+
+def slot(graph: Graph, element: Element) -> str:
+    """``feature = value``."""
+    features = ", ".join(name(item) for item in graph.targets(element, Edge.INSTANCE_OF))
+    values = [name(item) for item in graph.targets(element, Edge.REFERENCES)]
+    if element.attrs.get("value") is not None:
+        values.insert(0, literal(element.attrs["value"]))
+    return f"{features or name(element)} = {', '.join(values)}"
 
 
 def condition(element: Element) -> str:

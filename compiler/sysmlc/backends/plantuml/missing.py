@@ -27,6 +27,8 @@ DRAWN_KINDS = (
     Kind.ENUMERATION_LITERAL,
     Kind.SIGNAL,
     Kind.ACTOR,
+    Kind.INSTANCE,
+    Kind.SLOT,
     Kind.ITEM,
     Kind.ASSOCIATION,
     Kind.PROPERTY,
@@ -66,7 +68,6 @@ DRAWN_KINDS = (
 OTHER_KINDS = (
     Kind.UNIT,
     Kind.QUANTITY_KIND,
-    Kind.INSTANCE,
     Kind.USE_CASE,
     Kind.VIEW,
     Kind.INTERACTION,
@@ -102,7 +103,7 @@ def _is_ours(item: Element) -> bool:
 def _report(
     graph: Graph, owner: Element | None, kind: Kind, items: list[Element], sink: Sink
 ) -> None:
-    names = [item.name or f"<{item.kind}>" for item in items[:_NAMES_SHOWN]]
+    names = [" ".join(item.name.split()) or "without name" for item in items[:_NAMES_SHOWN]]
     names += ["..."] if len(items) > _NAMES_SHOWN else []
     sink.report(
         NOT_DRAWN,

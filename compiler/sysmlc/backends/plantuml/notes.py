@@ -2,20 +2,43 @@
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.text import label
+from sysmlc.backends.plantuml.text import label, lines, stack
 from sysmlc.backends.plantuml.views import Note
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _WIDTH = 48
+_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.RECEPTION)
 
 
-def notes(graph: Graph, behaviour: Element, aliases: Aliases) -> tuple[Note, ...]:
-    """Notes for the comments inside the behaviour and the constraints it owns directly."""
-    return tuple(
+def notes(
+    graph: Graph, behaviour: Element, aliases: Aliases, with_parameters: bool = False
+) -> tuple[Note, ...]:
+    """Notes for the comments inside the behaviour, and its own constraints and features."""
+    texts = tuple(
         _note(graph, item, aliases)
         for item in graph.subtree(behaviour)
         if _is_note(item, behaviour) and label(_text(item))
     )
+    kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
+    return (*_features(graph, behaviour, aliases, kinds), *texts)
+
+
+def _features(
+    graph: Graph, behaviour: Element, aliases: Aliases, kinds: tuple[Kind, ...]
+) -> tuple[Note, ...]:
+    """Attributes and operations of the behaviour, which is a class as well, in one note."""
+    owned = [item for item in graph.owned(behaviour) if item.kind in kinds]
+    if not owned:
+        return ()
+    rows = [row for item in owned for row in lines(_feature(graph, item), _WIDTH)]
+    alias = aliases.make(f"features of {behaviour.id}", "", "note")
+    return (Note(alias, stack(rows), (), tuple(item.id for item in owned)),)
+
+
+def _feature(graph: Graph, item: Element) -> str:
+    if item.kind is Kind.OPERATION:
+        return labels.operation(graph, item)
+    return labels.feature(graph, item)
 
 
 def _is_note(item: Element, behaviour: Element) -> bool:

@@ -16,7 +16,8 @@ class Relation:
     """A line from ``source`` to ``target`` (ids of classifiers).
 
     ``shows`` are the ids of the elements that the line stands for; properties among them are
-    not repeated in compartments.
+    not repeated in compartments. ``row`` is the property of the source that can stand for the
+    line in a compartment, when the target is far away.
     """
 
     source: str
@@ -26,6 +27,7 @@ class Relation:
     near: str = ""
     far: str = ""
     shows: tuple[str, ...] = ()
+    row: str = ""
 
 
 def relations(graph: Graph) -> list[Relation]:
@@ -81,19 +83,35 @@ def _association(
         types[first].id,
         types[second].id,
         f"{whole or tail}--{back or tip}",
-        association.name,
-        _end(ends[first]),
-        _end(ends[second]),
+        "" if _is_default_name(association, ends) else association.name,
+        _end(association, ends[first], types[first]),
+        _end(association, ends[second], types[second]),
         (association.id, *(end.id for end in ends)),
+        _row(association, ends, ends[second], types[first]),
     )
+
+
+def _row(association: Element, ends: list[Element], end: Element, owner: Element) -> str:
+    """A property says it all when the association has no name of its own."""
+    is_plain = not association.name or _is_default_name(association, ends)
+    return end.id if is_plain and end.owner == owner.id else ""
 
 
 def _is_navigable(association: Element, end: Element) -> bool:
     return end.owner != association.id
 
 
-def _end(end: Element) -> str:
-    return " ".join(part for part in (end.name, labels.multiplicity(end)) if part)
+def _is_default_name(association: Element, ends: list[Element]) -> bool:
+    """``A_line_gate``: what Papyrus and MagicDraw write, and do not show themselves."""
+    names = [end.name for end in ends]
+    return association.name in (f"A_{names[0]}_{names[1]}", f"A_{names[1]}_{names[0]}")
+
+
+def _end(association: Element, end: Element, type_: Element) -> str:
+    """Name and multiplicity; the name that tools give to the far end is not shown either."""
+    is_default = end.owner == association.id and end.name.lower() == type_.name.lower()
+    name = "" if is_default else end.name
+    return " ".join(part for part in (name, labels.multiplicity(end)) if part)
 
 
 def _dependencies(graph: Graph) -> Iterator[Relation]:

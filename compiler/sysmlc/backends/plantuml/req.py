@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.backends.plantuml import bdd, labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
 from sysmlc.backends.plantuml.text import lines, plain
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
@@ -99,7 +100,7 @@ def _view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView
     boxes = [_box(graph, item, aliases) for item in shown]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
     boxes += [_other(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
-    return BoxView(tuple(boxes), tuple(bdd.line(relation, aliases) for relation in inside))
+    return box_view(boxes, [bdd.line(relation, aliases) for relation in inside])
 
 
 def _box(graph: Graph, item: Element, aliases: Aliases) -> Box:

@@ -40,7 +40,7 @@ def _connected(items: Sequence[str], neighbours: Mapping[str, Collection[str]]) 
         waiting.pop(start, None)
         for item in queue:
             yield item
-            near = [other for other in neighbours.get(item, ()) if other in waiting]
+            near = [o for o in dict.fromkeys(neighbours.get(item, ())) if o in waiting]
             for other in near:
                 del waiting[other]
             queue.extend(near)

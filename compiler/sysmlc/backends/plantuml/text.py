@@ -45,8 +45,8 @@ def small(text: str) -> str:
 
 def keyword_label(text: str) -> str:
     """A label of a line; one that is only a keyword, ``«copy»``, would lose its guillemets."""
-    shown = label(text)
-    return small(shown) if shown.startswith("«") else shown
+    rows = lines(text)
+    return stack(map(small, rows)) if text.startswith("«") else stack(rows)
 
 
 def comment(text: str) -> str:

@@ -38,10 +38,14 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class BoxView:
-    """Boxes and lines: block definition and requirement diagrams."""
+    """Boxes and lines: block definition and requirement diagrams.
+
+    ``guides`` are invisible lines that set boxes without lines in a grid.
+    """
 
     boxes: tuple[Box, ...]
     lines: tuple[Line, ...]
+    guides: tuple[Line, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
