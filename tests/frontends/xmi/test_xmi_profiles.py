@@ -1,0 +1,96 @@
+"""Stereotypes: definitions, applications, and what ties one to the other."""
+
+from reading_xmi import PAPYRUS, below_model, magicdraw, papyrus, read, source
+
+PROFILE = PAPYRUS % (
+    """<uml:Profile xmi:id="pr" name="Plant">
+  <eAnnotations xmi:id="e" source="http://www.eclipse.org/uml2/2.0.0/UML">
+    <contents xmi:type="ecore:EPackage" xmi:id="ep" name="Plant" nsURI="http://plant/profile"/>
+  </eAnnotations>
+  <packagedElement xmi:type="uml:Stereotype" xmi:id="st" name="Service">
+    <generalization xmi:id="g"><general xmi:type="uml:Stereotype"
+      href="pathmap://P/SysML.profile.uml#SysML.stereotype_packagedElement_FullPort"/>
+    </generalization>
+    <ownedAttribute xmi:id="b" name="base_Port" association="x"><type xmi:type="uml:Class"
+      href="pathmap://UML_METAMODELS/UML.metamodel.uml#Port"/></ownedAttribute>
+    <ownedAttribute xmi:id="rate" name="rate"/>
+  </packagedElement>
+  <packagedElement xmi:type="uml:Extension" xmi:id="x" memberEnd="b y">
+    <ownedEnd xmi:type="uml:ExtensionEnd" xmi:id="y" type="st"/></packagedElement>
+</uml:Profile>"""
+)
+
+PORT = """<packagedElement xmi:type="uml:Class" xmi:id="k" name="K">
+  <ownedAttribute xmi:type="uml:Port" xmi:id="p" name="p"/></packagedElement>"""
+
+
+def test_definitions():
+    reading = read(source(PROFILE, "plant.profile.uml"))
+    assert (
+        below_model(reading)
+        == """\
+Stereotype st "Service"
+  ?> specializes pathmap://P/SysML.profile.uml#SysML.stereotype_packagedElement_FullPort \
+Stereotype "FullPort"
+  ?> extends pathmap://UML_METAMODELS/UML.metamodel.uml#Port Class "Port"
+  Property rate "rate"
+"""
+    )
+    assert reading.totals == {
+        "elements": 12,
+        "mapped": 8,
+        "ignored_notation": 2,
+        "external": 2,
+    }
+
+
+def test_an_application_knows_its_stereotype_and_its_tags():
+    model = papyrus(
+        PORT,
+        '<Plant:Service xmi:id="a" base_Port="p" base_Element="p" rate="4" owner="k">'
+        "<note>one</note><note>two</note></Plant:Service>",
+    )
+    for order in ((source(PROFILE, "plant.profile.uml"), model), (model,)):
+        application = read(*order).graph["a"]
+        assert application.owner == "p"
+        assert application.attrs == {
+            "stereotype": "Service",
+            "namespace": "http://plant/profile",
+            "tag.rate": "4",
+            "tag.owner": "k",
+            "tag.note": ("one", "two"),
+        }
+    graph = read(source(PROFILE, "plant.profile.uml"), model).graph
+    assert [e.id for e in graph.targets(graph["a"], "instance-of")] == ["st"]
+    assert [(r.edge, r.target) for r in graph.pending if r.source == "a"] == [("subject", "p")]
+
+
+def test_an_application_may_name_its_base_by_a_child():
+    reading = read(
+        magicdraw(PORT, "<sysml:FlowPort xmi:id='a'><base_Port xmi:idref='p'/></sysml:FlowPort>")
+    )
+    assert reading.graph["a"].owner == "p"
+
+
+def test_an_application_without_id_gets_one_that_stays():
+    model = papyrus(PORT, '<Blocks:Block base_Class="k"/>')
+    ids = {read(model).graph.of_kind("Application")[0].id for _ in range(2)}
+    assert len(ids) == 1
+
+
+def test_stereotypes_of_diagrams_are_notation():
+    reading = read(
+        magicdraw(
+            "", "<MagicDraw_Profile:DiagramInfo xmi:id='a' base_Diagram='d' Author='someone'/>"
+        )
+    )
+    assert reading.findings == []
+    assert reading.totals == {"elements": 5, "mapped": 2, "ignored_notation": 3}
+
+
+def test_an_application_to_nothing_is_reported():
+    reading = read(papyrus(PORT, '<Blocks:Block xmi:id="a" base_Class="gone"/>'))
+    assert reading.findings == [
+        "stereotype-without-element: stereotype 'Block' is applied to nothing that is in the model"
+    ]
+    assert read(papyrus(PORT, '<Blocks:Block xmi:id="a" base_Class="k"/>')).findings == []

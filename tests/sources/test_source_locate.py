@@ -1,0 +1,51 @@
+"""Places become lines and columns, in characters, only when they are shown."""
+
+import pytest
+
+from sysmlc.diagnostics import Place
+from sysmlc.diagnostics.locate import Location, locate
+from sysmlc.sources import Source
+
+
+def where(text, *places, encoding="utf-8"):
+    source = Source("f", text.encode(encoding))
+    found = locate([source], places)
+    return [found.get(place) for place in places]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "windows-1252"])
+def test_columns_count_characters_in_every_encoding(encoding):
+    declared = "utf-8" if encoding.startswith("utf-8") else encoding
+    text = f'<?xml version="1.0" encoding="{declared}"?>\r\n<a>\n  <é/><b ä="ü"/> <c/>\n</a>'
+    line = '  <é/><b ä="ü"/> <c/>'
+    assert where(text, Place("f", 3), Place("f", 0), encoding=encoding) == [
+        Location(3, 18, line),
+        Location(2, 1, "<a>"),
+    ]
+
+
+def test_lines_are_right_past_65535():
+    text = "<a>" + "\n" * 70_000 + "  <b/></a>"
+    assert where(text, Place("f", 1)) == [Location(70_001, 3, "  <b/></a>")]
+
+
+def test_columns_are_right_in_files_of_one_line():
+    text = "<a>" + "<b/>" * 50_000 + "<c/></a>"
+    (found,) = where(text, Place("f", 50_001))
+    assert (found.line, found.column) == (1, 4 + 4 * 50_000)
+
+
+def test_text_places_are_offsets_in_bytes():
+    assert where("part é;\r\nport p", Place("f", offset=15)) == [Location(2, 6, "port p")]
+
+
+def test_places_that_are_located_already_get_their_line():
+    assert where("one\ntwo", Place("f", line=2, column=3)) == [Location(2, 3, "two")]
+
+
+def test_what_is_not_there_is_not_found():
+    assert where("<a/>", Place("f", 7), Place("g", 0), Place("f")) == [None, None, None]
+
+
+def test_elements_before_damage_are_still_found():
+    assert where("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
