@@ -115,10 +115,14 @@ def _give_roles(graph: Graph, known: _Meanings) -> None:
 
 
 def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> None:
+    found: dict[str, set[str]] = {}
     for id, lineage in lineages.items():
-        level = next(_levels(lineage), None)
-        for subject in graph.targets(graph[id], Edge.SUBJECT) if level else ():
-            graph.set(subject, level=level)
+        for subject in graph.targets(graph[id], Edge.SUBJECT):
+            found.setdefault(subject.id, set()).update(_levels(lineage))
+    for id, levels in found.items():
+        # An OPC UA call is often said of a service too: the first of the table is the level.
+        level = next((one for one in LEVELS.values() if one in levels), None)
+        graph.set(graph[id], level=level or graph[id].attrs.get("level"))
     # All are found before one is set, so that the order of the elements does not matter.
     for classifier, level in [(one, _inherited_level(graph, one)) for one in _specific(graph)]:
         graph.set(classifier, level=level)

@@ -17,6 +17,14 @@ class Ancestor:
     family: Family
 
 
+_FAMILIES = {
+    "SysML": Family.SYSML,
+    "additional_stereotypes": Family.SYSML,
+    "sysmlc": Family.SYSMLC,
+}
+"""Whose a profile is that does not say its namespace, by its name."""
+
+
 @dataclass(slots=True)
 class Profiles:
     """Stereotypes of the unit, found for applications by namespace and local name."""
@@ -89,8 +97,8 @@ class Profiles:
             found = family(self._uri(profile))
             if found is not Family.CUSTOM:
                 return found
-        names = {mangled(profile.name) for profile in self._profiles(stereotype)}
-        return Family.SYSML if names & {"SysML", "additional_stereotypes"} else Family.CUSTOM
+        names = (mangled(profile.name) for profile in self._profiles(stereotype))
+        return next((_FAMILIES[name] for name in names if name in _FAMILIES), Family.CUSTOM)
 
     def _profiles(self, stereotype: Element) -> list[Element]:
         above = self.graph.ancestors(stereotype)

@@ -1,0 +1,102 @@
+"""Questions to the graph."""
+
+import pytest
+
+from sysmlc.ir import query
+from sysmlc.ir.text import parse_text
+
+GATE = parse_text(
+    """\
+Class device "Device"
+  -> specializes gate
+  Port device.in "in"
+    -> typed-by track
+Class gate "Gate"
+  -> specializes device
+  -> realizes reading
+  Port gate.in "in"
+    -> redefines device.in
+  Application b stereotype="Block" tag.Text="T" tag.n=["1", "2"]
+    -> subject gate
+  Application c stereotype="Custom" lineage=["Custom", "Block"] tag.text="t"
+    -> subject gate
+Class track "Track"
+  FlowProperty track.p "p" direction="in"
+Interface reading "Reading"
+Connector c1
+  -> end e1 e2
+  ConnectorEnd e1
+    -> role gate.in
+  ConnectorEnd e2
+    -> role device.in
+    -> path gate
+"""
+)
+
+
+def ids(elements):
+    return [element.id for element in elements]
+
+
+def test_stereotypes_and_tags():
+    gate = GATE["gate"]
+    assert ids(query.applications(GATE, gate)) == ["b", "c"]
+    assert query.stereotypes(GATE, gate) == ("Block", "Custom")
+    assert query.has_stereotype(GATE, gate, "Nothing", "Block")
+    assert not query.has_stereotype(GATE, gate, "Nothing")
+    assert query.tag(GATE, gate, "text") == "t"
+    assert query.tag(GATE, gate, "Text") == "T"
+    assert query.tag(GATE, gate, "TEXT") == "T"
+    assert query.tag(GATE, gate, "n") == ("1", "2")
+    assert query.tag(GATE, gate, "absent") is None
+
+
+def test_generals_end_in_a_circle():
+    assert ids(query.generals(GATE, GATE["gate"])) == ["device"]
+
+
+def test_conformance_goes_over_generals_and_realised_interfaces():
+    gate, track = GATE["gate"], GATE["track"]
+    assert query.conforms(GATE, gate, gate)
+    assert query.conforms(GATE, gate, GATE["device"])
+    assert query.conforms(GATE, GATE["device"], GATE["reading"])
+    assert not query.conforms(GATE, gate, track)
+
+
+def test_type_of_a_redefining_feature_is_that_of_the_redefined_one():
+    assert query.type_of(GATE, GATE["gate.in"]).id == "track"
+    assert query.type_of(GATE, GATE["track.p"]) is None
+
+
+def test_features_before_inherit_are_the_own_ones():
+    assert ids(query.features(GATE, GATE["gate"])) == ["gate.in"]
+    assert ids(query.ports(GATE, GATE["gate"])) == ["gate.in"]
+    assert ids(query.flow_properties(GATE, GATE["track"])) == ["track.p"]
+
+
+def test_ends_of_a_connector():
+    connector, first, second = GATE["c1"], GATE["e1"], GATE["e2"]
+    assert query.opposite_end(GATE, connector, first) is second
+    assert query.role_of(GATE, first).id == "gate.in"
+    assert (query.is_boundary(GATE, first), query.is_boundary(GATE, second)) == (True, False)
+    assert ids(query.connectors_of(GATE, GATE["gate.in"])) == ["c1"]
+
+
+@pytest.mark.parametrize(
+    ("multiplicity", "expected"),
+    [
+        (None, (1, 1)),
+        ("*", (0, None)),
+        ("0..1", (0, 1)),
+        ("2..*", (2, None)),
+        ("3", (3, 3)),
+        (4, (4, 4)),
+        ("", None),
+        ("a..b", None),
+        ("*..1", None),
+        ("1..", None),
+        ("-1", None),
+    ],
+)
+def test_bounds(multiplicity, expected):
+    assert query.bounds(multiplicity) == expected

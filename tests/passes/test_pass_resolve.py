@@ -1,0 +1,147 @@
+"""Pass ``resolve``: where references lead, and what stands in for what is not there."""
+
+import pytest
+from passing import codes, lines, refined
+
+from sysmlc.ir import Edge, Kind
+from sysmlc.ir.text import print_text
+
+PRIMITIVES = [
+    ("pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#Integer", "DataType", "", "Integer"),
+    ("http://www.omg.org/spec/UML/20131001/PrimitiveTypes.xmi#Integer", "Class", "", "Integer"),
+    ("https://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#Boolean", "Class", "", "Boolean"),
+    ("pathmap://UML_LIBRARIES/EcorePrimitiveTypes.library.uml#EDouble", "Class", "", "Real"),
+    ("pathmap://UML_LIBRARIES/JavaPrimitiveTypes.library.uml#int", "Class", "", "Integer"),
+    (
+        "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML.package_packagedElement_"
+        "Libraries.package_packagedElement_PrimitiveValueTypes.dataType_packagedElement_String",
+        "DataType",
+        "",
+        "String",
+    ),
+    (
+        "http://www.omg.org/spec/SysML/20150709/SysML.xmi#_SysML_Libraries_PackageableElement-"
+        "PrimitiveValueTypes_PackageableElement-String_PackageableElement",
+        "DataType",
+        "SysML::Libraries::PrimitiveValueTypes::String",
+        "String",
+    ),
+    ("UML_Standard_Profile.mdzip#_9_0_2_91a0295_110", "DataType", "datatypes::Real", "Real"),
+    (
+        "pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#UnlimitedNatural",
+        "Class",
+        "",
+        "UnlimitedNatural",
+    ),
+]
+
+
+def pointing(target: str, kind: str = "Class", name: str = "", edge: str = "typed-by") -> str:
+    shown = f' "{name}"' if name else ""
+    return f'Property p "p" @m/a.uml:1\n  ?> {edge} "{target}" {kind}{shown}\n'
+
+
+@pytest.mark.parametrize(("href", "kind", "path", "name"), PRIMITIVES)
+def test_primitives_of_all_dialects_are_one_data_type_each(href, kind, path, name):
+    graph, sink = refined(pointing(href, kind, path), "resolve")
+    type_ = graph.target(graph["p"], Edge.TYPED_BY)
+    assert (type_.kind, type_.name, type_.subkind) == (Kind.DATA_TYPE, name, "primitive")
+    assert codes(sink) == []
+
+
+@pytest.mark.parametrize(
+    ("href", "name"),
+    [
+        ("pathmap://SYSMLC_PROFILES/sysmlc.profile.uml#Task", "Task"),
+        ("http://www.omg.org/spec/SysML/20150709/SysML.xmi#SysML.Blocks.Block", "Block"),
+        ("pathmap://UML_METAMODELS/UML.metamodel.uml#Port", "Port"),
+        (
+            "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Ports_u0026Flows",
+            "Ports&Flows",
+        ),
+        ("https://www.omg.org/spec/UML/20161101/UML.xmi#Class", "Class"),
+    ],
+)
+def test_standard_libraries_stand_in_without_complaint(href, name):
+    graph, sink = refined(pointing(href, edge="references"), "resolve")
+    stub = graph.target(graph["p"], Edge.REFERENCES)
+    assert (stub.name, stub.attrs["external"], stub.attrs["href"]) == (name, True, href)
+    assert codes(sink) == []
+
+
+def test_absent_library_is_one_warning_that_lists_what_it_takes_down():
+    text = pointing("lib.uml#a", name="A") + (
+        'Property q "q"\n  ?> typed-by "lib.uml#b" Class\n'
+        'Property r "r"\n  ?> typed-by "lib.uml#a" Class\n'
+    )
+    graph, sink = refined(text, "resolve")
+    assert lines(sink) == [
+        "SM152 warning: 'lib.uml' is not part of the compile unit; what it holds (2) is known by "
+        "name only"
+    ]
+    assert next(iter(sink)).notes == ("Class 'A', used by p, r", "Class 'b', used by q")
+    stubs = {one.name for one in graph if one.attrs.get("external")}
+    assert stubs == {"A", "b"}
+
+
+@pytest.mark.parametrize(
+    "target",
+    ["b.uml#x", "../n/b.uml#x", "pathmap://PLANT/b.uml#x", "platform:/resource/plant/b.uml#x"],
+)
+def test_file_of_the_unit_is_found_by_its_path_or_its_name(target):
+    text = pointing(target) + 'Class x "X" @n/b.uml:1\n'
+    graph, sink = refined(text, "resolve")
+    assert (graph.target(graph["p"], Edge.TYPED_BY).id, codes(sink)) == ("x", [])
+
+
+def test_of_two_files_of_one_name_the_one_beside_is_meant():
+    text = (
+        pointing("b.uml#x")
+        + 'Class n/b.uml#x "far" @n/b.uml:1\nClass m/b.uml#x "near" @m/b.uml:1\n'
+    )
+    graph, _ = refined(text, "resolve")
+    assert graph.target(graph["p"], Edge.TYPED_BY).name == "near"
+
+
+def test_short_id_in_an_unknown_file_is_not_mistaken_for_one_of_the_unit():
+    graph, sink = refined(pointing("lib.uml#_0") + "Class _0 @n/b.uml:1\n", "resolve")
+    assert graph.target(graph["p"], Edge.TYPED_BY).attrs["href"] == "lib.uml#_0"
+    assert codes(sink) == ["SM152"]
+
+
+def test_missing_element_of_a_file_of_the_unit_is_an_error_at_the_reference():
+    graph, sink = refined(pointing("b.uml#y") + "Class x @b.uml:1\n", "resolve")
+    (found,) = sink
+    assert (found.rule.code, found.subject.place.file, found.subject.id) == (
+        "SM150",
+        "m/a.uml",
+        "p",
+    )
+    assert graph["p"].attrs["unresolved"] == ("typed-by",)
+    assert graph.pending == []
+
+
+def test_what_follows_from_a_broken_reference_is_not_reported():
+    text = 'Class gate "Gate"\n  Port gate.in "in" direction="in"\n    ?> typed-by nowhere Class\n'
+    assert codes(refined(text, "ports")[1]) == ["SM150"]
+
+
+def test_files_in_another_order_give_the_same_edges_and_stand_ins():
+    first, second = (
+        pointing("lib.uml#a", name="A"),
+        'Class c "C" @b.uml:1\n  ?> specializes m/a.uml#p Class\n',
+    )
+    one, other = (refined(text, "resolve")[0] for text in (first + second, second + first))
+    assert sorted(print_text(one).splitlines()) == sorted(print_text(other).splitlines())
+
+
+def test_ids_in_attributes_become_ids_of_the_graph():
+    text = (
+        'Control d subkind="decision" decision_input="b.uml#isFree" @a.uml:1\n'
+        'Structured c clauses=[[["t"], ["gone"]]] @a.uml:2\nAction t @a.uml:3\n'
+        "Activity b.uml#isFree @b.uml:1\n"
+    )
+    graph, sink = refined(text, "resolve")
+    assert graph["d"].attrs["decision_input"] == "b.uml#isFree"
+    assert graph["c"].attrs["clauses"] == ((("t",), ()),)
+    assert codes(sink) == ["SM151"]

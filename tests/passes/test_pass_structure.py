@@ -1,0 +1,324 @@
+"""Passes ``inherit``, ``ports``, ``flows`` and ``behaviours``: cases beside the golden models."""
+
+import time
+
+import pytest
+from passing import codes, lines, refined
+
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import component_name
+from sysmlc.passes import pipeline
+
+# -- inherit -----------------------------------------------------------------------------------
+
+
+def names(graph, id):
+    return [one.name for one in graph.targets(graph[id], Edge.FEATURE)]
+
+
+def test_circle_with_a_general_outside_still_inherits_from_there():
+    graph, sink = refined(
+        """\
+Class base "Base"
+  Property base.id "id"
+Class a "A"
+  -> specializes b base
+Class b "B"
+  -> specializes a
+  Property b.x "x"
+""",
+        "inherit",
+    )
+    assert (names(graph, "a"), names(graph, "b")) == (["id"], ["x"])
+    assert lines(sink) == ["SM200 error: 'A' specialises itself: 'A', 'B', 'A'"]
+
+
+def test_classifier_that_specialises_itself_is_a_circle():
+    _, sink = refined('Class a "A"\n  -> specializes a\n', "inherit")
+    assert codes(sink) == ["SM200"]
+
+
+def test_redefinition_of_a_stranger_hides_nothing():
+    graph, sink = refined(
+        """\
+Class a "A"
+  Property a.x "x"
+Class b "B"
+  -> specializes c
+  Property b.y "y"
+    -> redefines a.x
+Class c "C"
+  -> specializes a
+    Property c.z "z"
+Class d "D"
+  -> specializes a
+  Property d.y "y"
+    -> redefines b.y
+""",
+        "inherit",
+    )
+    assert names(graph, "b") == ["y", "z"]
+    assert names(graph, "d") == ["y", "x"]
+    assert codes(sink) == ["SM202"]
+
+
+def test_type_from_outside_the_unit_may_be_narrower():
+    _, sink = refined(
+        """\
+Class out "Out" external=true href="lib.uml#out"
+Class in "In"
+Class a "A"
+  Property a.x "x"
+    -> typed-by in
+Class b "B"
+  -> specializes a
+  Property b.x "x"
+    -> typed-by out
+    -> redefines a.x
+""",
+        "inherit",
+    )
+    assert codes(sink) == []
+
+
+def test_ends_that_an_association_owns_are_not_its_features():
+    graph, _ = refined(
+        """\
+Association a "A"
+  -> end e
+  Property e "e"
+  Property p "p"
+""",
+        "inherit",
+    )
+    assert names(graph, "a") == ["p"]
+
+
+def test_long_chain_of_classes_is_no_burden():
+    graph, number = Graph(), 3000
+    for one in range(number):
+        graph.add(Element(f"c{one}", Kind.CLASS, f"C{one}"))
+        if one:
+            graph.connect(Edge.SPECIALIZES, f"c{one}", f"c{one - 1}")
+    graph.add(Element("x", Kind.PROPERTY, "x", "c0"))
+    from sysmlc.diagnostics import Sink
+
+    start = time.process_time()
+    pipeline.load("inherit").run(graph, Sink())
+    assert [one.id for one in graph.targets(graph[f"c{number - 1}"], Edge.FEATURE)] == ["x"]
+    assert time.process_time() - start < 5
+
+
+# -- ports -------------------------------------------------------------------------------------
+
+TRACK = """\
+Class track "Track" role="interface block"
+  Property track.p "p" role="flow property" direction="{direction}"
+Class gate "Gate"
+  Port port "port" {more}
+    -> typed-by track
+"""
+
+
+@pytest.mark.parametrize(
+    ("flowing", "more", "expected"),
+    [
+        ("in", "", "in"),
+        ("out", "", "out"),
+        ("inout", "", "inout"),
+        ("in", "conjugated=true", "out"),
+        ("out", "conjugated=true", "in"),
+        ("inout", "conjugated=true", "inout"),
+        ("in", 'direction="out"', "out"),
+        ("in", 'role="flow port"', "in"),
+    ],
+)
+def test_direction_from_flow_properties(flowing, more, expected):
+    graph, _ = refined(TRACK.format(direction=flowing, more=more), "ports")
+    assert graph["port"].attrs["direction"] == expected
+
+
+@pytest.mark.parametrize(
+    ("parameters", "more", "expected"),
+    [
+        (["in"], "", "in"),
+        (["return"], "", "out"),
+        (["in", "return"], "", "inout"),
+        (["in"], 'featureDirection="required"', "out"),
+        ([], "", None),
+    ],
+)
+def test_direction_from_parameters(parameters, more, expected):
+    text = 'Interface i "I"\n  Operation op "op"\n'
+    for number, direction in enumerate(parameters):
+        text += f'    Parameter p{number} "p" direction="{direction}"\n'
+    text += (
+        f'    Application a stereotype="DirectedFeature" tag.{more or "x=1"}\n      -> subject op\n'
+    )
+    text += 'Class gate "Gate"\n  Port port "port"\n    -> typed-by i\n'
+    graph, sink = refined(text, "ports")
+    assert graph["port"].attrs.get("direction") == expected
+    assert ("SM300" in codes(sink)) is (expected is None)
+
+
+def test_inherited_flow_properties_count():
+    graph, _ = refined(
+        """\
+Class base "Base"
+  FlowProperty base.p "p" direction="out"
+Class track "Track"
+  -> specializes base
+Class gate "Gate"
+  Port port "port"
+    -> typed-by track
+""",
+        "ports",
+    )
+    assert graph["port"].attrs["direction"] == "out"
+
+
+def test_undirected_ports_are_counted_for_each_block():
+    text = "Class t\n" + "".join(
+        f'Class {block} "{block}"\n'
+        + "".join(f'  Port {block}{n} "p{n}"\n    -> typed-by t\n' for n in range(count))
+        for block, count in (("A", 1), ("B", 10))
+    )
+    listed = ", ".join(f"'p{n}'" for n in range(8))
+    assert lines(refined(text, "ports")[1]) == [
+        "SM300 info: ports of 'A' without a direction (1): 'p0'",
+        f"SM300 info: ports of 'B' without a direction (10): {listed} and 2 more",
+    ]
+
+
+# -- flows -------------------------------------------------------------------------------------
+
+LINE = """\
+Class pallet "Pallet"
+Class gate "Gate"
+  Port in "in" direction="in"
+    -> typed-by pallet
+  Port out "out" direction="out"
+    -> typed-by pallet
+Class line "Line"
+  Property a "a" aggregation="composite"
+    -> typed-by gate
+  Property b "b" aggregation="composite"
+    -> typed-by gate
+  Port feed "feed" direction="in"
+    -> typed-by pallet
+"""
+
+
+def connector(id: str, *ends: str) -> str:
+    text = f'  Connector {id} "{id}"\n    -> end {id}.0 {id}.1\n'
+    for number, end in enumerate(ends):
+        part, _, role = end.rpartition(".")
+        text += f"    ConnectorEnd {id}.{number}\n      -> role {role}\n"
+        text += f"      -> path {part}\n" if part else ""
+    return text
+
+
+def flow(source: str, target: str) -> str:
+    ends = f"  -> flow-source {source}\n  -> flow-target {target}\n"
+    return f'ItemFlow f "f"\n{ends}  -> conveys pallet\n'
+
+
+@pytest.mark.parametrize(
+    ("ends", "found"),
+    [
+        (("a.out", "b.in"), []),
+        (("a.in", "b.in"), ["SM315"]),
+        (("feed", "a.in"), []),
+        (("feed", "a.out"), ["SM315"]),
+    ],
+)
+def test_directions_of_assembly_and_delegation_connectors(ends, found):
+    assert codes(refined(LINE + connector("c", *ends), "flows")[1]) == found
+
+
+@pytest.mark.parametrize(("ends", "found"), [(("feed", "in"), []), (("in", "feed"), ["SM310"] * 2)])
+def test_what_enters_a_block_goes_on_to_its_part(ends, found):
+    text = LINE + connector("c", "feed", "a.in") + flow(*ends)
+    assert codes(refined(text, "flows")[1]) == found
+
+
+def test_item_flow_that_two_connectors_could_realise_is_left_alone():
+    text = LINE + connector("c", "a.out", "b.in") + connector("d", "b.out", "a.in")
+    graph, _ = refined(text + flow("out", "in"), "flows")
+    assert graph.targets(graph["f"], Edge.REALIZING) == []
+    one, _ = refined(LINE + connector("c", "a.out", "b.in") + flow("out", "in"), "flows")
+    assert [found.id for found in one.targets(one["f"], Edge.REALIZING)] == ["c"]
+
+
+def test_domain_may_be_a_tagged_value_of_a_general_classifier():
+    text = LINE + connector("c", "a.out", "b.in") + flow("out", "in")
+    text += 'Class solid "Solid"\n  Application t stereotype="Stuff" tag.domain="physical"\n'
+    text += "    -> subject solid\n"
+    text = text.replace(
+        'Class pallet "Pallet"\n', 'Class pallet "Pallet"\n  -> specializes solid\n'
+    )
+    graph, _ = refined(text, "flows")
+    assert [graph[id].attrs["domain"] for id in ("f", "c")] == ["physical"] * 2
+
+
+# -- behaviours --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("pins", "found"),
+    [
+        ([("in", "argument"), ("out", "result")], []),
+        ([("in", "argument"), ("out", "result"), ("in", "target")], []),
+        ([("in", "target"), ("out", "result")], ["SM401"]),
+        ([], ["SM401", "SM401"]),
+    ],
+)
+def test_pins_of_a_call_against_parameters(pins, found):
+    text = """\
+Class gate "Gate"
+  Operation op "turn"
+    Parameter p "angle" direction="in"
+    Parameter q "done" direction="return"
+Activity act "Act"
+  Action call "call" subkind="call-operation"
+    -> calls op
+"""
+    for number, (direction, subkind) in enumerate(pins):
+        text += f'    Pin pin{number} direction="{direction}" subkind="{subkind}"\n'
+    assert codes(refined(text, "behaviours")[1]) == found
+
+
+def test_call_that_leaves_the_unit_is_not_judged():
+    text = """\
+Activity act "Act"
+  Action call "call" subkind="call-behavior"
+    ?> calls lib.uml#run Activity "Run"
+  Action lost "lost" subkind="call-operation"
+    ?> calls gone Operation
+"""
+    assert codes(refined(text, "behaviours")[1]) == ["SM150", "SM152"]
+
+
+def test_components_have_the_names_of_the_design():
+    graph, _ = refined(
+        """\
+Package line "Line"
+  Class gate "Gate"
+    -> classifier-behavior sm
+    -> satisfies req
+    StateMachine sm "states"
+    Activity pull "pull in"
+  Activity alone "Alone"
+  Class req "No jam" role="requirement"
+  Class other "Other" role="requirement"
+""",
+        "behaviours",
+    )
+    expected = {
+        "sm": "Line::Gate",
+        "pull": "Line::Gate.pull in",
+        "alone": "Line::Alone",
+        "req": "Line::Gate",
+        "other": "Line::Other",
+    }
+    assert {id: component_name(graph, graph[id]) for id in expected} == expected
