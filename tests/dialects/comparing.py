@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from dialects.magicdraw import MODEL_ENTRY, ids_of, write_mdzip, write_xml
+from dialects.magicdraw import ids_of, write_mdzip, write_xml
 from examples.compiling import compile_text, outputs
 from sysmlc.driver import Compilation
 from sysmlc.ir.diff import Change, diff
@@ -41,14 +41,17 @@ def _of_dialect(change: Change) -> bool:
     return stand_in or path or applied or imported
 
 
-def common_outputs(papyrus: bytes, one: Compilation, other: Compilation) -> tuple[dict, dict]:
-    """The outputs of both, the second with the ids and the file name of the first."""
+def common_outputs(
+    papyrus: bytes, one: Compilation, other: Compilation
+) -> tuple[dict[str, str], dict[str, str]]:
+    """The outputs of both, the second with the ids, the file name and the digest of the first."""
     names = {new: old for old, new in ids_of(papyrus).items()}
+    here, there = one.inputs[0], other.inputs[0]
+    names |= {there.sha256: here.sha256, there.path: here.path}
     return outputs(one), {path: _translated(text, names) for path, text in outputs(other).items()}
 
 
 def _translated(text: str, names: dict[str, str]) -> str:
     for new, old in names.items():
         text = text.replace(new, old)
-    text = text.replace(f"model.mdzip!{MODEL_ENTRY}", "model.uml")
-    return text.replace("model.xml", "model.uml")
+    return text

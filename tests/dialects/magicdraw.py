@@ -60,6 +60,7 @@ _NOT_SAVED = frozenset(
 
 _LISTS_OF = {
     "uml:ActivityPartition": {"node", "edge"},
+    "uml:Clause": {"body"},
     "uml:InstanceSpecification": {"classifier"},
     "uml:InterruptibleActivityRegion": {"node", "interruptingEdge"},
 }

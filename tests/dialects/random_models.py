@@ -4,12 +4,15 @@ from random import Random
 
 from dialects.papyrus import PapyrusDocument
 from dialects.random_behaviour import Behaviours
+from dialects.random_rarities import Rarities
 from dialects.random_structure import PLANT, Structure
 
 
 def random_model(random: Random, size: int = 3) -> bytes:
     """A model of about ``size`` machines; the same choices give the same bytes."""
     document = PapyrusDocument("Random plant", profiles={"Plant": PLANT})
-    Behaviours(Structure(document, random, size))
+    structure = Structure(document, random, size)
+    Behaviours(structure)
+    Rarities(structure)
     document.apply_sysml()
     return document.bytes()

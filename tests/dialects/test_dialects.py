@@ -7,8 +7,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from dialects.comparing import common_outputs, compile_both, graph_changes
+from dialects.magicdraw import write_xml
 from dialects.random_models import random_model
-from examples.compiling import EXAMPLES
+from examples.compiling import EXAMPLES, compile_text
 
 DEFAULT = ("contracts", "recipe", "plantuml")
 
@@ -51,3 +52,29 @@ def test_random_models_hold_what_they_promise():
         uml:InputPin Requirements:Requirement Allocations:Allocate Plant:Robot uml:Stereotype
         uml:Enumeration uml:Generalization uml:Operation uml:ActivityPartition"""
     assert [word for word in wanted.split() if word not in text] == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b' isConjugated="true"', b""),
+        (b"palletId = expectedId", b"palletId = palletA"),
+        (b' Id="BG-1"', b' Id="BG-9"'),
+        (b' direction="inout"', b' direction="in"'),
+        (b"<sysml:ProxyPort", b"<sysml:Port"),
+        (b"<sysml:ItemFlow", b"<sysml:Trace"),
+        (b' isRelative="true"', b""),
+        (b'value="0.3"', b'value="0.4"'),
+        (b'name="Released"', b'name="Freed"'),
+        (b" partWithPort=", b" ignored="),
+        (b'"uml:MergeNode"', b'"uml:JoinNode"'),
+    ],
+)
+def test_the_comparison_sees_a_difference(old, new, tmp_path):
+    """Each is a difference that the readers could make between the dialects."""
+    papyrus = EXAMPLES[0].read_bytes()
+    other = write_xml(papyrus)
+    assert old in other
+    one = compile_text(tmp_path, "model.uml", papyrus, "ir")
+    changed = compile_text(tmp_path, "model.xml", other.replace(old, new, 1), "ir")
+    assert graph_changes(one, changed) != []
