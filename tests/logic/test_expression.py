@@ -115,7 +115,7 @@ _literals = st.builds(
 _atoms = _literals | st.builds(Name, st.lists(_names, min_size=1, max_size=3).map(tuple))
 
 
-_OPERATORS = tuple("implies or xor and == != < <= > >= + - * / %".split(" "))
+_OPERATORS = ("implies", "or", "xor", "and", "==", "!=", "<", "<=", ">", ">=", *"+-*/%")
 
 
 def _compound(inner):

@@ -6,6 +6,8 @@ step the formulas must say what the interpreter says: legal when the changed ste
 those that may follow, else violated. No mutation is exempt.
 """
 
+from itertools import pairwise
+
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from machines import machines
@@ -65,7 +67,7 @@ def _inputs_in(machine, valuation):
 
 
 _quiet = settings(
-    max_examples=60,
+    max_examples=30,
     deadline=None,
     suppress_health_check=[
         HealthCheck.filter_too_much,
@@ -81,7 +83,7 @@ def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):
     machine, contract = _derived(*model)
     trace = _trace(data, machine)
     assert _breaks(contract, trace, Class.INIT, Class.SAFETY) == []
-    for now, following in zip(trace, trace[1:], strict=False):
+    for now, following in pairwise(trace):
         for mutant in _mutations(machine, following):
             legal = mutant in step.successors(machine, now, _inputs_in(machine, mutant))
             broken = _breaks(contract, [now, mutant], Class.SAFETY)

@@ -45,7 +45,9 @@ def has_primes(formula: Formula) -> bool:
             return False
 
 
-def violation(conjunct: Conjunct, trace: Sequence[Valuation], loop: int | None = None) -> int | None:
+def violation(
+    conjunct: Conjunct, trace: Sequence[Valuation], loop: int | None = None
+) -> int | None:
     """The first step in which the conjunct is violated, or None.
 
     ``loop`` is the step to which the last one returns; without it the trace is finite: a
@@ -64,9 +66,8 @@ def violation(conjunct: Conjunct, trace: Sequence[Valuation], loop: int | None =
 
 
 def _first_unsafe(formula: Formula, trace: Sequence[Valuation], loop: int | None) -> int | None:
-    looks_ahead = has_primes(formula)
     for index, (now, then) in enumerate(_steps(trace, loop)):
-        if then is None and looks_ahead:
+        if then is None and has_primes(formula):
             continue
         if not is_true(formula, now, then):
             return index

@@ -331,7 +331,8 @@ def _transition(work: _Derivation, move: _Move) -> Iterator[Conjunct]:
         taken = tidy(f.both(move.fires, path.when, *chosen), work.domains)
         formula = f.implies(taken, f.both(*_effects(work, path)))
         if formula != f.TRUE:
-            text = words.transition(work.machine, move.transition, path)
+            way = tidy(path.when, work.domains, _conjuncts(move.fires))
+            text = words.transition(work.machine, move.transition, path, way)
             yield Conjunct(formula, Class.SAFETY, origin, text)
     if any(list(_passed_picks(work, move, path)) for path in move.paths):
         ways = [

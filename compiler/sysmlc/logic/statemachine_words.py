@@ -1,7 +1,7 @@
 """What the conjuncts of a state machine's contract say, in the modeller's words."""
 
 from sysmlc.logic.expression import Expression, dotted, print_expression
-from sysmlc.logic.formula import Const, Formula
+from sysmlc.logic.formula import TRUE, Const, Formula
 from sysmlc.logic.machine import (
     AfterTicks,
     Machine,
@@ -26,19 +26,15 @@ def name_transition(one: Transition) -> str:
     return f"transition '{one.words}'"
 
 
-def transition(machine: Machine, one: Transition, path: Path) -> str:
-    """What taking the transition on this path means."""
+def transition(machine: Machine, one: Transition, path: Path, way: Formula) -> str:
+    """What taking the transition on this path means; ``way`` is what tells it from others."""
     source = machine.vertices[one.source].literal
     reasons = " or ".join(_occurrence(each) for each in one.occurrences)
     when = reasons or f"'{source}' is complete"
     guard = [] if one.guard is None else [f"[{_shown(one.guard)}]"]
-    way = [] if path.case == path.when or not _extra(one, path) else [print_formula(path.when)]
-    conditions = " and ".join([when, *guard, *way])
+    chosen = [] if way == TRUE else [print_formula(way)]
+    conditions = " and ".join([when, *guard, *chosen])
     return f"In '{source}', when {conditions}: {_outcome(machine, one, path)}."
-
-
-def _extra(one: Transition, path: Path) -> bool:
-    return print_formula(path.when) not in ("true", _shown(one.guard) if one.guard else "true")
 
 
 def _occurrence(occurrence: Occurrence) -> str:

@@ -1,0 +1,101 @@
+"""Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.contracts.document import document
+from sysmlc.backends.contracts.explain import explain
+from sysmlc.backends.contracts.spin import TooLargeError, spin
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
+from sysmlc.ir import Edge, Graph, Kind
+from sysmlc.logic.contract import Contract
+from sysmlc.naming import file_names
+from sysmlc.output import Output
+
+TOO_LARGE = rule(
+    "SM520",
+    "formula-too-large",
+    Severity.WARNING,
+    "the contract of '{component}' compares more values than a SPIN formula can list; "
+    "'{file}' is not written",
+    why="SPIN's formulas know no arithmetic: every comparison is written out over all values.",
+    help="Give the properties smaller ranges.",
+)
+BAD_TEMPLATE = rule(
+    "SM521",
+    "contract-template-fault",
+    Severity.ERROR,
+    "template contract.md.j2 cannot be used: {fault}",
+    why="The template of the folder given by --templates replaces ours.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ContractsBackend:
+    """Writes the contracts that the pass ``contracts`` found."""
+
+    name: str = "contracts"
+    summary: str = "assume/guarantee contracts as JSON, SPIN formula and explanation"
+    is_default: bool = True
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add three files a contract; their trace names every element that they tell of."""
+        contracts = graph.derived(Contract)
+        names = file_names(contract.component for contract in contracts)
+        for contract in contracts:
+            path = f"contracts/{names[contract.component]}"
+            trace = tuple(_trace(graph, contract))
+            text = json.dumps(document(contract), ensure_ascii=False, indent=2)
+            output.add(f"{path}.contract.json", f"{text}\n", trace, self.name)
+            _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
+            _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
+
+
+def _add_spin(
+    graph: Graph,
+    contract: Contract,
+    output: Output,
+    path: str,
+    trace: tuple[str, ...],
+    sink: Sink,
+) -> None:
+    try:
+        output.add(path, spin(contract), trace, "contracts")
+    except TooLargeError:
+        subject = graph.subject(graph[contract.origin])
+        sink.report(TOO_LARGE, subject, component=contract.component, file=path)
+
+
+def _add_page(
+    graph: Graph,
+    contract: Contract,
+    output: Output,
+    path: str,
+    trace: tuple[str, ...],
+    sink: Sink,
+    options: EmitOptions,
+) -> None:
+    from jinja2 import TemplateError
+
+    try:
+        output.add(path, explain(graph, contract, options.templates), trace, "contracts")
+    except TemplateError as error:
+        fault = f"{type(error).__name__}: {error}"
+        sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)
+
+
+def _trace(graph: Graph, contract: Contract) -> Iterator[str]:
+    """Ids of the behaviour with all its parts, of what its variables stand for, and of the
+    constraints on its owner: an error in any of them may be missing from the contract."""
+    behaviour = graph[contract.origin]
+    yield from (element.id for element in graph.subtree(behaviour))
+    owner = graph.owner(behaviour)
+    if owner is not None:
+        around = [*graph.owned(owner), *graph.sources(owner, Edge.REFERENCES)]
+        yield from (one.id for one in around if one.kind is Kind.CONSTRAINT)
+    yield from (variable.origin for variable in contract.variables if variable.origin in graph)
+    for conjunct in (*contract.assumptions, *contract.guarantees):
+        if conjunct.origin in graph:
+            yield conjunct.origin

@@ -1,0 +1,131 @@
+"""A contract told to a person: variables, assumptions, guarantees, each with its element."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sysmlc import resources
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
+from sysmlc.logic.domains import describe
+from sysmlc.logic.printing import print_formula
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_FOLDER = "contracts"
+_TITLES = {
+    Class.INIT: "At the start",
+    Class.SAFETY: "In every step",
+    Class.LIVENESS: "Again and again",
+    Class.OTHER: "In temporal logic outside GR(1)",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One variable or conjunct as the template shows it."""
+
+    formula: str
+    text: str
+    element: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """Conjuncts of one class."""
+
+    title: str
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """Everything that the template needs."""
+
+    component: str
+    element: str
+    place: str
+    inputs: tuple[Row, ...]
+    outputs: tuple[Row, ...]
+    assumptions: tuple[Section, ...]
+    guarantees: tuple[Section, ...]
+
+
+def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
+    """Markdown text. Raises ``jinja2.TemplateError`` when a template of the user's is wrong."""
+    return (
+        _environment(templates).get_template("contract.md.j2").render(page=_page(graph, contract))
+    )
+
+
+def _page(graph: Graph, contract: Contract) -> Page:
+    owned = {owner: [v for v in contract.variables if v.owner == owner] for owner in ("env", "sys")}
+    return Page(
+        contract.component,
+        _name(graph, contract.origin),
+        _place(graph, contract.origin),
+        tuple(_variable(graph, one) for one in owned["env"]),
+        tuple(_variable(graph, one) for one in owned["sys"]),
+        _sections(graph, contract.assumptions),
+        _sections(graph, contract.guarantees),
+    )
+
+
+def _variable(graph: Graph, variable: Variable) -> Row:
+    origin = variable.origin
+    return Row(
+        variable.name, describe(variable.domain), _name(graph, origin), _place(graph, origin)
+    )
+
+
+def _sections(graph: Graph, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
+    rows: dict[Class, list[Row]] = {class_: [] for class_ in Class}
+    for one in conjuncts:
+        name, place = _name(graph, one.origin), _place(graph, one.origin)
+        rows[one.class_].append(Row(print_formula(one.formula), one.text, name, place))
+    return tuple(Section(_TITLES[c], tuple(found)) for c, found in rows.items() if found)
+
+
+def _name(graph: Graph, id: str) -> str:
+    """The element in words: ``transition 'Idle' to 'Busy'``, ``property 'bay' of 'Gate'``."""
+    element = graph.get(id)
+    if element is None:
+        return ""
+    kind = re.sub(r"(?<!^)(?=[A-Z])", " ", element.kind).lower()
+    if element.kind is Kind.TRANSITION:
+        edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+        ends = [graph.target(element, edge) for edge in edges]
+        return f"{kind} {' to '.join(_quoted(end) for end in ends if end is not None)}"
+    owner = next((up for up in graph.ancestors(element) if up.name), None)
+    of = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
+    return f"{kind} '{element.name}'{of}" if element.name else f"{kind}{of}"
+
+
+def _quoted(vertex: Element) -> str:
+    return f"'{vertex.name}'" if vertex.name else vertex.subkind or "its end"
+
+
+def _place(graph: Graph, id: str) -> str:
+    element = graph.get(id)
+    return "" if element is None or not element.source else element.source
+
+
+def _environment(templates: Path | None) -> Environment:
+    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
+
+    ours = resources.path("templates", _FOLDER)
+    folders = [ours] if templates is None else [templates / _FOLDER, templates, ours]
+    return Environment(
+        loader=ChoiceLoader([FileSystemLoader(folder) for folder in folders]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )

@@ -1,0 +1,59 @@
+"""Which class of GR(1) an LTL formula belongs to, and its form there (thesis, 2.2.3)."""
+
+from collections.abc import Iterator
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Class
+from sysmlc.logic.formula import Apply, Formula, Op
+
+_TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
+
+
+def classified(formula: Formula) -> Iterator[tuple[Class, Formula]]:
+    """The conjuncts of an LTL formula with their classes.
+
+    ``G p`` is safety (X inside p becomes primes), ``G F p`` liveness, a formula without
+    temporal operators initial; the rest is ``other`` and keeps its operators.
+    """
+    match formula:
+        case Apply(Op.AND, args):
+            for arg in args:
+                yield from classified(arg)
+        case Apply(Op.ALWAYS, (Apply(Op.AND, args),)):
+            for arg in args:
+                yield from classified(f.always(arg))
+        case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if not _is_temporal(inner):
+            yield Class.LIVENESS, inner
+        case Apply(Op.ALWAYS, (inner,)) if (step := _with_primes(inner)) is not None:
+            yield Class.SAFETY, step
+        case _:
+            is_plain = not _is_temporal(formula) and not _is_primed(formula)
+            yield (Class.INIT if is_plain else Class.OTHER), formula
+
+
+def _with_primes(formula: Formula) -> Formula | None:
+    """The formula with primes for X, or None when it looks further than one step."""
+    match formula:
+        case Apply(Op.NEXT, (inner,)):
+            is_one_step = not _is_temporal(inner) and not _is_primed(inner)
+            return f.primed(inner) if is_one_step else None
+        case Apply(op, _) if op in _TEMPORAL:
+            return None
+        case Apply(op, args):
+            parts = [_with_primes(arg) for arg in args]
+            known = tuple(part for part in parts if part is not None)
+            return Apply(op, known) if len(known) == len(parts) else None
+        case _:
+            return formula
+
+
+def _is_temporal(formula: Formula) -> bool:
+    match formula:
+        case Apply(op, args):
+            return op in _TEMPORAL or any(_is_temporal(arg) for arg in args)
+        case _:
+            return False
+
+
+def _is_primed(formula: Formula) -> bool:
+    return any(variable.primed for variable in f.variables(formula))

@@ -1,0 +1,141 @@
+"""Constraints written in LTL, as conjuncts of the contracts of what they constrain."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic import formula as f
+from sysmlc.logic.classes import classified
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.formula import Formula
+from sysmlc.logic.ltl import FormulaError, parse_formula
+
+_MACHINE = """\
+Class c "Lamp"
+  -> classifier-behavior m
+  StateMachine m "M"
+    Region r
+      Pseudostate i subkind="initial"
+      State a "Off"
+      State b "On"
+      Transition t0
+        -> flow-source i
+        -> flow-target a
+      Transition t1
+        -> flow-source a
+        -> flow-target b
+        -> trigger g
+        Trigger g subkind="signal"
+          -> typed-by s
+  Constraint k "Lit" language="LTL" body={body}
+Signal s "start"
+"""
+
+NOT_A_FORMULA = rule(
+    "SM501",
+    "formula-not-understood",
+    Severity.ERROR,
+    "the formula of '{constraint}' is not understood: {reason}",
+    why="What it demands would be missing in the contract.",
+    help="Write LTL (G F X U or [] <> X U) over the variables of the contract: {variables}.",
+    wrong=_MACHINE.replace("{body}", '"[](Statte=On)"'),
+    right=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
+)
+NO_CONTRACT = rule(
+    "SM502",
+    "formula-without-contract",
+    Severity.WARNING,
+    "'{constraint}' is a formula about '{subject}', which has no behaviour with a contract",
+    why="A formula in temporal logic speaks of the variables of a behaviour.",
+    help="Give '{subject}' a classifier behaviour, or move the formula to what has one.",
+    wrong='Class c "Lamp"\n  Constraint k "Lit" language="LTL" body="[](<>on)"\n',
+    right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
+)
+OUTSIDE_GR1 = rule(
+    "SM503",
+    "formula-outside-gr1",
+    Severity.INFO,
+    "the formula of '{constraint}' is not in GR(1); the contract keeps it as general LTL",
+    why="Synthesis decides initial, one-step and infinitely-often conditions; the rest can only "
+    "be checked.",
+)
+
+_LANGUAGES = ("ltl", "spin", "promela")
+
+
+def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
+    """The contracts with the formulas of the model's constraints as further conjuncts."""
+    made = {contract.component: contract for contract in contracts}
+    for constraint in graph.of_kind(Kind.CONSTRAINT):
+        if not _is_formula(constraint):
+            continue
+        for component in _components(graph, constraint):
+            if component in made:
+                made[component] = _with_formula(graph, made[component], constraint, sink)
+            else:
+                _report_orphan(graph, constraint, component, sink)
+    return list(made.values())
+
+
+def _is_formula(constraint: Element) -> bool:
+    language = str(constraint.attrs.get("language", "")).lower()
+    return any(name in language for name in _LANGUAGES) and bool(constraint.attrs.get("body"))
+
+
+def _components(graph: Graph, constraint: Element) -> Iterator[str]:
+    """Names of the components that a constraint speaks of, each once."""
+    owner = graph.owner(constraint)
+    subjects = graph.targets(constraint, Edge.REFERENCES) or ([] if owner is None else [owner])
+    names: dict[str, None] = {}
+    for subject in subjects:
+        satisfiers = graph.sources(subject, Edge.SATISFIES) if _is_requirement(subject) else []
+        for one in satisfiers or [subject]:
+            names[query.component_name(graph, one)] = None
+    yield from names
+
+
+def _is_requirement(element: Element) -> bool:
+    return element.role == "requirement" or element.kind is Kind.REQUIREMENT
+
+
+def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink) -> None:
+    name = constraint.name or "<Constraint>"
+    sink.report(NO_CONTRACT, graph.subject(constraint), constraint=name, subject=component)
+
+
+def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
+    name = constraint.name or "<Constraint>"
+    domains = {variable.name: variable.domain for variable in contract.variables}
+    subject = graph.subject(constraint)
+    try:
+        formula = parse_formula(str(constraint.attrs["body"]), domains)
+    except FormulaError as error:
+        known = ", ".join(domains)
+        facts = str(error)
+        sink.report(NOT_A_FORMULA, subject, constraint=name, reason=facts, variables=known)
+        return contract
+    conjuncts = [
+        Conjunct(part, class_, constraint.id, f"'{name}' demands it.")
+        for class_, part in classified(formula)
+    ]
+    if any(conjunct.class_ is Class.OTHER for conjunct in conjuncts):
+        sink.report(OUTSIDE_GR1, subject, constraint=name)
+    return _extended(contract, conjuncts)
+
+
+def _extended(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
+    """What speaks of inputs alone is an assumption, everything else a guarantee."""
+    assumed = [one for one in conjuncts if _is_about_inputs(contract, one.formula)]
+    promised = [one for one in conjuncts if one not in assumed]
+    return replace(
+        contract,
+        assumptions=(*contract.assumptions, *assumed),
+        guarantees=(*contract.guarantees, *promised),
+    )
+
+
+def _is_about_inputs(contract: Contract, formula: Formula) -> bool:
+    owners = {variable.name: variable.owner for variable in contract.variables}
+    used = [owners[variable.name] for variable in f.variables(formula)]
+    return bool(used) and all(owner is Owner.ENVIRONMENT for owner in used)

@@ -1,0 +1,98 @@
+"""Pass ``contracts``: the contract of every behaviour, with the formulas written in the model.
+
+State machines and activities are derived (design, section 7); constraints written in LTL are
+conjuncts of the contract of the component that they constrain.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.logic import activity_contract, statemachine
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.machine_reader import MachineOptions, read_machine
+from sysmlc.logic.tokens import TokenGraph
+from sysmlc.passes.contract_formulas import add_formulas
+
+SAME_COMPONENT = rule(
+    "SM500",
+    "components-with-one-name",
+    Severity.WARNING,
+    "{count} behaviours are the component '{component}'; a number tells their contracts apart",
+    why="A contract is found by the name of its component.",
+    help="Give the behaviours or their owners different names.",
+    wrong='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
+    '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
+    "        -> flow-source ai\n        -> flow-target as\n"
+    '  StateMachine b "M"\n    Region rb\n      Pseudostate bi subkind="initial"\n'
+    '      State bs "S"\n      Transition bt\n        -> flow-source bi\n'
+    "        -> flow-target bs\n",
+    right='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
+    '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
+    "        -> flow-source ai\n        -> flow-target as\n",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Contracts:
+    """Derives contracts.
+
+    ``tick_seconds`` is the length of a step for durations with a unit; ``assumed_low`` and
+    ``assumed_high`` are the range of Integers that declare none.
+    """
+
+    tick_seconds: float = 1.0
+    assumed_low: int = 0
+    assumed_high: int = 15
+
+    name: ClassVar[str] = "contracts"
+    after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Store a Contract for each behaviour whose meaning is derived, by component."""
+        found = [*self._of_machines(graph, sink), *_of_activities(graph)]
+        found = add_formulas(graph, _told_apart(graph, found, sink), sink)
+        graph.store(Contract, sorted(found, key=lambda contract: contract.component))
+
+    def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
+        options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
+        for element in graph.of_kind(Kind.STATE_MACHINE):
+            if not _is_behaviour(graph, element):
+                continue
+            machine = read_machine(graph, element, sink, options)
+            if machine is None:
+                continue
+            component = query.component_name(graph, element)
+            contract = statemachine.derive(graph, machine, component, sink)
+            if contract is not None:
+                yield contract
+
+
+def _is_behaviour(graph: Graph, element: Element) -> bool:
+    """Whether it says what a component does: drawn here, and no protocol of an interface."""
+    is_drawn = any(one.kind is Kind.REGION for one in graph.owned(element))
+    return is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
+
+
+def _of_activities(graph: Graph) -> Iterator[Contract]:
+    for tokens in graph.derived(TokenGraph):
+        yield activity_contract.derive(tokens)
+
+
+def _told_apart(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
+    """The contracts with components that differ: the second of a name gets ``#2``."""
+    totals = Counter(contract.component for contract in contracts)
+    seen: Counter[str] = Counter()
+    made: list[Contract] = []
+    for contract in contracts:
+        name = contract.component
+        seen[name] += 1
+        if totals[name] > 1:
+            subject = graph.subject(graph[contract.origin])
+            sink.report(SAME_COMPONENT, subject, count=totals[name], component=name)
+        number = seen[name]
+        made.append(contract if number == 1 else replace(contract, component=f"{name}#{number}"))
+    return made
