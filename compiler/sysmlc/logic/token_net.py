@@ -12,6 +12,10 @@ from dataclasses import dataclass, field
 from sysmlc.logic.tokens import Firing, TokenEdge, TokenGraph, TokenNode
 
 
+_SMALL = 2_000
+"""Markings that are searched without reductions: some milliseconds."""
+
+
 @dataclass(frozen=True, slots=True)
 class Safety:
     """What the search found in one region.
@@ -40,19 +44,30 @@ class Move:
 
 @dataclass(slots=True)
 class Net:
-    """Places (ids of edges and running nodes), transitions, and the places marked at first."""
+    """Places (ids of edges and running nodes), transitions, and the places marked at first.
+
+    ``nodes`` are all nodes that a transition stands for, ``alive`` those known to fire.
+    """
 
     places: dict[str, None]
     moves: list[Move]
     marked: set[str]
+    nodes: frozenset[str]
     alive: set[str] = field(default_factory=set)
 
 
 def check(graph: TokenGraph, region: str, limit: int) -> Safety:
-    """Search the markings of a region, at most ``limit`` of them."""
+    """Search the markings of a region, at most ``limit`` of them.
+
+    What is small is searched as it is, which finds the right place of a fault; what is large
+    is reduced before. The reduced net errs on the safe side only where a token reaches a final
+    node in the same step as a node that would go on: the end forestalls what it would do.
+    """
     net = net_of(graph, region)
-    if not any(move.resets for move in net.moves):
-        reduce(net)
+    whole = search(net, min(limit, _SMALL))
+    if whole.is_complete or any(move.resets for move in net.moves):
+        return whole if whole.is_complete else search(net, limit)
+    reduce(net)
     return search(net, limit)
 
 
@@ -62,12 +77,28 @@ def check(graph: TokenGraph, region: str, limit: int) -> Safety:
 def net_of(graph: TokenGraph, region: str) -> Net:
     """The Petri net of a region, with one place for each edge and each running node."""
     edges, workers = graph.inside(region)
-    places = dict.fromkeys([*(edge.id for edge in edges), *(node.id for node in workers)])
-    moves = [move for node in graph.nodes if node.region == region for move in _moves(graph, node)]
+    # A sink takes its token in the next step, whatever happens: nothing can pile up before it.
+    drains = {edge.id for edge in edges if _is_drain(graph, edge)}
+    kept = [edge for edge in edges if edge.id not in drains]
+    places = dict.fromkeys([*(edge.id for edge in kept), *(node.id for node in workers)])
+    moves = [
+        move
+        for node in graph.nodes
+        if node.region == region
+        for move in _moves(graph, node)
+        if not move.takes & drains
+    ]
     resets = {edge.id: _reset(graph, edge, places) for edge in edges if edge.interrupts}
     for move in moves:
-        move.resets = frozenset(p for gift in move.gives for p in resets.get(gift, ()))
-    return Net(places, moves, {edge.id for edge in edges if edge.marked})
+        move.resets = frozenset(p for gift in sorted(move.gives) for p in resets.get(gift, ()))
+        move.gives -= drains
+    nodes = frozenset(node for move in moves for node in move.nodes)
+    return Net(places, moves, {edge.id for edge in kept if edge.marked}, nodes)
+
+
+def _is_drain(graph: TokenGraph, edge: TokenEdge) -> bool:
+    target = graph.node(edge.target)
+    return target.firing is Firing.ANY and not graph.outgoing(target)
 
 
 def _moves(graph: TokenGraph, node: TokenNode) -> Iterator[Move]:
@@ -190,6 +221,9 @@ def _fuse_places(net: Net) -> bool:
             continue
         if {before, after} <= net.marked or any(after in m.gives for m in makers[before]):
             continue
+        # A token at a final node ends the region at once, a token before it does not.
+        if any(taker.is_end for taker in takers[after]):
+            continue
         touched |= {before, after}
         gone.append(move)
         _credit(net, before, move.nodes, makers[before])
@@ -237,32 +271,32 @@ def search(net: Net, limit: int) -> Safety:
     """Go through the markings, breadth first; a marking in which the region ends is the last."""
     bits = {place: 1 << number for number, place in enumerate(net.places)}
     moves = [
-        (_mask(m.takes, bits), _mask(m.gives, bits), _mask(m.resets, bits), m) for m in net.moves
+        (_mask(m.takes, bits), _mask(m.gives, bits), _mask(m.resets, bits), m)
+        for m in net.moves
+        if not m.is_end
     ]
+    ends = [(_mask(m.takes, bits), m) for m in net.moves if m.is_end]
     first = _mask(net.marked, bits)
     seen, waiting = {first}, [first]
-    fired = set(net.alive)
-    finishes = not first
+    fired, finishes = set(net.alive), not first
     for marking in waiting:
-        for takes, gives, resets, move in moves:
+        ended = [move for takes, move in ends if marking & takes]
+        fired.update(node for move in ended for node in move.nodes)
+        finishes = finishes or bool(ended) or not marking
+        for takes, gives, resets, move in () if ended else moves:
             if marking & takes != takes:
                 continue
             fired |= move.nodes
-            if move.is_end:
-                finishes = True
-                continue
             left = marking & ~takes
             if left & gives & ~resets:
                 return Safety(unsafe=_place(left & gives, bits))
             after = (left & ~resets) | gives
-            finishes = finishes or not after
             if after not in seen:
                 seen.add(after)
                 waiting.append(after)
         if len(seen) > limit:
             return Safety(is_complete=False)
-    nodes = {node for move in net.moves for node in move.nodes}
-    return Safety(dead=frozenset(nodes - fired), finishes=finishes)
+    return Safety(dead=net.nodes - fired, finishes=finishes)
 
 
 def _mask(places: Iterable[str], bits: dict[str, int]) -> int:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Sink
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.identity import derived_id
 from sysmlc.logic.tokens import ACTIVITY_REGION
 from sysmlc.passes import activity_rules as rules
@@ -88,8 +88,12 @@ def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """The drawing of an activity. Raises CannotPlayError after it has reported why."""
     drawing = Drawing(activity)
     handlers = _handlers(graph, activity)
-    _collect(graph, drawing, activity, ACTIVITY_REGION, handlers)
+    groups = _groups(graph, activity)
+    _collect(graph, drawing, activity, ACTIVITY_REGION, handlers, frozenset(groups))
     _name_nodes(drawing)
+    for group in groups.values():
+        label = f"structured node '{group.name}'" if group.name else "a structured node"
+        sink.report(rules.GROUPING, graph.subject(group), node=label)
     reader = _Reader(graph, drawing, sink, handlers)
     reader.check_nodes()
     reader.read_flows()
@@ -103,6 +107,26 @@ def _handlers(graph: Graph, activity: Element) -> frozenset[str]:
     return frozenset(ids)
 
 
+def _groups(graph: Graph, activity: Element) -> dict[str, Element]:
+    """Plain structured nodes that no flow starts or ends at, but whose border flows cross."""
+    found: dict[str, Element] = {}
+    for node in graph.subtree(activity):
+        if node.kind is not Kind.STRUCTURED or node.subkind not in ("structured", ""):
+            continue
+        own = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
+        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
+            continue
+        inside = {element.id for element in graph.subtree(node)}
+        if any(_crosses(graph, e, inside) for e in graph.subtree(activity) if e.kind in _FLOWS):
+            found[node.id] = node
+    return found
+
+
+def _crosses(graph: Graph, flow: Element, inside: set[str]) -> bool:
+    ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    return len({end.id in inside for end in ends if end is not None}) == 2
+
+
 def _ids(value: object) -> Iterator[str]:
     if isinstance(value, str):
         yield value
@@ -112,7 +136,12 @@ def _ids(value: object) -> Iterator[str]:
 
 
 def _collect(
-    graph: Graph, drawing: Drawing, owner: Element, region: str, left_out: frozenset[str]
+    graph: Graph,
+    drawing: Drawing,
+    owner: Element,
+    region: str,
+    left_out: frozenset[str],
+    groups: frozenset[str],
 ) -> None:
     parts = _parts(owner) if owner.kind is Kind.STRUCTURED else []
     if parts:
@@ -122,13 +151,13 @@ def _collect(
         if element.kind not in _NODES or element.id in left_out:
             continue
         inside = home.get(element.id, region)
-        if element.subkind == "interruptible":
-            _collect(graph, drawing, element, inside, left_out)
+        if element.subkind == "interruptible" or element.id in groups:
+            _collect(graph, drawing, element, inside, left_out, groups)
             continue
         drawing.nodes.append(element)
         drawing.region[element.id] = inside
         if element.kind is Kind.STRUCTURED:
-            _collect(graph, drawing, element, element.id, left_out)
+            _collect(graph, drawing, element, element.id, left_out, groups)
 
 
 def _parts(node: Element) -> list[Part]:

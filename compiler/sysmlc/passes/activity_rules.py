@@ -296,3 +296,14 @@ SHARED_EVENT = _rule(
     "initial i\naccept go\n  on-pallet t\naccept again\n  on-pallet u\ni -> go\ngo -> again",
     "initial i\naccept go\n  on-pallet t\naccept again\n  on-tool u\ni -> go\ngo -> again",
 )
+GROUPING = _rule(
+    "SM471",
+    "structured-node-as-group",
+    Severity.WARNING,
+    "{node} has no flows of its own, but flows cross its border; it is taken as a mere group",
+    "A structured node starts and ends as a whole. Taken at its word it would start with the "
+    "activity and end at once, before the flows from outside bring a token.",
+    "Lead the flows to the structured node itself, or use a partition to group actions.",
+    "initial i\nstructured s\n  action x\nfinal end\ni -> x\nx -> end",
+    "initial i\nstructured s\n  action x\nfinal end\ni -> s\ns -> end",
+)

@@ -1,0 +1,99 @@
+"""The check for a second token: reductions keep its answer, and playing never contradicts it."""
+
+import random
+
+from activity_models import Canvas, activity, blocks
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Kind
+from sysmlc.logic import evaluate, token_game, token_net
+from sysmlc.logic.tokens import ACTIVITY_REGION, TokenGraph
+from sysmlc.passes import activity_drawing, activity_tokens
+from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_inputs import Inputs
+
+KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
+
+
+def drawn(canvas: Canvas) -> TokenGraph:
+    """The token graph as drawn, safe or not."""
+    graph, sink = canvas.graph, Sink()
+    drawing = activity_drawing.read(graph, graph["a"], sink)
+    inputs = Inputs(graph, Scope(graph, graph["a"], sink), sink)
+    return activity_tokens.build(graph, drawing, inputs, sink)
+
+
+@st.composite
+def scribbles(draw) -> TokenGraph:
+    """Any nodes with any flows between them."""
+    canvas = Canvas()
+    nodes = [canvas.control("initial")]
+    for kind in draw(st.lists(st.sampled_from(KINDS), min_size=2, max_size=6)):
+        is_action = kind in ("opaque", "value")
+        nodes.append(
+            canvas.node(Kind.ACTION, kind, f"w{len(nodes)}") if is_action else canvas.control(kind)
+        )
+    sources = [n for n in nodes if n.subkind not in ("final", "flow-final")]
+    ends = st.tuples(st.sampled_from(sources), st.sampled_from(nodes[1:]))
+    canvas.flow(nodes[0], nodes[1])
+    for source, target in draw(st.lists(ends, min_size=2, max_size=9)):
+        canvas.flow(source, target)
+    return drawn(canvas)
+
+
+@settings(max_examples=300, deadline=None)
+@given(scribbles())
+def test_reductions_keep_the_answer(tokens):
+    """Only an end that forestalls the next firing may make the reduced net more careful."""
+    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
+    net = token_net.net_of(tokens, ACTIVITY_REGION)
+    token_net.reduce(net)
+    quick = token_net.search(net, 100_000)
+    ends = {edge.source for edge in tokens.ends(ACTIVITY_REGION)}
+    if whole.unsafe or not ends:
+        assert bool(whole.unsafe) == bool(quick.unsafe)
+    if not whole.unsafe and not quick.unsafe:
+        assert whole.finishes == quick.finishes
+        assert quick.dead == whole.dead if not ends else quick.dead <= whole.dead
+
+
+@settings(max_examples=300, deadline=None)
+@given(scribbles(), st.integers(0, 2**16))
+def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
+    if token_net.check(tokens, ACTIVITY_REGION, 100_000).unsafe:
+        return
+    dice = random.Random(seed)
+    state = token_game.start(tokens)
+    for _ in range(60):
+        inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
+        state = token_game.step(
+            tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
+        )
+
+
+@settings(max_examples=100, deadline=None)
+@given(blocks(12))
+def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):
+    canvas = Canvas()
+    canvas.graph = activity(block)
+    tokens = drawn(canvas)
+    net = token_net.net_of(tokens, ACTIVITY_REGION)
+    token_net.reduce(net)
+    assert len(net.places) <= 2
+    assert not token_net.search(net, 10).unsafe
+
+
+def test_many_parallel_branches_are_checked_without_building_their_markings():
+    canvas = Canvas()
+    start, fork, join = (canvas.control(kind) for kind in ("initial", "fork", "join"))
+    canvas.flow(start, fork)
+    for _ in range(200):
+        first, last = canvas.draw(("seq", ("act",), ("seq", ("loop", ("act",)), ("act",))))
+        canvas.flow(fork, first)
+        canvas.flow(last, join)
+    canvas.flow(join, canvas.control("final"))
+    safety = token_net.check(drawn(canvas), ACTIVITY_REGION, 10)
+    assert safety.is_complete
+    assert not safety.unsafe
