@@ -76,8 +76,8 @@ class Resolve:
         answers.find(uses)
         graph.pending.clear()
         for use in uses:
-            _settle(graph, sink, use, answers.of(use))
-        _rewrite(graph, answers)
+            _settle(graph, sink, use, answers.get(use.holder, use.target))
+        _rewrite(graph, answers, uses)
         _report_libraries(graph, sink, answers.outside)
 
 
@@ -115,40 +115,44 @@ class _Answers:
     outside: dict[str, list[_Use]] = field(default_factory=dict)
     """Uses of elements outside the unit, by the href of the stand-in."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
+    _stubs: dict[str, str] = field(default_factory=dict)
 
     def find(self, uses: list[_Use]) -> None:
+        """Look for every target, and make the stand-ins for those outside the unit."""
+        distant: dict[str, list[_Use]] = {}
         for use in uses:
-            self._look_up(use)
+            if use.target not in self.graph and self._is_outside(use):
+                distant.setdefault(use.target, []).append(use)
+        for target in sorted(distant):
+            href = _canonical(target, distant[target])
+            self._stubs[target] = _stand_in_id(href)
+            self.outside.setdefault(href, []).extend(distant[target])
         for href in sorted(self.outside):
             _stand_in(self.graph, href, self.outside[href])
 
-    def of(self, use: _Use) -> Element | None:
-        return self.get(use.holder, use.target)
-
     def get(self, holder: Element, target: str) -> Element | None:
-        return self.graph.get(self._found.get((holder.source, target)))
+        """The element that ``target`` means in the holder's file."""
+        if target in self.graph:
+            return self.graph[target]
+        found = self._found.get((holder.source, target))
+        return self.graph.get(found or self._stubs.get(target))
 
-    def _look_up(self, use: _Use) -> None:
+    def _is_outside(self, use: _Use) -> bool:
         key = (use.holder.source, use.target)
         if key not in self._found:
             element = self.targets.find(*key)
-            self._found[key] = element.id if element else self._outside_id(use)
-        elif self._found[key] is None:
-            return
-        href = _canonical(use)
-        if self._found[key] == _stand_in_id(href):
-            self.outside.setdefault(href, []).append(use)
-
-    def _outside_id(self, use: _Use) -> str | None:
+            self._found[key] = element.id if element else None
+        if self._found[key] is not None or not is_href(use.target):
+            return False
         library, _ = split(use.target)
-        if not is_href(use.target) or self.targets.files(use.holder.source, library):
-            return None
-        return _stand_in_id(_canonical(use))
+        return not self.targets.files(use.holder.source, library)
 
 
-def _canonical(use: _Use) -> str:
-    name = primitive(use.target, use.path, use.kind)
-    return PRIMITIVE_TYPES + name if name else use.target
+def _canonical(target: str, uses: list[_Use]) -> str:
+    # All uses are asked, for the order in which they come must not matter.
+    names = {primitive(target, use.path, use.kind) for use in uses}
+    name = max(names)
+    return PRIMITIVE_TYPES + name if name else target
 
 
 def _stand_in_id(href: str) -> str:
@@ -199,10 +203,10 @@ def _subject(graph: Graph, use: _Use) -> Subject:
     return Subject(subject.name, subject.id, Place(use.holder.source, use.ordinal))
 
 
-def _rewrite(graph: Graph, answers: _Answers) -> None:
-    for element in graph:
-        for name in _ATTRIBUTES.keys() & element.attrs.keys():
-            graph.set(element, **{name: _renamed(answers, element, element.attrs[name])})
+def _rewrite(graph: Graph, answers: _Answers, uses: list[_Use]) -> None:
+    held = {(use.holder, use.attribute): None for use in uses if use.attribute}
+    for holder, name in held:
+        graph.set(holder, **{name: _renamed(answers, holder, holder.attrs[name])})
 
 
 def _renamed(answers: _Answers, holder: Element, value: AttrValue) -> AttrValue:
