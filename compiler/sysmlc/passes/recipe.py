@@ -10,6 +10,7 @@ from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_model import recipe_model
 from sysmlc.passes.recipe_remarks import remark
 from sysmlc.passes.recipe_steps import activity_nodes
+from sysmlc.passes.recipe_tags import check_tags
 from sysmlc.recipe.model import Model
 from sysmlc.recipe.validate import validate
 
@@ -35,6 +36,8 @@ class Recipe:
         context = Context(graph, dict(self.levels))
         models = [recipe_model(context, one) for one in recipes(context)]
         models.sort(key=lambda model: model.recipe.id)
+        if models:
+            check_tags(context, sink)
         for model in models:
             remark(context, model, sink)
             validate(model, sink, lambda id: _subject(graph, id), self.tolerance)

@@ -19,7 +19,8 @@ LEVELS = {
     "Material": "material",
 }
 SERVICES = ("machine service", "infrastructure service")
-_TYPED = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.PIN, Kind.ACTIVITY_PARAMETER)
+CALL_KINDS = ("call", "read", "write", "subscribe")
+MATERIAL_USES = ("consumed", "produced", "carried")
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,18 +123,34 @@ class Tags:
         text = self.text(name).lower()
         return None if not text else text == "true"
 
-    def number(self, name: str) -> int | float | None:
-        """A number; None when there is none or it cannot be read."""
-        return number(self.text(name))
+    def amount(self, name: str) -> int | float | None:
+        """A number that is not negative; None when there is none or it cannot be read."""
+        value = number(self.text(name))
+        return value if value is not None and value >= 0 else None
 
     def integer(self, name: str) -> int | None:
-        """A whole number."""
-        value = self.number(name)
+        """A whole number that is not negative."""
+        value = self.amount(name)
         return int(value) if value is not None and value == int(value) else None
+
+    def endpoint(self, name: str) -> str | None:
+        """An OPC UA address."""
+        text = self.text(name)
+        return text if text.startswith("opc.tcp://") else None
+
+    def call_kind(self, name: str) -> str | None:
+        """What is done with an OPC UA node; a call when nothing is said."""
+        text = self.text(name) or "call"
+        return text if text in CALL_KINDS else None
+
+    def material_use(self, name: str) -> str | None:
+        """How a material is used."""
+        text = self.text(name)
+        return text if text in MATERIAL_USES else None
 
     def range(self, low: str, high: str) -> Range | None:
         """Two numbers; one of them stands for both."""
-        values = [v for v in (self.number(low), self.number(high)) if v is not None]
+        values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
         return Range(values[0], values[-1]) if values else None
 
 

@@ -16,7 +16,7 @@ from sysmlc.passes.recipe_steps import (
     step_kind,
 )
 from sysmlc.recipe.expression import Apply, Expr, Lit
-from sysmlc.recipe.flow import reachable
+from sysmlc.recipe.flow import in_order, reachable
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
@@ -45,7 +45,7 @@ def flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:
         data.parameters("in", "inout"),
         data.parameters("out", "inout", "return"),
         data.variables(),
-        tuple(draft.nodes),
+        tuple(sorted(draft.nodes, key=lambda node: node.id)),
         tuple(draft.edges),
         activity.id,
     )
@@ -53,8 +53,13 @@ def flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:
 
 
 def _sorted(graph: FlowGraph) -> FlowGraph:
-    edges = sorted(graph.edges, key=lambda e: (e.source, e.target, e.text, e.element))
-    return replace(graph, nodes=tuple(sorted(graph.nodes, key=lambda n: n.id)), edges=tuple(edges))
+    """Nodes in the order of execution, edges in that of their ends, whatever the model's order."""
+    by_id = {node.id: node for node in sorted(graph.nodes, key=lambda node: node.id)}
+    graph = replace(graph, nodes=tuple(by_id.values()))
+    rank = {id: number for number, id in enumerate(in_order(graph))}
+    edges = sorted(graph.edges, key=lambda e: (rank[e.source], rank[e.target], e.text, e.item))
+    nodes = sorted(graph.nodes, key=lambda node: rank[node.id])
+    return replace(graph, nodes=tuple(nodes), edges=tuple(edges))
 
 
 def _add_nodes(context: Context, node: Element, kind: str, data: Data, draft: _Draft) -> None:

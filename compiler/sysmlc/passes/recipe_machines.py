@@ -132,10 +132,10 @@ def opcua(context: Context, element: Element) -> OpcUa | None:
         return None
     tags = context.tags(element, "OpcUaCall")
     return OpcUa(
-        tags.text("kind") or "call",
+        tags.call_kind("kind") or "call",
         tags.text("object"),
         tags.text("method"),
-        tags.text("endpoint"),
+        tags.endpoint("endpoint") or "",
         tags.text("namespaceUri"),
         optional(tags.text("doneWhen")),
         tags.integer("timeout"),
@@ -158,7 +158,7 @@ def machine(context: Context, element: Element) -> Machine:
         context.name(element),
         tags.text("machineClass"),
         tags.text("amlId"),
-        tags.text("endpoint"),
+        tags.endpoint("endpoint") or "",
         context.reference(plant) if plant else "",
         element.id,
     )
@@ -169,7 +169,7 @@ def material(context: Context, element: Element) -> Material:
     tags = context.tags(element, "Material")
     return Material(
         context.name(element),
-        tags.number("available"),
+        tags.amount("available"),
         tags.text("unit"),
         tags.text("position"),
         tags.integer("buffer"),

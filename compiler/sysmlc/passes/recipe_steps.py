@@ -85,13 +85,13 @@ def _called(context: Context, node: Element, made: Node, data: Data) -> list[Nod
 def _assigned(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
     body = str(node.attrs.get("body", ""))
     return [
-        _with(made, id=f"{made.id}#{number}" if number else made.id, variable=v, expression=e)
-        for number, (v, e) in enumerate(assignments(body) or ())
+        _with(made, id=f"{made.id}#{number}" if number > 1 else made.id, variable=v, expression=e)
+        for number, (v, e) in enumerate(assignments(body) or (), 1)
     ]
 
 
 def _action(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    text = str(node.attrs.get("body", "") or node.attrs.get("value", "") or node.subkind)
+    text = str(node.attrs.get("body", "") or node.name or node.subkind)
     return [_with(made, text=text, bind=data.bind(node), assign=data.assign(node))]
 
 

@@ -140,8 +140,8 @@ def _use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Element,
     other = source if target is step.node else target
     holders = [one for one in (flow, other) if one and context.applied(one, "Material")]
     tags = [context.tags(one, "Material") for one in holders]
-    quantity = next((q for one in tags if (q := one.number("quantity")) is not None), None)
-    use = next((u for one in tags if (u := one.text("use"))), "")
+    quantity = next((q for one in tags if (q := one.amount("quantity"))), None)
+    use = next((u for one in tags if (u := one.material_use("use"))), "")
     default = "consumed" if target is step.node else "produced"
     weight = number(str(flow.attrs.get("weight", "")))
     yield material, use or default, quantity if quantity is not None else weight or 1

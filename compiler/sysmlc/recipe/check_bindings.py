@@ -85,7 +85,15 @@ def _owner(model: Model, call: OpcUa) -> str:
     return next((one.id for one in owners if one.opcua == call), call.object)
 
 
+def is_complete(call: OpcUa) -> bool:
+    """Whether an executor can make the call: well-formed node ids, and a method to call."""
+    ids = [call.object, *([call.method] if call.method else [])]
+    return all(map(_NODE_ID.fullmatch, ids)) and (call.kind != "call" or bool(call.method))
+
+
 def _call_problems(call: OpcUa) -> Iterator[str]:
+    if not call.object:
+        yield "names no object"
     if call.kind == "call" and not call.method:
         yield "names no method"
     for id in (call.object, call.method):

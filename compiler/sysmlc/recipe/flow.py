@@ -77,6 +77,16 @@ def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
     return pairs
 
 
+def in_order(graph: FlowGraph) -> list[str]:
+    """Ids of the nodes, each after those that lead to it; where that leaves a choice, sorted."""
+    import networkx
+
+    order: DiGraph[str] = networkx.DiGraph()
+    order.add_nodes_from(sorted(node.id for node in graph.nodes))
+    order.add_edges_from(forward_edges(graph))
+    return list(networkx.lexicographical_topological_sort(order))
+
+
 # -- times -------------------------------------------------------------------------------------
 
 

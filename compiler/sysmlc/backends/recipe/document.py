@@ -5,6 +5,7 @@ from typing import TypeVar
 
 from sysmlc.backends.base import InputFile
 from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace
+from sysmlc.recipe.check_bindings import is_complete
 from sysmlc.recipe.model import (
     Derived,
     Function,
@@ -186,7 +187,7 @@ def _provider(provider: Provider) -> Json:
 
 
 def _opcua(call: OpcUa | None) -> Json | None:
-    if call is None:
+    if call is None or not is_complete(call):
         return None
     return _without_absent(
         {

@@ -1,0 +1,77 @@
+"""Overlaps and gaps of guards, found by trying values."""
+
+import pytest
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.passes.recipe_expressions import read
+from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Model, Node, Parameter, Recipe
+from sysmlc.recipe.validate import validate
+
+COLOUR = EnumType("Colour", ("red", "green"))
+VARIABLES = (
+    Parameter("ok", "boolean", value=False),
+    Parameter("n", "integer", value=0),
+    Parameter("m", "integer", value=0),
+    Parameter("x", "real", value=0.5),
+    Parameter("colour", COLOUR, value="red"),
+)
+
+
+def findings(*guards: str) -> list[str]:
+    """What is said of a decision with these guards."""
+    nodes = [Node("i", "initial"), Node("d", "decision"), Node("f", "final")]
+    edges = [FlowEdge("i", "d")]
+    for number, text in enumerate(guards):
+        nodes.append(Node(f"s{number}", "action"))
+        is_else = text == "else"
+        guard = None if is_else or not text else read(text)
+        edges.append(FlowEdge("d", f"s{number}", guard, text, is_else))
+        edges.append(FlowEdge(f"s{number}", "f"))
+    graph = FlowGraph("g", variables=VARIABLES, nodes=tuple(nodes), edges=tuple(edges))
+    sink = Sink()
+    validate(Model(Recipe("r", ()), service_graphs=(graph,)), sink, Subject)
+    return [f"{one.rule.code}: {one.message}" for one in sink]
+
+
+@pytest.mark.parametrize(
+    "guards",
+    [
+        ("ok", "not ok"),
+        ("ok", "else"),
+        ("n < 3", "n >= 3"),
+        ("n < 3", "n == 3", "n > 3"),
+        ("n < m", "n == m", "n > m"),
+        ("x <= 0.5", "x > 0.5"),
+        ("colour == Colour::red", "colour == green"),
+        ("ok and n > 2", "ok and n <= 2", "not ok"),
+    ],
+)
+def test_guards_that_lead_to_exactly_one_way_are_right(guards):
+    assert findings(*guards) == []
+
+
+@pytest.mark.parametrize(
+    ("guards", "problem"),
+    [
+        (("ok", "ok or n > 1", "else"), "overlap: 'ok' and 'ok or n > 1' are both true for n = "),
+        (("n < 3", "n > 3"), "leave a gap: none is true for n = 3"),
+        (("n <= 3", "n >= 3"), "overlap: 'n <= 3' and 'n >= 3' are both true for n = 3"),
+        (("x < 0.5", "x > 0.5"), "leave a gap: none is true for x = 0.5"),
+        (("colour == Colour::red",), "leave a gap: none is true for colour = green"),
+        (("else", "else"), "have 2 times 'else'"),
+        (("ok", ""), "leave a way without a guard"),
+        (("n + 1", "else"), "are not all true or false: 'n + 1'"),
+        (("n", "else"), "are not all true or false: 'n'"),
+    ],
+)
+def test_other_guards_are_told_with_values(guards, problem):
+    assert any(problem in found for found in findings(*guards))
+
+
+def test_a_name_that_nothing_declares_is_told():
+    assert "SM606: in 'g', 'speed' is declared nowhere" in findings("speed > 3", "else")
+
+
+def test_text_that_is_no_expression_is_told():
+    (found,) = findings("when it is ready", "else")
+    assert found.startswith("SM616: 'when it is ready' at 'd'")
