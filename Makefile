@@ -12,9 +12,12 @@ demo: .demo/.ready ## compile an example and show what came out (MODEL=... for a
 	@.demo/bin/sysmlc $(MODEL) -o .demo/out
 	@echo
 	@echo "$(MODEL) became, in .demo/out:"
-	@cd .demo/out && find . -type f | sed 's|^\./|  |' | sort
+	@cd .demo/out && for kind in contracts recipes diagrams; do \
+	  [ -d $$kind ] || continue; \
+	  echo "  $$kind/ $$(ls $$kind | wc -l)"; ls $$kind | head -n 4 | sed 's/^/    /'; \
+	done; ls -d *.json | sed 's/^/  /'
 	@echo
-	@echo "Your own model: .demo/bin/sysmlc model.uml -o out/   Words: .demo/bin/sysmlc --help"
+	@echo "Your own model:  .demo/bin/sysmlc model.uml -o out/    More: .demo/bin/sysmlc --help"
 
 test: .venv/.ready ## everything that continuous integration runs
 	@.ci/system-packages

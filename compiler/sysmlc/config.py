@@ -163,7 +163,7 @@ def _pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
     options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
     levels = table.get("recipe", {}).get("levels")
     if levels:
-        options.setdefault("recipe", {})["levels"] = tuple(sorted(levels.items()))
+        options.setdefault("recipe", {})["levels"] = dict(sorted(levels.items()))
     return options
 
 

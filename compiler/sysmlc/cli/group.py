@@ -34,6 +34,13 @@ class _Commands(click.Group):
             args = ["build", *args]
         return super().parse_args(ctx, args)
 
+    def invoke(self, ctx: click.Context) -> object:
+        """Ctrl-C is neither a wrong model (1) nor our failure (2)."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            ctx.exit(130)
+
 
 @click.group(
     cls=_Commands,

@@ -37,7 +37,7 @@ class BackendError(Exception):
 
 def frontends() -> list[Frontend]:
     """The front ends, in the order in which they are asked."""
-    return [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS if _there(name)]
+    return [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
 
 
 def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
@@ -49,7 +49,7 @@ def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
         if name not in pipeline.NAMES:
             advice = did_you_mean(name, pipeline.NAMES)
             raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
-    loaded = [pipeline.load(name) for name in pipeline.NAMES if _there(f"sysmlc.passes.{name}")]
+    loaded = [pipeline.load(name) for name in pipeline.NAMES]
     return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
 
 
@@ -57,11 +57,23 @@ def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
     if not options:
         return one
     known = [field.name for field in fields(cast("DataclassInstance", one))]
-    for name in options:
+    for name, value in options.items():
+        where = f"passes.{one.name}.{name}"
         if name not in known:
-            advice = did_you_mean(name, known)
-            raise ConfigError(f"passes.{one.name}.{name}: there is no such option; {advice}")
+            raise ConfigError(f"{where}: there is no such option; {did_you_mean(name, known)}")
+        if not _fits(value, getattr(one, name)):
+            wanted = type(getattr(one, name)).__name__
+            raise ConfigError(f"{where}: {value!r} is no {wanted}")
     return cast("Pass", replace(cast("DataclassInstance", one), **options))
+
+
+def _fits(value: object, default: object) -> bool:
+    """Whether an option has the type of its default; TOML's integers serve as numbers."""
+    if isinstance(value, bool) or isinstance(default, bool):
+        return isinstance(value, bool) and isinstance(default, bool)
+    return isinstance(value, type(default)) or (
+        isinstance(default, float) and isinstance(value, int)
+    )
 
 
 def backend_names() -> list[str]:
@@ -143,12 +155,3 @@ def _modules(package: str) -> Iterator[str]:
     for found in pkgutil.walk_packages(getattr(folder, "__path__", ()), f"{package}."):
         if not found.name.endswith("__main__"):
             yield found.name
-
-
-def _there(name: str) -> bool:
-    # FIXME remove when all parts have landed
-    try:
-        m = import_module(name)
-        return not name.startswith("sysmlc.frontends") or hasattr(m, "FRONTEND")
-    except ModuleNotFoundError:
-        return False

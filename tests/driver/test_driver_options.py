@@ -1,0 +1,49 @@
+"""Options of passes from the configuration reach the passes, or say what is wrong with them."""
+
+import pytest
+
+from sysmlc import config
+from sysmlc.config import ConfigError
+from sysmlc.driver import registry
+
+
+def passes(folder, text):
+    """The passes with the options of a configuration, by name."""
+    (folder / "sysmlc.toml").write_text(text)
+    options = config.load(folder / "sysmlc.toml").passes
+    return {one.name: one for one in registry.passes(options)}
+
+
+def test_options_are_fields_of_the_pass(tmp_path):
+    made = passes(tmp_path, "[passes.activities]\nmax_markings = 7\n")
+    assert made["activities"].max_markings == 7
+
+
+def test_an_integer_serves_as_a_number(tmp_path):
+    assert passes(tmp_path, "[passes.recipe]\ntolerance = 1\n")["recipe"].tolerance == 1
+
+
+def test_recipe_levels_reach_the_recipe(tmp_path):
+    made = passes(tmp_path, '[recipe.levels]\n"Plant::Assemble" = "task"\n')
+    assert made["recipe"].levels == {"Plant::Assemble": "task"}
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[passes.activity]\nx = 1\n", "passes.activity: .* did you mean 'activities'?"),
+        ("[passes.activities]\nmax_marking = 1\n", "did you mean 'max_markings'?"),
+        ("[passes.activities]\nmax_markings = true\n", "True is no int"),
+        ('[passes.activities]\nmax_markings = "7"\n', "'7' is no int"),
+        ('[recipe.levels]\nA = "taks"\n', "'taks' is not one of"),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path, text, sentence):
+    with pytest.raises(ConfigError, match=sentence):
+        passes(tmp_path, text)
+
+
+def test_passes_run_in_the_order_that_they_ask_for():
+    order = [one.name for one in registry.passes({})]
+    assert order[:3] == ["resolve", "inherit", "classify"]
+    assert order.index("activities") < order.index("contracts")
