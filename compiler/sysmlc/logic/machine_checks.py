@@ -50,6 +50,16 @@ CROSSING = rule(
     help="Draw the transition from the border of the orthogonal state, or use another event.",
 )
 
+STRAY = rule(
+    "SM431",
+    "transition-out-of-reach",
+    Severity.WARNING,
+    "transition '{transition}' leads {where}; the component gets no contract",
+    why="A transition stays in its machine and does not jump between regions of the machine; "
+    "an initial transition stays in its region (UML 2.5.1, 14.5.8 and 14.5.11).",
+    help="Let the transition end at a vertex that it may reach.",
+)
+
 _LIMIT = 4096
 """Valuations tried to see whether two guards exclude one another; more count as possible."""
 
@@ -63,6 +73,22 @@ def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) 
         (not is_state or coincide(one, other)) and _compatible(one, other, scope)
         for one, other in combinations(outgoing, 2)
     )
+
+
+def have_common_cause(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) -> bool:
+    """Whether two of them can be enabled by one and the same occurrence."""
+    return any(
+        (vertex.kind != "state" or _have_same_trigger(one, other))
+        and _compatible(one, other, scope)
+        for one, other in combinations(outgoing, 2)
+    )
+
+
+def _have_same_trigger(one: Transition, other: Transition) -> bool:
+    if not one.occurrences or not other.occurrences:
+        return not one.occurrences and not other.occurrences
+    pairs = [(left, right) for left in one.occurrences for right in other.occurrences]
+    return any(type(a) is type(b) and _same_step(a, b) for a, b in pairs)
 
 
 def coincide(one: Transition, other: Transition) -> bool:
@@ -118,13 +144,44 @@ def _domains(sources: list[Expression], scope: Scope) -> Iterator[tuple[str, Dom
 
 def is_derivable(graph: Graph, machine: Machine, sink: Sink) -> bool:
     """Whether every step has a meaning; what stands against it is reported."""
-    problems = [
-        *_dead_ends(graph, machine, sink),
-        *_cycles(graph, machine, sink),
-    ]
-    if problems:
+    if list(_strangers(graph, machine, sink)):
+        return False
+    if [*_dead_ends(graph, machine, sink), *_cycles(graph, machine, sink)]:
+        return False
+    if list(_strays(graph, machine, sink)):
         return False
     return not [*_races(graph, machine, sink), *_crossings(graph, machine, sink)]
+
+
+def _strangers(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Transitions to what is no vertex of a region of this machine."""
+    for one in machine.transitions():
+        if one.target not in machine.vertices:
+            subject = graph.subject(graph[one.id])
+            where = "to what is in no region of this machine"
+            sink.report(STRAY, subject, transition=one.words, where=where)
+            yield one.id
+
+
+def _strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Transitions between regions of the machine, and initial ones out of their region."""
+    for one in machine.transitions():
+        source = machine.vertices[one.source]
+        if source.is_stable or source.kind == "initial":
+            ends = [one.source] if one.kind == "internal" else ends_of(machine, one)
+            if not all(_may_reach(machine, source, end) for end in ends):
+                subject = graph.subject(graph[one.id])
+                where = "out of its region"
+                sink.report(STRAY, subject, transition=one.words, where=where)
+                yield one.id
+
+
+def _may_reach(machine: Machine, source: Vertex, end: str) -> bool:
+    inside = {machine.vertices[one].region for one in [end, *machine.above(end)]}
+    if source.kind == "initial":
+        return source.region in inside
+    around = [machine.vertices[one].region for one in [source.id, *machine.above(source.id)]]
+    return not inside.isdisjoint(around)
 
 
 def _dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
@@ -237,6 +294,14 @@ def _crossings(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
 
 
 def _leaves(machine: Machine, transition: Transition, state: str) -> bool:
-    if not state:
+    """Whether taking the transition can leave the state, that is, change what is around it."""
+    if not state or transition.kind == "internal":
         return False
-    return any(not machine.contains(state, end) for end in ends_of(machine, transition))
+    changed = [
+        machine.main_region(transition.source, end, transition.kind)
+        for end in ends_of(machine, transition)
+    ]
+    owners = [machine.regions[region].state for region in changed]
+    return any(
+        owner != state and not (owner and machine.contains(state, owner)) for owner in owners
+    )

@@ -34,7 +34,7 @@ from sysmlc.logic.machine_actions import (
     ticks_of,
     told_time,
 )
-from sysmlc.logic.machine_checks import is_derivable, may_compete
+from sysmlc.logic.machine_checks import have_common_cause, is_derivable, may_compete
 from sysmlc.logic.names import Names, identifier, unique
 
 NOT_DERIVED = rule(
@@ -70,6 +70,14 @@ NONDETERMINISTIC = rule(
     why="The diagram leaves open which one is taken; the contract keeps that open, and "
     "output '{pick}' says what was chosen.",
     help="Make the guards exclude one another.",
+)
+COINCIDING = rule(
+    "SM432",
+    "coinciding-triggers",
+    Severity.INFO,
+    "transitions {transitions} that leave '{vertex}' have triggers that can occur in one step",
+    why="Nothing orders what happens within a step; the contract keeps open which transition is "
+    "taken, and output '{pick}' says what was chosen.",
 )
 DANGLING = rule(
     "SM423",
@@ -159,8 +167,8 @@ def _is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
 
 
 def _unsupported(graph: Graph, element: Element) -> str:
-    if element.kind is Kind.PSEUDOSTATE and element.subkind not in _PSEUDO:
-        return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
+    if element.kind is Kind.PSEUDOSTATE:
+        return _unsupported_pseudostate(graph, element)
     if element.kind is not Kind.STATE:
         return ""
     if any(one.kind is Kind.TRIGGER for one in graph.owned(element)):
@@ -171,6 +179,16 @@ def _unsupported(graph: Graph, element: Element) -> str:
         for target in graph.targets(element, edge)
     )
     return f"submachine state '{element.name}'" if is_submachine else ""
+
+
+def _unsupported_pseudostate(graph: Graph, element: Element) -> str:
+    if element.subkind not in _PSEUDO:
+        return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
+    region = graph.owner(element)
+    is_second = region is not None and _initial(graph, region) not in (None, element)
+    if element.subkind == "initial" and is_second:
+        return f"the second initial pseudostate '{element.name}'"
+    return ""
 
 
 def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
@@ -454,7 +472,9 @@ def _pick(parts: _Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -
     pick = reading.make(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, id)
     named = ", ".join(f"'{one.words}'" for one in outgoing)
     subject = reading.graph.subject(reading.graph[id])
-    reading.sink.report(NONDETERMINISTIC, subject, transitions=named, vertex=name, pick=pick)
+    same = have_common_cause(outgoing, parts.vertices[id], reading.scope)
+    broken = NONDETERMINISTIC if same else COINCIDING
+    reading.sink.report(broken, subject, transitions=named, vertex=name, pick=pick)
     return pick
 
 

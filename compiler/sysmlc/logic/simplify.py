@@ -114,13 +114,39 @@ def _tidy_and(
 
 
 def _leaf(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
-    mine = set(f.variables(formula))
-    near = f.both(*(fact for fact in facts if not mine.isdisjoint(f.variables(fact))))
+    near = _near(formula, known, facts)
     if not is_satisfiable(f.both(near, f.negate(formula)), known, _TIDY_LIMIT):
         return f.TRUE
     if not is_satisfiable(f.both(near, formula), known, _TIDY_LIMIT):
         return f.FALSE
     return formula
+
+
+def _near(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
+    """Facts about the formula's variables, the simplest first, as many as can be tried."""
+    used = set(f.variables(formula))
+    parts = [part for fact in facts for part in _parts(fact)]
+    about = [(set(f.variables(part)), part) for part in parts]
+    chosen: list[Formula] = []
+    for variables, part in sorted(about, key=lambda one: len(one[0])):
+        if variables.isdisjoint(f.variables(formula)):
+            continue
+        if _size(used | variables, known) <= _TIDY_LIMIT:
+            used |= variables
+            chosen.append(part)
+    return f.both(*chosen)
+
+
+def _parts(formula: Formula) -> tuple[Formula, ...]:
+    is_and = isinstance(formula, Apply) and formula.op is Op.AND
+    return formula.args if is_and and isinstance(formula, Apply) else (formula,)
+
+
+def _size(variables: set[Var], known: Mapping[str, Domain]) -> int:
+    number = 1
+    for variable in variables:
+        number *= domains.size(known[variable.name])
+    return number
 
 
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
