@@ -132,14 +132,12 @@ class _Game:
         """The target of the edge takes a token that is on it."""
         target = self.graph.node(edge.target)
         match target.firing:
-            case Firing.ANY:
+            case Firing.ANY | Firing.END:
                 return f.TRUE
             case Firing.CHOICE:
                 branches = self.graph.outgoing(target)
                 opened = f.either(*map(self.opened, branches)) if branches else f.TRUE
                 return f.both(self.others(edge), opened)
-            case Firing.END:
-                return f.FALSE
             case _:
                 return self.others(edge)
 
@@ -212,7 +210,7 @@ def _starts(graph: TokenGraph) -> Iterator[Conjunct]:
         is_marked = edge.marked and edge.region == ACTIVITY_REGION
         value = _at(edge) if is_marked else f.negate(_at(edge))
         verb = "starts with a token" if is_marked else "has no token at the start"
-        yield Conjunct(value, Class.INIT, edge.origin, f"The flow {edge.label} {verb}.")
+        yield Conjunct(value, Class.INIT, edge.origin, f"{_capital(edge.label)} {verb}.")
     for node in graph.workers():
         text = f"At the start {node.label} is not running."
         yield Conjunct(f.negate(f.var(node.run)), Class.INIT, node.origin, text)
@@ -237,9 +235,13 @@ def _next(variable: str, value: Formula) -> Formula:
 
 def _edge_text(game: _Game, edge: TokenEdge) -> str:
     source, target = game.graph.node(edge.source), game.graph.node(edge.target)
+    given = f"{source.label} gives one"
+    if edge.marked:
+        around = [node.label for node in game.graph.regions_around(edge.region)]
+        given = f"{next(iter(around), 'the activity')} starts"
     when = f" and its guard {edge.guard.text} holds" if edge.guard else ""
     return (
-        f"The flow {edge.label} gets a token when {source.label} gives one{when}, and keeps it "
+        f"{_capital(edge.label)} gets a token when {given}{when}, and keeps it "
         f"until {target.label} takes it."
     )
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 from sysmlc.logic.tokens import Firing, TokenEdge, TokenGraph, TokenNode
 
-
 _SMALL = 2_000
 """Markings that are searched without reductions: some milliseconds."""
 
