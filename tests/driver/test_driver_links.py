@@ -100,3 +100,16 @@ def test_a_damaged_archive_is_reported_and_nothing_old_is_removed(tmp_path, cont
     made = compiled(tmp_path / "plant.mdzip", passes=())
     assert [found.rule.code for found in made.diagnostics] == [code]
     assert (made.exit_code(), made.is_complete) == (1, False)
+
+
+def test_strict_input_makes_unsupported_content_an_error(tmp_path):
+    odd = '\n    <ownedWhatever xmi:type="uml:Whatever" xmi:id="d"/>'
+    file = tmp_path / "plant.uml"
+    file.write_text(MODEL.format(id="p", name="P", inside=odd))
+    assert compiled(file, passes=()).exit_code() == 0
+    made = compiled(file, passes=(), strict_input=True)
+    assert made.exit_code() == 1
+    unsupported = made.coverage.as_json()["total"]["unsupported"]
+    (found,) = [f for f in made.diagnostics if f.rule.name == "unsupported-content"]
+    assert unsupported == 1
+    assert found.message.startswith("1 of the ")

@@ -58,9 +58,13 @@ class Coverage:
         """Coverage of one file, empty when it is asked for first."""
         return self._files.setdefault(name, FileCoverage(name))
 
+    def files(self) -> list[FileCoverage]:
+        """Coverage of each file, sorted by name."""
+        return [self._files[name] for name in sorted(self._files)]
+
     def as_json(self) -> dict[str, object]:
         """The content of ``coverage.json`` (design, section 4)."""
-        files = [self._files[name] for name in sorted(self._files)]
+        files = self.files()
         total = {v.value: sum(f.totals()[v.value] for f in files) for v in Verdict}
         rows = [
             {"file": f.file, "elements": f.elements, **f.totals(), "by_type": f.by_type()}

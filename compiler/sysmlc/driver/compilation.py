@@ -199,12 +199,13 @@ class _Run:
         self._done += 1
 
     def _report_unsupported(self) -> None:
-        for file in self._coverage.as_json()["files"]:  # type: ignore[attr-defined]
-            for type_name, verdicts in file["by_type"].items():
-                number = verdicts.get("unsupported", 0)
-                if number:
-                    subject = faults.about_file(file["file"])
-                    self._sink.report(faults.UNSUPPORTED, subject, number=number, type=type_name)
+        for file in self._coverage.files():
+            number = file.totals()["unsupported"]
+            if number:
+                subject = faults.about_file(file.file)
+                self._sink.report(
+                    faults.UNSUPPORTED, subject, number=number, file=file.file, all=file.elements
+                )
 
     def _findings(self) -> tuple[Diagnostic, ...]:
         left, unused = suppress(self._sink, self._request.config.suppress)

@@ -83,7 +83,7 @@ UNSUPPORTED = rule(
     "SM174",
     "unsupported-content",
     Severity.ERROR,
-    "{number} elements of type '{type}' are not supported",
+    "{number} of the {all} elements of '{file}' are not supported",
     why="With --strict-input everything that has a meaning must be in the graph. "
     "coverage.json lists the verdict on every element.",
     help="remove them from the model, or compile without --strict-input",
