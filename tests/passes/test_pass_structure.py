@@ -311,6 +311,8 @@ Package line "Line"
   Activity alone "Alone"
   Class req "No jam" role="requirement"
   Class other "Other" role="requirement"
+  Class quick "Quick" role="requirement"
+    -> subject pull
 """,
         "behaviours",
     )
@@ -320,5 +322,6 @@ Package line "Line"
         "alone": "Line::Alone",
         "req": "Line::Gate",
         "other": "Line::Other",
+        "quick": "Line::Gate.pull in",
     }
     assert {id: component_name(graph, graph[id]) for id in expected} == expected

@@ -1,6 +1,6 @@
 """Questions that passes and back ends ask of a graph, answered without changing it."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
@@ -89,13 +89,17 @@ def tag(graph: Graph, element: Element, name: str) -> AttrValue:
 
 def generals(graph: Graph, classifier: Element) -> list[Element]:
     """Everything that the classifier specialises, nearest first; cycles do no harm."""
+    return _above(graph, classifier, Edge.SPECIALIZES)
+
+
+def _above(graph: Graph, element: Element, edge: Edge) -> list[Element]:
     found: dict[str, Element] = {}
-    level = [classifier]
+    level = [element]
     while level:
-        level = [up for one in level for up in graph.targets(one, Edge.SPECIALIZES)]
-        level = [up for up in dict.fromkeys(level) if up.id not in found]
+        ups = (up for one in level for up in graph.targets(one, edge))
+        level = [up for up in dict.fromkeys(ups) if up.id not in found]
         found.update((up.id, up) for up in level)
-    found.pop(classifier.id, None)
+    found.pop(element.id, None)
     return list(found.values())
 
 
@@ -116,23 +120,16 @@ def features(graph: Graph, classifier: Element) -> list[Element]:
 
 def type_of(graph: Graph, element: Element) -> Element | None:
     """Type of a typed element; a feature without one has that of the feature it redefines."""
-    return _through_redefinition(graph, element, lambda one: graph.target(one, Edge.TYPED_BY))
-
-
-def _through_redefinition(
-    graph: Graph, feature: Element, ask: Callable[[Element], Element | None]
-) -> Element | None:
-    seen: dict[str, Element] = {}
-    level = [feature]
-    while level:
-        for one in level:
-            answer = ask(one)
-            if answer is not None:
-                return answer
-        seen.update((one.id, one) for one in level)
-        level = [up for one in level for up in graph.targets(one, Edge.REDEFINES)]
-        level = [up for up in dict.fromkeys(level) if up.id not in seen]
+    for one in (element, *redefined(graph, element)):
+        type_ = graph.target(one, Edge.TYPED_BY)
+        if type_ is not None:
+            return type_
     return None
+
+
+def redefined(graph: Graph, feature: Element) -> list[Element]:
+    """Everything that the feature redefines, nearest first; cycles do no harm."""
+    return _above(graph, feature, Edge.REDEFINES)
 
 
 def parts(graph: Graph, block: Element) -> list[Element]:
@@ -250,10 +247,11 @@ def component_name(graph: Graph, element: Element) -> str:
     A classifier behaviour is its classifier, another behaviour ``<Owner>.<behaviour>``, one
     that a package owns stands alone, a requirement is its subject (design, section 6).
     """
-    if element.kind in BEHAVIORS:
-        return _behavior_name(graph, element)
     subject = _satisfier(graph, element) if element.role == "requirement" else None
-    return graph.qualified_name(subject or element)
+    component = subject or element
+    if component.kind in BEHAVIORS:
+        return _behavior_name(graph, component)
+    return graph.qualified_name(component)
 
 
 def _behavior_name(graph: Graph, behavior: Element) -> str:

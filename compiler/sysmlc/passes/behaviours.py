@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import BEHAVIORS, features, parameters
+from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined
 
 CALL_OF_NOTHING = rule(
     "SM400",
@@ -213,16 +213,11 @@ class Behaviours:
 
 
 def _inherit_method(graph: Graph, operation: Element) -> None:
-    seen, level = {operation}, [operation]
-    while level:
-        methods = [found for one in level for found in graph.targets(one, Edge.METHOD)]
+    for one in (operation, *redefined(graph, operation)):
+        methods = graph.targets(one, Edge.METHOD)
         if methods:
-            for method in methods:
-                graph.connect(Edge.METHOD, operation, method)
+            graph.replace_targets(Edge.METHOD, operation, methods)
             return
-        ups = [up for one in level for up in graph.targets(one, Edge.REDEFINES)]
-        level = [up for up in dict.fromkeys(ups) if up not in seen]
-        seen.update(level)
 
 
 def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:

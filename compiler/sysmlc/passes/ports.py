@@ -17,6 +17,7 @@ from sysmlc.ir.query import (
     is_boundary,
     opposite,
     parameters,
+    redefined,
     role_of,
     tag,
     type_of,
@@ -236,16 +237,8 @@ def _delegates(graph: Graph, connector: Element, port: Element) -> bool:
 
 
 def _redefined(graph: Graph, port: Element) -> str | None:
-    seen = {port}
-    level = [port]
-    while level:
-        ups = [up for one in level for up in graph.targets(one, Edge.REDEFINES)]
-        level = [up for up in dict.fromkeys(ups) if up not in seen]
-        seen.update(level)
-        for up in level:
-            if up.attrs.get("direction"):
-                return str(up.attrs["direction"])
-    return None
+    directions = (one.attrs.get("direction") for one in redefined(graph, port))
+    return next((str(one) for one in directions if one), None)
 
 
 # -- rules -------------------------------------------------------------------------------------

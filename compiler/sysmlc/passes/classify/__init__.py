@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import generals, tag
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.query import tag
 from sysmlc.passes.classify.lineage import (
     Ancestor,
     Profiles,
@@ -123,26 +123,29 @@ def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> Non
         # An OPC UA call is often said of a service too: the first of the table is the level.
         level = next((one for one in LEVELS.values() if one in levels), None)
         graph.set(graph[id], level=level or graph[id].attrs.get("level"))
-    # All are found before one is set, so that the order of the elements does not matter.
-    for classifier, level in [(one, _inherited_level(graph, one)) for one in _specific(graph)]:
-        graph.set(classifier, level=level)
+    _inherit_levels(graph)
 
 
-def _inherited_level(graph: Graph, classifier: Element) -> str | None:
-    levels = (up.attrs.get("level") for up in generals(graph, classifier))
-    return next((str(level) for level in levels if level), None)
+def _inherit_levels(graph: Graph) -> None:
+    """Give classifiers without a level that of the nearest general one, layer by layer."""
+    layer = [one for one in graph if "level" in one.attrs]
+    while layer:
+        below = (sub for one in layer for sub in graph.sources(one, Edge.SPECIALIZES))
+        layer = [sub for sub in dict.fromkeys(below) if "level" not in sub.attrs]
+        # A layer is looked at as a whole before it changes: the order must not matter.
+        for sub, level in [(sub, _level_above(graph, sub)) for sub in layer]:
+            graph.set(sub, level=level)
+
+
+def _level_above(graph: Graph, classifier: Element) -> AttrValue:
+    ups = graph.targets(classifier, Edge.SPECIALIZES)
+    return next(up.attrs["level"] for up in ups if "level" in up.attrs)
 
 
 def _levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
     for one in lineage:
         if one.family is Family.SYSMLC and one.name in LEVELS:
             yield LEVELS[one.name]
-
-
-def _specific(graph: Graph) -> Iterator[Element]:
-    for id in dict.fromkeys(source for _, source, _ in graph.edges(Edge.SPECIALIZES)):
-        if "level" not in graph[id].attrs:
-            yield graph[id]
 
 
 def _give_values(graph: Graph) -> None:
