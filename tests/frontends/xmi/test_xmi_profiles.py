@@ -94,3 +94,27 @@ def test_an_application_to_nothing_is_reported():
         "stereotype-without-element: stereotype 'Block' is applied to nothing that is in the model"
     ]
     assert read(papyrus(PORT, '<Blocks:Block xmi:id="a" base_Class="k"/>')).findings == []
+
+
+def test_profiles_that_enterprise_architect_keeps_beside_the_model():
+    """In windows-1252, with two versions of XMI, ids with spaces, and ids used once a profile."""
+    profile = """<uml:Profile xmlns:xmi="http://www.omg.org/spec/XMI/20161101" xmi:id="{0}"
+      name="{0}"><ownedComment xmi:type="uml:Comment" xmi:id="comment01"/>
+      <packagedElement xmi:type="uml:Stereotype" xmi:id="{0} Unit" name="{0} Unit"/>
+      </uml:Profile>"""
+    text = f"""<?xml version="1.0" encoding="windows-1252"?>
+<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+  xmlns:uml="http://www.omg.org/spec/UML/20161101">
+<uml:Model xmi:type="uml:Model" name="Förderer">
+  <packagedElement xmi:type="uml:Class" xmi:id="k"><ownedAttribute xmi:type="uml:Property"
+    xmi:id="a"><type xmi:idref="EAJava_int"/></ownedAttribute></packagedElement></uml:Model>
+<xmi:Extension extender="Enterprise Architect"><elements><element xmi:idref="k"/></elements>
+<primitivetypes><packagedElement xmi:type="uml:DataType" xmi:id="EAJava_int" name="int"/>
+</primitivetypes><profiles>{profile.format("P")}{profile.format("Q")}</profiles>
+</xmi:Extension></xmi:XMI>"""
+    reading = read(source(text.encode("windows-1252"), "m.xmi"))
+    assert reading.findings == []
+    assert [(r.source, r.target) for r in reading.graph.pending] == [("a", "EAJava_int")]
+    assert [e.id for e in reading.graph.of_kind("Stereotype")] == ["P Unit", "Q Unit"]
+    assert reading.graph.roots()[0].name == "Förderer"
+    assert reading.totals == {"elements": 17, "mapped": 12, "ignored_notation": 5}

@@ -133,7 +133,8 @@ def _event_details(context: Context, element: Element, holder: Lowered, row: int
 
 def references(document: Document, row: int, feature: str) -> list[tuple[str, int, bool]]:
     """Targets of a feature, each with the row that names it and whether it is an href."""
-    found = [(t, row, False) for t in document.attributes[row].get(feature, "").split()]
+    written = document.tokens(document.attributes[row].get(feature, ""))
+    found = [(target, row, False) for target in written]
     for child in document.children(row, feature):
         href = document.attributes[child].get("href", "")
         target = href or document.idref(child)

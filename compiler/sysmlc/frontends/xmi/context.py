@@ -32,7 +32,7 @@ class Context:
         self._bounds: dict[str, list[AttrValue]] = {}
         self._positions: dict[tuple[str, str], int] = {}
         self._conditions: list[tuple[str, str]] = []
-        self._late: list[tuple[Element, str, list[str]]] = []
+        self._late: list[tuple[Element, str, list[str], bool]] = []
 
     # -- rows ----------------------------------------------------------------------------------
 
@@ -111,6 +111,8 @@ class Context:
         return f"{feature}[{number}]"
 
     def _report_repeated(self, row: int, id: str) -> None:
+        if self.document.is_in_extension(row):
+            return
         subject = Subject(id=id, place=self.place(row))
         self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
 
@@ -129,7 +131,7 @@ class Context:
             return
         edge = v.SPECIAL.get((element.kind, name)) or v.REFERENCES.get(name)
         if edge is not None:
-            for target in value.split():
+            for target in self.document.tokens(value):
                 self.link(edge, element.id, target, row, name)
         elif name in v.TEXTS:
             key, default = v.TEXTS[name]
@@ -158,16 +160,16 @@ class Context:
         """Keep what no table names: ids of elements, a truth value, or text."""
         tokens = value.split()
         if tokens and all(token in self.document.ids for token in tokens):
-            self._late.append((element, key, tokens))
+            self._late.append((element, key, tokens, False))
         elif value in ("true", "false"):
             element.attrs[key] = value == "true"
         elif value:
             element.attrs[key] = value
 
-    def keep_ids(self, element: Element, key: str, ids: list[str]) -> None:
-        """Keep local ids as ids of the graph, when all elements are there."""
+    def keep_ids(self, element: Element, key: str, ids: list[str], is_href: bool = False) -> None:
+        """Keep ids (or hrefs) as ids of the graph, when all elements are there."""
         if ids:
-            self._late.append((element, key, ids))
+            self._late.append((element, key, ids, is_href))
 
     def text(self, row: int, feature: str) -> None:
         """A child that is only text stands for an attribute of the same name."""
@@ -228,7 +230,7 @@ class Context:
     # -- at the end ----------------------------------------------------------------------------
 
     def finish(self) -> None:
-        """Multiplicities and what could only be said when every row was read."""
+        """What could only be said when every row of every document was read."""
         for gid, (lower, upper) in self._bounds.items():
             text = multiplicity(lower, upper)
             if text:
@@ -237,11 +239,11 @@ class Context:
             row = self.document.ids.get(target, -1)
             if row >= 0 and self.lowered.own[row]:
                 self.graph[self.gids[row]].attrs["subkind"] = subkind
-        for element, key, ids in self._late:
-            found = [self.gids[self.document.ids[id]] for id in ids if id in self.document.ids]
-            if found:
-                is_list = len(found) > 1 or key in v.LISTS
-                element.attrs[key] = tuple(found) if is_list else found[0]
+        for element, key, targets, is_href in self._late:
+            found = [self.unit.target_id(self.lowered, t, is_href) for t in targets]
+            ids = tuple(id for id in found if id is not None)
+            if ids:
+                element.attrs[key] = ids if len(ids) > 1 or key in v.LISTS else ids[0]
 
 
 def multiplicity(lower: AttrValue, upper: AttrValue) -> str:

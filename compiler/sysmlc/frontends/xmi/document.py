@@ -80,8 +80,18 @@ class Document:
 
     def targets(self, row: int, feature: str) -> list[str]:
         """Local ids that the row's feature refers to, as attribute list or as children."""
-        ids = self.attributes[row].get(feature, "").split()
+        ids = self.tokens(self.attributes[row].get(feature, ""))
         return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
+
+    def tokens(self, value: str) -> list[str]:
+        """Ids in an attribute; Enterprise Architect's ids may hold spaces."""
+        return [value] if value in self.ids else value.split()
+
+    def is_in_extension(self, row: int) -> bool:
+        """Whether the row is what a tool keeps beside the model, and numbers as it likes."""
+        while row > 0 and self.features[row] != "Extension":
+            row = self.parents[row]
+        return row > 0
 
     def namespace(self, row: int) -> str:
         """Namespace of the row's element name."""
@@ -92,9 +102,11 @@ def read(source: Source) -> Document:
     """The columns of the file. Raises SourceError."""
     document = Document(source.name)
     made = parser()
+    declared: dict[str, None] = {}
+    made.StartNamespaceDeclHandler = lambda _prefix, uri: declared.setdefault(uri or "")
     _fill(document, made, source)
     parse(source, made)
-    _index(document)
+    _index(document, [uri for uri in declared if namespaces.is_xmi(uri)])
     return document
 
 
@@ -157,17 +169,16 @@ def _fill(document: Document, made: Parser, source: Source) -> None:
     made.CharacterDataHandler = text
 
 
-def _index(document: Document) -> None:
+def _index(document: Document, spaces: list[str]) -> None:
     local = {tag: tag.rpartition("}")[2] for tag in dict.fromkeys(document.tags)}
     document.features = [local[tag] for tag in document.tags]
-    xmi = _xmi_namespace(document)
+    xmi = spaces[0] if spaces else ""
+    for other in spaces[1:]:
+        _rename(document, other, xmi)
     document.id_key, document.type_key = f"{xmi}}}id", f"{xmi}}}type"
     document.idref_key = f"{xmi}}}idref"
-    key, ids = document.type_key, document.ids
-    written = [values.get(key, "") for values in document.attributes]
-    short = {name: name.rpartition(":")[2] for name in dict.fromkeys(written)}
-    document.types = [short[name] for name in written]
-    key = document.id_key
+    _index_types(document)
+    key, ids = document.id_key, document.ids
     for row, values in enumerate(document.attributes):
         if key in values:
             first = ids.setdefault(values[key], row)
@@ -175,11 +186,17 @@ def _index(document: Document) -> None:
                 document.repeated.setdefault(values[key], [first]).append(row)
 
 
-def _xmi_namespace(document: Document) -> str:
-    """The namespace of the root's XMI attributes, else of the first element that has one."""
-    for tag, values in zip(document.tags, document.attributes, strict=True):
-        for name in (tag, *values):
-            namespace = name.rpartition("}")[0]
-            if namespace and namespaces.is_xmi(namespace):
-                return namespace
-    return ""
+def _index_types(document: Document) -> None:
+    key = document.type_key
+    written = [values.get(key, "") for values in document.attributes]
+    short = {name: name.rpartition(":")[2] for name in dict.fromkeys(written)}
+    document.types = [short[name] for name in written]
+
+
+def _rename(document: Document, namespace: str, to: str) -> None:
+    """Enterprise Architect mixes versions of XMI in one file."""
+    for values in document.attributes:
+        for name in ("id", "type", "idref"):
+            value = values.pop(f"{namespace}}}{name}", None)
+            if value is not None:
+                values[f"{to}}}{name}"] = value

@@ -35,6 +35,7 @@ class XmiFrontend:
         contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
         for context in contexts:
             applications.note_namespaces(context)
+            context.finish()
         for context in contexts:
             applications.lower(context)
             behaviour.finish(context)

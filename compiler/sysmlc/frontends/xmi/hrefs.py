@@ -10,6 +10,7 @@ from sysmlc.frontends.xmi.vocabulary import HINTS
 from sysmlc.ir import Kind
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+_MODEL_FILE = re.compile(r"([^.]+)(?:\.\w+)*\.(?:uml|xmi|mdzip|xml)$")
 _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
 _UNMISTAKABLE = 20
@@ -18,13 +19,13 @@ _UNMISTAKABLE = 20
 
 def normalised(href: str, file: str) -> str:
     """The href with its path relative to the unit's root; what has a scheme stays as it is."""
-    path, hash_sign, fragment = href.partition("#")
+    path, _, fragment = href.partition("#")
     if not path:
         return f"{file}#{fragment}"
-    if _SCHEME.match(path):
-        return href
-    folder = posixpath.dirname(file.partition("!")[0])
-    return posixpath.normpath(posixpath.join(folder, unquote(path))) + hash_sign + fragment
+    if not _SCHEME.match(path):
+        folder = posixpath.dirname(file.partition("!")[0])
+        path = posixpath.normpath(posixpath.join(folder, unquote(path)))
+    return f"{path}#{fragment}"
 
 
 def is_unmistakable(fragment: str) -> bool:
@@ -47,7 +48,8 @@ def hint(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
     if kind is None and feature == "type" and name in _PRIMITIVES:
         kind = Kind.DATA_TYPE
     if not name and feature in ("appliedProfile", "importedPackage"):
-        name = base_name(href.partition("#")[0]).partition(".")[0]
+        file = _MODEL_FILE.match(base_name(href.partition("#")[0]))
+        name = file[1] if file else ""
     return kind, name
 
 
@@ -65,7 +67,7 @@ def name_in(href: str) -> str:
     fragment = unquote(href.partition("#")[2])
     if re.search(r"_(packagedElement|owned[A-Z][a-z]+|nestedPackage|owned[A-Z]\w+?)_", fragment):
         return re.split(r"_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_", fragment)[-1]
-    last = fragment.rpartition(".")[2].rpartition("-")[2]
+    last = fragment.rpartition(".")[2]
     return last if _READABLE.match(last) else ""
 
 

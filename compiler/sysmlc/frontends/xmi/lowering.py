@@ -22,7 +22,6 @@ def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
     end = len(document)
     while row < end:
         row = _root(context, row) if row in roots else _row(context, row)
-    context.finish()
     return context
 
 
@@ -62,7 +61,10 @@ def _row(context: Context, row: int) -> int:
     feature = document.features[row]
     values = document.attributes[row]
     if feature in vocabulary.NOTATION_FEATURES:
-        return structure.notation(context, row)
+        end = structure.notation(context, row)
+        if document.parents[row] == 0:
+            _content_of_extension(context, row)
+        return end
     context.inherit(row)
     if "href" in values or document.idref_key in values:
         return structure.reference(context, row, feature)
@@ -77,6 +79,17 @@ def _row(context: Context, row: int) -> int:
         context.text(row, feature)
         return document.ends[row]
     return _element(context, row, metaclasses.DEFAULT_TYPES.get(feature, ""), feature)
+
+
+def _content_of_extension(context: Context, row: int) -> None:
+    """Enterprise Architect keeps the primitive types and profiles that it uses beside the model."""
+    document = context.document
+    for feature in vocabulary.EXTENSION_CONTENT:
+        for holder in document.children(row, feature):
+            child, end = holder + 1, document.ends[holder]
+            while child < end:
+                is_root = namespaces.is_uml(document.namespace(child))
+                child = _root(context, child) if is_root else _row(context, child)
 
 
 def _element(context: Context, row: int, type_name: str, feature: str) -> int:

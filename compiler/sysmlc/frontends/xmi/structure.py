@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import hrefs, metaclasses
+from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.values import ValueText, value_of
@@ -107,12 +107,12 @@ def _refer(context: Context, owner: Element, row: int, feature: str, href: str) 
 
 
 def _keep(context: Context, owner: Element, row: int, feature: str, href: str) -> None:
+    key = v.snake(feature)
     if href:
-        known = hrefs.normalised(href, context.document.name)
-        owner.attrs.setdefault(v.snake(feature), known)
+        context.keep_ids(owner, key, [href], is_href=True)
     elif feature not in ("sendEvent", "receiveEvent"):
         parent = context.document.parents[row]
-        context.keep_ids(owner, v.snake(feature), context.document.targets(parent, feature))
+        context.keep_ids(owner, key, context.document.targets(parent, feature))
 
 
 # -- edges of the owner ------------------------------------------------------------------------
@@ -124,7 +124,7 @@ def _edge(context: Context, row: int) -> None:
     if owner is None:
         return
     for feature, edge in v.FOLDED_REFERENCES.items():
-        for target in context.document.attributes[row].get(feature, "").split():
+        for target in context.document.tokens(context.document.attributes[row].get(feature, "")):
             context.link(edge, owner.id, target, row, feature)
 
 
@@ -229,7 +229,8 @@ def _put(context: Context, row: int, key: str) -> None:
         return
     owner.attrs[key] = value.value
     if value.instance:
-        context.keep_ids(owner, f"{key}_instance", [value.instance])
+        is_href = value.instance not in context.document.ids
+        context.keep_ids(owner, f"{key}_instance", [value.instance], is_href)
     elif not value.is_literal:
         owner.attrs[f"{key}_language"] = value.language
 

@@ -100,9 +100,15 @@ class Unit:
         """Give all references to the graph, in the order in which they were found."""
         for link in self.links:
             target = self.target_id(link.lowered, link.target, link.is_href)
-            if target is not None:
+            if target is not None and not self._is_loose(link, target):
                 self.graph.refer(self._reference(link, target))
         self.links.clear()
+
+    def _is_loose(self, link: Link, target: str) -> bool:
+        """Whether it leads nowhere inside what a tool keeps beside the model."""
+        if link.is_href or target in self.graph:
+            return False
+        return link.lowered.document.is_in_extension(link.row)
 
     def _reference(self, link: Link, target: str) -> Reference:
         edge, source, lowered, _, row, _, is_href, is_reversed = link

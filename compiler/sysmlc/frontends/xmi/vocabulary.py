@@ -9,6 +9,9 @@ _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 NOTATION_FEATURES = frozenset({"eAnnotations", "icon", "Documentation", "Extension", "Diagram"})
 """Features whose content says how a tool shows or stores the model."""
 
+EXTENSION_CONTENT = ("primitivetypes", "profiles")
+"""Parts of Enterprise Architect's extension that hold UML elements."""
+
 REFERENCES: dict[str, Edge] = {
     "type": Edge.TYPED_BY,
     "subsettedProperty": Edge.SUBSETS,
