@@ -31,7 +31,7 @@ def test_the_folder_holds_what_was_made_and_three_files_about_it(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["manifest", "coverage", "trace"])
-@pytest.mark.parametrize("text", [PLANT, FAULTY])
+@pytest.mark.parametrize("text", [PLANT, FAULTY, "Klass gate\n"])
 def test_they_follow_their_schemas(tmp_path, name, text):
     publish(tmp_path, text)
     schema = json.loads(resources.text("metamodels", f"sysmlc-{name}.schema.json"))
@@ -100,6 +100,16 @@ def test_a_model_that_cannot_be_read_removes_nothing(tmp_path):
     publish(tmp_path)
     publish(tmp_path, "Klass gate\n")
     assert files(tmp_path) == ALL
+    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
+    kept = ["outlines/Gate.txt", "outlines/Robot.txt"]
+    assert [entry["path"] for entry in manifest["kept"]] == kept
+
+
+def test_what_was_kept_is_removed_when_the_model_can_be_read_again(tmp_path):
+    publish(tmp_path)
+    publish(tmp_path, "Klass gate\n")
+    publish(tmp_path, PLANT.replace("Robot", "Arm"))
+    assert "outlines/Robot.txt" not in files(tmp_path)
 
 
 def test_a_manifest_that_names_files_elsewhere_is_not_believed(tmp_path):
@@ -107,7 +117,7 @@ def test_a_manifest_that_names_files_elsewhere_is_not_believed(tmp_path):
     (tmp_path / "precious.txt").write_text("keep")
     listed = [{"path": "../precious.txt"}, {"path": str(tmp_path / "precious.txt")}, {}]
     for entry in listed:
-        manifest = {"schema": "sysmlc-manifest/1", "files": [entry], "withheld": []}
+        manifest = {"schema": "sysmlc-manifest/1", "files": [entry], "withheld": [], "kept": []}
         (tmp_path / "out/manifest.json").write_text(json.dumps(manifest))
         publish(tmp_path)
         assert (tmp_path / "precious.txt").exists()

@@ -15,8 +15,11 @@ COVERAGE = "coverage.json"
 TRACE = "trace.json"
 
 
-def manifest_text(compilation: Compilation) -> str:
-    """Inputs with their digests, files with theirs, and what is withheld and why."""
+def manifest_text(compilation: Compilation, kept: Iterable[str] = ()) -> str:
+    """Inputs and files with their digests, what is withheld and why, what is ``kept``.
+
+    ``kept`` are files of an earlier run whose inputs could not be read this time.
+    """
     return _json(
         {
             "schema": "sysmlc-manifest/1",
@@ -30,6 +33,7 @@ def manifest_text(compilation: Compilation) -> str:
                 {"path": path, "because": [_because(error) for error in errors]}
                 for path, errors in sorted(compilation.withheld.items())
             ],
+            "kept": [{"path": path} for path in kept],
         }
     )
 

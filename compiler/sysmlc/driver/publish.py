@@ -40,14 +40,17 @@ class Plan:
 
 
 def plan(compilation: Compilation, folder: Path) -> Plan:
-    """What the folder should hold. Files that other programs made are never stale."""
+    """What the folder should hold. Files that other programs made are never stale.
+
+    When an input could not be read, what an earlier run made of it is kept and listed as such.
+    """
     files = {artefact.path: artefact.text for artefact in compilation.written()}
     files[COVERAGE] = coverage_text(compilation)
     files[TRACE] = trace_text(compilation)
-    files[MANIFEST] = manifest_text(compilation)
-    listed = _previous(folder) if compilation.is_complete else []
-    stale = [path for path in listed if path not in files and (folder / path).is_file()]
-    return Plan(folder, files, tuple(stale))
+    left = tuple(p for p in _previous(folder) if p not in files and (folder / p).is_file())
+    kept, stale = ((), left) if compilation.is_complete else (left, ())
+    files[MANIFEST] = manifest_text(compilation, kept)
+    return Plan(folder, files, stale)
 
 
 def apply(plan: Plan) -> list[str]:
@@ -71,7 +74,8 @@ def _previous(folder: Path) -> list[str]:
         manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
         if not str(manifest["schema"]).startswith("sysmlc-manifest/"):
             return []
-        paths = [str(entry["path"]) for entry in (*manifest["files"], *manifest["withheld"])]
+        entries = (*manifest["files"], *manifest["withheld"], *manifest["kept"])
+        paths = {str(entry["path"]) for entry in entries}
     except (OSError, ValueError, KeyError, TypeError):
         return []
     return sorted(path for path in paths if _is_inside(folder, path))
