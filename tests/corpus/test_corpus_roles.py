@@ -17,6 +17,7 @@ pytestmark = pytest.mark.corpus
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
 PORTS = {"FullPort": "full port", "ProxyPort": "proxy port"}
 MODEL = "com.nomagic.magicdraw.uml_model.model"
+SHARED_MODEL = "com.nomagic.magicdraw.uml_model.shared_model"
 ARROWHEAD = "xmi/papyrus/Arrowhead-5.0.uml"
 PROFILE = "xmi/papyrus/ArrowheadProfile_v5.0.profile.uml"
 TANK = "xmi/magicdraw/Tank_control_2.mdzip"
@@ -27,12 +28,13 @@ TANK = "xmi/magicdraw/Tank_control_2.mdzip"
 
 def ports_in(root: etree._Element) -> set[str]:
     """Ids of the ports that the file declares: references (href, idref) have no id of a port."""
+    xmi = f"{{{root.nsmap['xmi']}}}"
     return {
-        element.get(f"{XMI}id")
+        element.get(f"{xmi}id")
         for element in root.iter("{*}ownedAttribute", "{*}ownedPort")
-        if element.get(f"{XMI}type") == "uml:Port"
+        if element.get(f"{xmi}type") == "uml:Port"
         and element.get("href") is None
-        and element.get(f"{XMI}idref") is None
+        and element.get(f"{xmi}idref") is None
     }
 
 
@@ -156,6 +158,33 @@ def test_tank_control_parts_and_values_are_recognised(corpus):
     graph, _ = compiled(corpus / TANK)
     assert len(expected) == 68
     assert {id: graph[id].role for id in expected} == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "entry"),
+    [
+        ("xmi/papyrus/SmartCityDSL-2.uml", ""),
+        ("xmi/magicdraw/Tank_control_2.xml", ""),
+        ("xmi/magicdraw/Wired_Camera_Example.mdzip", MODEL),
+        ("xmi/magicdraw/App_test_JD_v2.mdzip", SHARED_MODEL),
+        ("xmi/magicdraw/Smart_street_light_2.mdzip", MODEL),
+    ],
+)
+def test_ports_of_other_models_are_recognised(corpus, name, entry):
+    root = tree(corpus / name, entry)
+    expected = stereotyped_ports(root)
+    graph, _ = compiled(corpus / name)
+    found = roles(graph, Kind.PORT, *PORTS.values())
+    assert expected
+    assert {id: found.get(id) for id in expected} == expected
+
+
+def test_item_flows_give_the_direction_that_the_diagram_shows(corpus):
+    """Light enters the camera at its boundary and its module at "light in"; MagicDraw 17."""
+    graph, _ = compiled(corpus / "xmi/magicdraw/Wired_Camera_Example.mdzip")
+    directions = {one.name: one.attrs.get("direction") for one in graph.of_kind(Kind.PORT)}
+    assert (directions["boundary"], directions["light in"]) == ("in", "in")
+    assert (directions["filter"], directions["mount"]) == ("inout", None)
 
 
 def test_marte_ports_are_no_sysml_ports(corpus):
