@@ -128,7 +128,7 @@ def test_watch_rebuilds_when_a_file_is_saved(here, monkeypatch):
 
     monkeypatch.setattr(watchfiles, "watch", saves)
     done = here.sysmlc("watch", "plant.ir", "--emit", "graph")
-    assert done.stdout == "out: 4 files changed\nout: 3 files changed\n"
+    assert done.stdout == "out: 4 changed\nout: 3 changed\n"
     assert '"Other"' in here.read("out/graph.json")
 
 

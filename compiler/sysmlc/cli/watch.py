@@ -63,7 +63,7 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
                 changed = apply(plan(made, unit.output))
             except OutputError as problem:
                 session.fail(str(problem))
-            click.echo(f"{unit.output}: {len(changed)} files changed")
+            click.echo(f"{unit.output}: {len(changed)} changed")
     return good
 
 
