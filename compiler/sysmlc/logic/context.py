@@ -20,6 +20,7 @@ from sysmlc.logic.expression import (
 from sysmlc.logic.expression import Literal as Constant
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.names import unique
+from sysmlc.logic.samples import arrow, machine
 
 ASSUMED_RANGE = rule(
     "SM410",
@@ -29,9 +30,8 @@ ASSUMED_RANGE = rule(
     why="Contracts have finite domains: an Integer needs a least and a greatest value.",
     help="Constrain it ({name} >= {low} and {name} <= {high}) or give it a value type with a "
     "range.",
-    wrong='Class c "C"\n  Property n "n"\n    -> typed-by int\nDataType int "Integer"\n',
-    right='Class c "C"\n  Property n "n"\n    -> typed-by int\n  Constraint k body="0 <= n <= 3"\n'
-    'DataType int "Integer"\n',
+    wrong=machine(arrow("a", "b", "start", "size > 2")),
+    right=machine(arrow("a", "b", "start", "level > 2")),
 )
 
 _BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
@@ -52,6 +52,8 @@ class Feature:
     domain: Domain | None
     default: Literal | None = None
     constant: bool = False
+    is_assumed: bool = False
+    """Whether the range is assumed; ``note_range`` says so when the property is used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,20 +67,21 @@ class Context:
 
 
 def context_of(
-    graph: Graph, classifier: Element | None, sink: Sink, assumed: tuple[int, int] = (0, 15)
+    graph: Graph, classifier: Element | None, assumed: tuple[int, int] = (0, 15)
 ) -> Context:
-    """The context that a classifier gives; empty without one.
+    """The context that a classifier gives; empty without one. A behaviour gives its parameters.
 
     ``assumed`` is the range of Integers that have none.
     """
     if classifier is None:
         return Context("", {}, _literals(graph))
-    found = [one for one in query.features(graph, classifier) if one.name and _is_value(one)]
+    known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
+    found = [one for one in known if one.name and _is_value(one)]
     named = {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
     names = sorted(named, key=lambda name: (named[name].ordinal, name))
     variables = unique(names, "value", "event", "none")
     features = {
-        name: _feature(graph, named[name], variable, sink, assumed)
+        name: _feature(graph, named[name], variable, assumed)
         for name, variable in zip(names, variables, strict=True)
     }
     return Context(classifier.name, features, _literals(graph))
@@ -90,7 +93,7 @@ def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:
 
 
 def _is_value(element: Element) -> bool:
-    return element.kind in (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+    return element.kind in (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
 
 
 def _literals(graph: Graph) -> dict[str, tuple[str, str]]:
@@ -108,16 +111,24 @@ def _enumeration(graph: Graph, enumeration: Element) -> dict[str, str]:
     return dict(zip(names, unique(names, "literal"), strict=True))
 
 
-def _feature(
-    graph: Graph, element: Element, variable: str, sink: Sink, assumed: tuple[int, int]
-) -> Feature:
+def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
+    """Report that the range of a property that matters is assumed."""
+    domain = feature.domain
+    if feature.is_assumed and isinstance(domain, IntegerDomain):
+        low, high, name = domain.low, domain.high, feature.element.name
+        subject, shown = graph.subject(feature.element), f"{low}..{high}"
+        sink.report(ASSUMED_RANGE, subject, name=name, range=shown, low=low, high=high)
+
+
+def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, int]) -> Feature:
     type_ = query.type_of(graph, element)
     domain = _domain(graph, element, type_)
-    if domain is None and _is_integer(graph, element, type_):
-        domain = _assume(graph, element, type_, sink, assumed)
+    is_assumed = domain is None and _is_integer(graph, element, type_)
+    if is_assumed:
+        domain = _assume(graph, element, type_, assumed)
     default = _default(graph, element, type_, domain)
     constant = element.attrs.get("readonly") is True and default is not None
-    return Feature(element, variable, domain, default, constant)
+    return Feature(element, variable, domain, default, constant, is_assumed)
 
 
 def _domain(graph: Graph, element: Element, type_: Element | None) -> Domain | None:
@@ -146,15 +157,13 @@ def _untyped_default(element: Element, type_: Element | None, kind: type) -> boo
 
 
 def _assume(
-    graph: Graph, element: Element, type_: Element | None, sink: Sink, assumed: tuple[int, int]
+    graph: Graph, element: Element, type_: Element | None, assumed: tuple[int, int]
 ) -> Domain:
     low, high = assumed
     low = max(low, 0) if _names(graph, type_) & _UNSIGNED else low
     default = element.attrs.get("default")
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
-    subject, shown = graph.subject(element), f"{low}..{high}"
-    sink.report(ASSUMED_RANGE, subject, name=element.name, range=shown, low=low, high=high)
     return IntegerDomain(low, high)
 
 

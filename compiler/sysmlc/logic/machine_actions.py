@@ -7,7 +7,7 @@ from math import ceil
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
-from sysmlc.logic.context import Context, name_of
+from sysmlc.logic.context import Context, name_of, note_range
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition, meaning
@@ -26,30 +26,19 @@ from sysmlc.logic.expression import (
 )
 from sysmlc.logic.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
-
-_WRONG = """Class c "C"
-  -> classifier-behavior m
-  StateMachine m "M"
-    Region r
-      Pseudostate i subkind="initial"
-      State a "A"
-      State b "B"
-      Transition t0
-        -> flow-source i
-        -> flow-target a
-      Transition t1 guard={guard}
-        -> flow-source a
-        -> flow-target b
-  Property ready "ready"
-    -> typed-by bool
-  Property level "level" default=0
-DataType bool "Boolean"
-"""
+from sysmlc.logic.samples import arrow, machine
 
 
-def model(guard: str) -> str:
-    """A small machine with this guard, for the explanations of rules."""
-    return _WRONG.replace("{guard}", f'"{guard}"')
+def _guarded(guard: str) -> str:
+    return machine(arrow("a", "b", "start", guard))
+
+
+def _doing(effect: str) -> str:
+    return machine(arrow("a", "b", "start", effect=effect))
+
+
+def _waiting(after: str) -> str:
+    return machine(arrow("a", "b", after=after))
 
 
 NOT_UNDERSTOOD = rule(
@@ -59,8 +48,8 @@ NOT_UNDERSTOOD = rule(
     "{what} '{text}' is not understood: {reason}; the environment decides it as '{variable}'",
     why="Only expressions over properties with finite domains can be part of a contract.",
     help="Write an expression over the properties of the owner.",
-    wrong=model("when it is ready"),
-    right=model("ready"),
+    wrong=_guarded("when it is ready"),
+    right=_guarded("ready"),
 )
 UNKNOWN_NAME = rule(
     "SM412",
@@ -69,8 +58,8 @@ UNKNOWN_NAME = rule(
     "{what} '{text}' names '{name}', which is no property of {context}",
     why="A name in an expression is a property of the classifier that owns the behaviour.",
     help="Correct the name or add the property.",
-    wrong=model("redy"),
-    right=model("ready"),
+    wrong=_guarded("redy"),
+    right=_guarded("ready"),
 )
 TYPE_MISMATCH = rule(
     "SM413",
@@ -78,8 +67,8 @@ TYPE_MISMATCH = rule(
     Severity.ERROR,
     "{what} '{text}': {reason}",
     why="A condition, a number and an enumeration literal cannot stand for one another.",
-    wrong=model("level and ready"),
-    right=model("level > 1 and ready"),
+    wrong=_guarded("level and ready"),
+    right=_guarded("level > 1 and ready"),
 )
 OUT_OF_DOMAIN = rule(
     "SM414",
@@ -88,8 +77,8 @@ OUT_OF_DOMAIN = rule(
     "{what} '{text}': {reason}",
     why="The value can never be taken, so that the expression does not say what was meant.",
     help="Correct the value or the range of the property.",
-    wrong=model("level == 99"),
-    right=model("level == 9"),
+    wrong=_guarded("level == 99"),
+    right=_guarded("level == 9"),
 )
 NOT_ASSIGNABLE = rule(
     "SM415",
@@ -98,6 +87,8 @@ NOT_ASSIGNABLE = rule(
     "'{text}' assigns to '{name}', which is no changeable property with finite values of {context}",
     why="A state machine changes properties of the classifier that owns it.",
     help="Correct the name, give the property a finite type, or make it changeable.",
+    wrong=_doing("fixed := 4"),
+    right=_doing("level := 4"),
 )
 OPAQUE_EFFECT = rule(
     "SM416",
@@ -106,14 +97,19 @@ OPAQUE_EFFECT = rule(
     "'{text}' is no assignment, call or send; the contract shows it as output '{variable}'",
     why="What is not written in the expression grammar is done by the component in a way that "
     "the contract cannot see.",
+    wrong=_doing("open the gate"),
+    right=_doing("openGate()"),
 )
 OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
-    "time '{text}' is no constant duration; the environment says when it is over, as '{variable}'",
+    "time '{text}' is no constant relative time; the environment says when it comes, as "
+    "'{variable}'",
     why="A contract counts a duration in steps, so that it has to be a number.",
-    help="Write a number, or a number with a unit (5 s).",
+    help="Write a number, or a number with a unit (after 5 s), and mark the event as relative.",
+    wrong=_waiting("after cooling"),
+    right=_waiting("after 5 s"),
 )
 _RULE_OF = {
     Fault.UNKNOWN: UNKNOWN_NAME,
@@ -196,7 +192,9 @@ class Reading:
         for part in walk(expression):
             name = name_of(part)
             if name in self.context.features:
-                self.used[self.context.features[name].variable] = None
+                feature = self.context.features[name]
+                self.used[feature.variable] = None
+                note_range(self.graph, feature, self.sink)
 
 
 def walk(expression: Expression) -> list[Expression]:
@@ -322,6 +320,7 @@ def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: E
         return _opaque(reading, text, behaviour)
     reading.note_use(statement.value)
     reading.assigned[feature.variable] = None
+    note_range(reading.graph, feature, reading.sink)
     return Assign(feature.variable, statement.value, behaviour.id)
 
 

@@ -5,7 +5,7 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic import domains
+from sysmlc.logic import domains, samples
 from sysmlc.logic import formula as f
 from sysmlc.logic.context import name_of
 from sysmlc.logic.contract import Domain
@@ -15,6 +15,31 @@ from sysmlc.logic.expression import Expression
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machine import AfterTicks, Assign, Machine, OnEvent, Transition, Vertex
 from sysmlc.logic.machine_actions import walk
+from sysmlc.logic.samples import arrow, choice, machine, machine_of
+
+
+def _two_regions(first: str, second: str) -> str:
+    return machine_of(
+        samples.region(
+            "r", samples.state("a"), arrow("i", "a"), arrow("a", "a", first, effect="level := 1")
+        ),
+        samples.region(
+            "q", samples.state("b"), arrow("qi", "b"), arrow("b", "b", second, effect="level := 2")
+        ),
+    )
+
+
+def _leaving(on: str) -> str:
+    inner = (
+        samples.region("s", samples.state("d"), arrow("si", "d"), arrow("d", "b", on)),
+        samples.region(
+            "t", samples.state("e"), arrow("ti", "e"), arrow("e", "e", "start", "ready")
+        ),
+    )
+    return machine_of(
+        samples.region("r", samples.state("a", *inner), samples.state("b"), arrow("i", "a"))
+    )
+
 
 PSEUDO_CYCLE = rule(
     "SM424",
@@ -23,6 +48,16 @@ PSEUDO_CYCLE = rule(
     "pseudostate '{vertex}' leads back to itself without a state between",
     why="A step would never end.",
     help="Put a state into the cycle.",
+    wrong=machine(
+        *(choice("x"), choice("y")),
+        *(arrow("a", "x", "start"), arrow("x", "y"), arrow("y", "x", guard="ready")),
+        arrow("y", "b", guard="else"),
+    ),
+    right=machine(
+        *(choice("x"), choice("y")),
+        *(arrow("a", "x", "start"), arrow("x", "y"), arrow("y", "a", guard="ready")),
+        arrow("y", "b", guard="else"),
+    ),
 )
 DEAD_END = rule(
     "SM425",
@@ -30,6 +65,8 @@ DEAD_END = rule(
     Severity.ERROR,
     "{kind} '{vertex}' has no outgoing transition",
     why="A step cannot end in a pseudostate.",
+    wrong=machine(choice("x"), arrow("a", "x", "start")),
+    right=machine(choice("x"), arrow("a", "x", "start"), arrow("x", "b")),
 )
 RACE = rule(
     "SM426",
@@ -39,6 +76,8 @@ RACE = rule(
     "the component gets no contract",
     why="Nothing in the diagram orders the two assignments.",
     help="Assign the property in one region only, or on different events.",
+    wrong=_two_regions("start", "start"),
+    right=_two_regions("start", "stop"),
 )
 CROSSING = rule(
     "SM427",
@@ -48,6 +87,8 @@ CROSSING = rule(
     "regions; the component gets no contract",
     why="Nothing in the diagram says which of the two is taken.",
     help="Draw the transition from the border of the orthogonal state, or use another event.",
+    wrong=_leaving("start"),
+    right=_leaving("stop"),
 )
 
 STRAY = rule(
@@ -58,6 +99,14 @@ STRAY = rule(
     why="A transition stays in its machine and does not jump between regions of the machine; "
     "an initial transition stays in its region (UML 2.5.1, 14.5.8 and 14.5.11).",
     help="Let the transition end at a vertex that it may reach.",
+    wrong=machine_of(
+        samples.region("r", samples.state("a"), arrow("i", "a"), arrow("a", "b", "start")),
+        samples.region("q", samples.state("b"), arrow("qi", "b")),
+    ),
+    right=machine_of(
+        samples.region("r", samples.state("a"), arrow("i", "a"), arrow("a", "a", "start")),
+        samples.region("q", samples.state("b"), arrow("qi", "b")),
+    ),
 )
 
 _LIMIT = 4096

@@ -36,6 +36,7 @@ from sysmlc.logic.machine_actions import (
 )
 from sysmlc.logic.machine_checks import have_common_cause, is_derivable, may_compete
 from sysmlc.logic.names import Names, identifier, unique
+from sysmlc.logic.samples import arrow, choice, machine
 
 NOT_DERIVED = rule(
     "SM420",
@@ -45,11 +46,8 @@ NOT_DERIVED = rule(
     why="A contract that leaves part of the diagram out would promise what the diagram does "
     "not say.",
     help="Draw it with states, choices and junctions, or leave the machine without contract.",
-    wrong='StateMachine m "M"\n  Region r\n    Pseudostate i subkind="initial"\n'
-    '    Pseudostate h subkind="deep-history"\n    State a "A"\n    Transition t\n'
-    "      -> flow-source i\n      -> flow-target a\n",
-    right='StateMachine m "M"\n  Region r\n    Pseudostate i subkind="initial"\n'
-    '    State a "A"\n    Transition t\n      -> flow-source i\n      -> flow-target a\n',
+    wrong=machine(choice("h", "deep-history"), arrow("a", "h", "start"), arrow("h", "b")),
+    right=machine(choice("h", "junction"), arrow("a", "h", "start"), arrow("h", "b")),
 )
 NO_INITIAL = rule(
     "SM421",
@@ -70,6 +68,8 @@ NONDETERMINISTIC = rule(
     why="The diagram leaves open which one is taken; the contract keeps that open, and "
     "output '{pick}' says what was chosen.",
     help="Make the guards exclude one another.",
+    wrong=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "level > 2")),
+    right=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "not ready")),
 )
 COINCIDING = rule(
     "SM432",
@@ -78,6 +78,8 @@ COINCIDING = rule(
     "transitions {transitions} that leave '{vertex}' have triggers that can occur in one step",
     why="Nothing orders what happens within a step; the contract keeps open which transition is "
     "taken, and output '{pick}' says what was chosen.",
+    wrong=machine(arrow("a", "b", "start"), arrow("a", "a", after="after 2 s")),
+    right=machine(arrow("a", "b", "start"), arrow("a", "a", "stop")),
 )
 DANGLING = rule(
     "SM423",
@@ -144,7 +146,7 @@ def read_machine(
 
 
 def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> _Parts:
-    context = context_of(graph, context_classifier(graph, machine), sink, options.assumed_range)
+    context = context_of(graph, context_classifier(graph, machine), options.assumed_range)
     taken = [one.variable for one in context.features.values()] + list(context.features)
     names = Names("event", NO_EVENT, *taken)
     return _Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)

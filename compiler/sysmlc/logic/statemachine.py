@@ -34,8 +34,9 @@ from sysmlc.logic.machine import (
     WhenTold,
 )
 from sysmlc.logic.machine_checks import simultaneous
+from sysmlc.logic.samples import arrow, choice, machine
 from sysmlc.logic.simplify import simplified, tidy
-from sysmlc.logic.statemachine_paths import Explorer, Path, TooManyPaths
+from sysmlc.logic.statemachine_paths import LIMIT, Explorer, Path, TooManyPaths
 
 SATURATES = rule(
     "SM428",
@@ -44,6 +45,8 @@ SATURATES = rule(
     "{transition} can take '{variable}' out of its range; it stops at the bound",
     why="The contract has finite domains: a value beyond them is taken as the nearest bound.",
     help="Guard the transition, or give the property a wider range.",
+    wrong=machine(arrow("a", "b", "start", effect="level := level + 1")),
+    right=machine(arrow("a", "b", "start", "level < 9", "level := level + 1")),
 )
 BLOCKED = rule(
     "SM429",
@@ -53,6 +56,11 @@ BLOCKED = rule(
     "transition is not taken",
     why="UML calls a choice without an enabled way out ill-formed (2.5.1, 14.2.3.7).",
     help="Add a transition with the guard else.",
+    wrong=machine(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
+    right=machine(
+        *(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
+        arrow("x", "a", guard="else"),
+    ),
 )
 TOO_LARGE = rule(
     "SM430",
@@ -62,6 +70,16 @@ TOO_LARGE = rule(
     "gets no contract",
     why="A contract of that size helps nobody.",
     help="Split the machine.",
+    wrong=machine(
+        *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(9))),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(8) for g in ("ready", "not ready")),
+        arrow("x8", "b"),
+    ),
+    right=machine(
+        *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(3))),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(2) for g in ("ready", "not ready")),
+        arrow("x2", "b"),
+    ),
 )
 
 
@@ -116,13 +134,21 @@ def _explore(graph: Graph, machine: Machine, sink: Sink) -> _Derivation | None:
         try:
             paths = explorer.transition(one)
         except TooManyPaths:
-            facts = words.name_transition(one)
-            sink.report(TOO_LARGE, graph.subject(graph[one.id]), transition=facts, limit=200)
+            _give_up(graph, one.id, words.name_transition(one), sink)
             return None
         found.append(_Move(one, tuple(paths), _enabled(machine, domains, one, paths)))
         _report(graph, machine, domains, one, paths, sink)
     moves = tuple(replace(m, fires=tidy(_fires(machine, m, found), domains)) for m in found)
-    return _Derivation(machine, domains, moves, tuple(_starts(machine, domains, explorer)))
+    try:
+        starts = tuple(_starts(machine, domains, explorer))
+    except TooManyPaths:
+        _give_up(graph, machine.id, f"the start of '{machine.name}'", sink)
+        return None
+    return _Derivation(machine, domains, moves, starts)
+
+
+def _give_up(graph: Graph, id: str, named: str, sink: Sink) -> None:
+    sink.report(TOO_LARGE, graph.subject(graph[id]), transition=named, limit=LIMIT)
 
 
 def _starts(machine: Machine, domains: Mapping[str, Domain], explorer: Explorer) -> Iterator[Path]:

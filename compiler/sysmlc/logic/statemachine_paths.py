@@ -64,8 +64,10 @@ class Explorer:
         """The feasible paths of a transition that leaves a state."""
         start = Path(config=self._known(first.source))
         found: list[Path] = []
-        for trail in self.trails(first):
+        for number, trail in enumerate(self.trails(first)):
             found += self._feasible(self._trail(start, first, trail))
+            if number >= LIMIT:
+                raise TooManyPaths
             _limit(found)
         return found
 

@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.logic.context import Feature, context_of
+from sysmlc.logic.context import Feature, context_of, note_range
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition
 from sysmlc.logic.expression import ExpressionError, parse_expression
@@ -27,8 +27,9 @@ class Scope:
 
     def __init__(self, graph: Graph, activity: Element, sink: Sink) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
-        outer = context_of(graph, next(above, None), sink)
-        inner = context_of(graph, activity, sink)
+        self._graph, self._sink = graph, sink
+        outer = context_of(graph, next(above, None))
+        inner = context_of(graph, activity)
         self._features: dict[str, Feature] = {**outer.features, **inner.features}
         self._literals = outer.literals
         self._extra: dict[str, Formula] = {}
@@ -83,6 +84,7 @@ class Scope:
         for feature in self._features.values():
             if feature.variable == name and feature.domain is not None:
                 domain: Domain = feature.domain
+                note_range(self._graph, feature, self._sink)
                 return Variable(name, Owner.ENVIRONMENT, domain, feature.element.id)
         return None
 

@@ -40,15 +40,15 @@ NOT_A_FORMULA = rule(
     why="What it demands would be missing in the contract.",
     help="Write LTL (G F X U or [] <> X U) over the variables of the contract: {variables}.",
     wrong=_MACHINE.replace("{body}", '"[](Statte=On)"'),
-    right=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
+    right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )
 NO_CONTRACT = rule(
     "SM502",
     "formula-without-contract",
     Severity.WARNING,
-    "'{constraint}' is a formula about '{subject}', which has no behaviour with a contract",
+    "'{constraint}' is a formula about '{component}', which has no behaviour with a contract",
     why="A formula in temporal logic speaks of the variables of a behaviour.",
-    help="Give '{subject}' a classifier behaviour, or move the formula to what has one.",
+    help="Give '{component}' a classifier behaviour, or move the formula to what has one.",
     wrong='Class c "Lamp"\n  Constraint k "Lit" language="LTL" body="[](<>on)"\n',
     right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )
@@ -59,6 +59,8 @@ OUTSIDE_GR1 = rule(
     "the formula of '{constraint}' is not in GR(1); the contract keeps it as general LTL",
     why="Synthesis decides initial, one-step and infinitely-often conditions; the rest can only "
     "be checked.",
+    wrong=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
+    right=_MACHINE.replace("{body}", '"[](state=On -> X(state=On))"'),
 )
 
 _LANGUAGES = ("ltl", "spin", "promela")
@@ -101,7 +103,7 @@ def _is_requirement(element: Element) -> bool:
 
 def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink) -> None:
     name = constraint.name or "<Constraint>"
-    sink.report(NO_CONTRACT, graph.subject(constraint), constraint=name, subject=component)
+    sink.report(NO_CONTRACT, graph.subject(constraint), constraint=name, component=component)
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
