@@ -13,7 +13,16 @@ BOUND = {
     Kind.CONNECTOR_END,
 }
 """Kinds that only some others may own."""
-USUAL = [Kind.APPLICATION, Kind.CLASS, Kind.PORT, Kind.PROPERTY, Kind.CONNECTOR, Kind.ITEM_FLOW]
+USUAL = [
+    Kind.APPLICATION,
+    Kind.CONTROL,
+    Kind.STRUCTURED,
+    Kind.CLASS,
+    Kind.PORT,
+    Kind.PROPERTY,
+    Kind.CONNECTOR,
+    Kind.ITEM_FLOW,
+]
 KINDS = [*sorted(set(Kind) - BOUND), *(5 * USUAL)]
 SINGLE = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 OFTEN = [
@@ -96,4 +105,23 @@ def structures(draw: st.DrawFn) -> Graph:
     pools = (EDGES, ids, TARGETS)
     for found in draw(st.lists(st.tuples(*map(st.sampled_from, pools)), max_size=6)):
         graph.refer(Reference(*found))
+    return graph
+
+
+@st.composite
+def hierarchies(draw: st.DrawFn) -> Graph:
+    """Classes that specialise earlier ones, with properties that redefine inherited ones."""
+    graph = Graph()
+    above: list[set[int]] = []
+    for number in range(draw(st.integers(1, 7))):
+        ups = draw(st.lists(st.integers(0, number - 1), unique=True, max_size=3)) if number else []
+        above.append(set(ups).union(*(above[up] for up in ups)))
+        graph.add(Element(f"c{number}", Kind.CLASS, f"C{number}"))
+        for up in ups:
+            graph.connect(Edge.SPECIALIZES, f"c{number}", f"c{up}")
+        for own in range(draw(st.integers(0, 2))):
+            graph.add(Element(f"c{number}.{own}", Kind.PROPERTY, "p", f"c{number}"))
+            old = [one.id for up in sorted(above[number]) for one in graph.owned(graph[f"c{up}"])]
+            if old and draw(st.booleans()):
+                graph.connect(Edge.REDEFINES, f"c{number}.{own}", draw(st.sampled_from(old)))
     return graph

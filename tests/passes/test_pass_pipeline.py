@@ -7,7 +7,7 @@ import pytest
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.passes.pipeline import NAMES, InvalidGraphError, Pipeline, load, ordered, run
+from sysmlc.passes.pipeline import NAMES, InvalidGraphError, Pipeline, load, ordered, pipeline, run
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,10 @@ def test_shipped_passes_are_listed_in_an_order_that_they_accept():
     structural = [load(name) for name in NAMES[:5]]
     assert [one.name for one in ordered(structural)] == list(NAMES[:5])
     assert [one.name for one in ordered(reversed(structural))] == list(NAMES[:5])
+
+
+def test_all_shipped_passes_run_in_the_order_of_their_names():
+    assert [one.name for one in pipeline().passes] == list(NAMES)
 
 
 def test_run_stops_behind_the_pass_asked_for_and_shows_each_graph():

@@ -3,10 +3,10 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from passing import STRUCTURAL, again, codes, refine
-from structures import structures
+from structures import hierarchies, structures
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
@@ -21,6 +21,27 @@ def test_each_pass_leaves_a_valid_graph_and_twice_equals_once(graph):
         assert verify(graph) == []
         once = print_text(graph)
         assert again(graph, name) == once
+
+
+@settings(max_examples=200, deadline=None)
+@given(hierarchies())
+def test_features_are_what_the_definition_says(graph):
+    expected = {one.id: set(defined_features(graph, one.id)) for one in graph.of_kind(Kind.CLASS)}
+    refine(graph, Sink(), "inherit")
+    for id, names in expected.items():
+        found = [one.id for one in graph.targets(graph[id], Edge.FEATURE)]
+        assert len(found) == len(set(found))
+        assert set(found) == names
+
+
+def defined_features(graph: Graph, id: str) -> list[str]:
+    """UML 2.5.1 clause 9.9.4 in so many words: own ones, and those of the generals, without what
+    one of them redefines. There are no circles."""
+    members = [one.id for one in graph.owned(graph[id])]
+    for general in graph.targets(graph[id], Edge.SPECIALIZES):
+        members += defined_features(graph, general.id)
+    hidden = {old.id for one in members for old in graph.targets(graph[one], Edge.REDEFINES)}
+    return [one for one in members if one not in hidden]
 
 
 @settings(max_examples=100, deadline=None)

@@ -19,17 +19,14 @@ from sysmlc.passes.resolve.libraries import (
 from sysmlc.passes.resolve.rules import BROKEN_ID, BROKEN_REFERENCE, MISSING_LIBRARY
 from sysmlc.passes.resolve.targets import Targets
 
-_ATTRIBUTES: dict[str, Kind] = {
-    "decision_input": Kind.ACTIVITY,
-    "decision_input_flow": Kind.OBJECT_FLOW,
-    "interrupts": Kind.STRUCTURED,
-    "item_property": Kind.PROPERTY,
-    "test": Kind.ACTION,
-    "body_part": Kind.ACTION,
-    "setup_part": Kind.ACTION,
-    "clauses": Kind.ACTION,
+_ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
+    Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},
+    Kind.CONTROL_FLOW: {"interrupts": Kind.STRUCTURED},
+    Kind.OBJECT_FLOW: {"interrupts": Kind.STRUCTURED},
+    Kind.ITEM_FLOW: {"item_property": Kind.PROPERTY},
+    Kind.STRUCTURED: dict.fromkeys(("test", "body_part", "setup_part", "clauses"), Kind.ACTION),
 }
-"""Attributes that hold ids (docs/ir.md), with the kind of what they name."""
+"""Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
 
 _LISTED = 10
 
@@ -89,10 +86,11 @@ def _references(graph: Graph) -> Iterator[_Use]:
 
 
 def _attributes(graph: Graph) -> Iterator[_Use]:
-    for element in graph:
-        for name in element.attrs:
-            for id in _ids(element.attrs[name]) if name in _ATTRIBUTES else ():
-                yield _Use(element, id, _ATTRIBUTES[name], attribute=name)
+    for holder_kind, named in _ATTRIBUTES.items():
+        for element in graph.of_kind(holder_kind):
+            for name, kind in named.items():
+                for id in _ids(element.attrs.get(name)):
+                    yield _Use(element, id, kind, attribute=name)
 
 
 def _ids(value: AttrValue) -> Iterator[str]:
