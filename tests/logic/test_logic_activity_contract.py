@@ -192,7 +192,7 @@ def test_without_an_assumption_the_activity_may_hang(name):
     moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
     (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
     for left_out in found.assumptions:
-        if left_out.text.startswith("Whenever action") and name in ("loop", "interrupted"):
+        if left_out.text.startswith("Whenever a") and name in ("loop", "interrupted"):
             continue
         others = [c for c in found.assumptions if c is not left_out]
         assert holds_somewhere(f"{joined(others)} & {joined(moves)} & !({temporal(finish)})")

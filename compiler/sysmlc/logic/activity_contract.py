@@ -318,11 +318,9 @@ def _assumptions(game: _Game) -> Iterator[Conjunct]:
 def _answers(game: _Game, node: TokenNode) -> Iterator[Conjunct]:
     """A decision without an open branch keeps its token: one has to open sooner or later."""
     branches = game.graph.outgoing(node)
-    if node.firing is not Firing.CHOICE or not branches or any(map(_is_else, branches)):
+    if node.firing is not Firing.CHOICE or not branches or node.exhaustive:
         return
     opened = f.either(*map(game.opened, branches))
-    if opened == f.TRUE:
-        return
     answer = f.either(f.negate(game.waits(node)), opened)
     text = f"Whenever a token waits at {node.label}, one of its guards holds sooner or later."
     yield Conjunct(answer, Class.LIVENESS, node.origin, text)

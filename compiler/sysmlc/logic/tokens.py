@@ -90,7 +90,7 @@ class TokenNode:
 
     ``region`` is the id of the structured node that owns it. ``run`` is the variable that says
     that it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
-    of a decision whose guards never hold together.
+    of a decision whose guards never hold together, ``exhaustive`` when one of them always holds.
     """
 
     id: str
@@ -102,6 +102,7 @@ class TokenNode:
     run: str = ""
     done: Formula | None = None
     exclusive: bool = False
+    exhaustive: bool = False
 
     @property
     def firing(self) -> Firing:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Graph, Kind
 from sysmlc.logic import domains, evaluate, token_net
 from sysmlc.logic import formula as f
 from sysmlc.logic.formula import Formula, variables
@@ -72,13 +72,16 @@ class _Checker:
         if node.firing is not Firing.CHOICE or not branches:
             return node
         open_sets = self._open_sets(stated)
-        self._report_missing(node, branches, stated, open_sets)
+        has_else = len(stated) < len(branches)
+        is_exhaustive = has_else or (open_sets is not None and all(open_sets))
+        if not is_exhaustive:
+            self._report_missing(node, stated)
         overlap = _first_overlap(open_sets, stated) or _two_elses(branches)
         if overlap:
             names = " and ".join(self._branch(edge) for edge in overlap)
             subject = self.graph.subject(self.graph[node.origin])
             self.sink.report(rules.OVERLAP, subject, node=node.label, branches=names)
-        return replace(node, exclusive=not overlap)
+        return replace(node, exclusive=not overlap, exhaustive=is_exhaustive)
 
     def _open_sets(self, stated: list[TokenEdge]) -> list[list[TokenEdge]] | None:
         """For each valuation of the inputs the branches that are open; None: too many."""
@@ -92,19 +95,12 @@ class _Checker:
             for valuation in domains.valuations(read)
         ]
 
-    def _report_missing(
-        self,
-        node: TokenNode,
-        branches: list[TokenEdge],
-        stated: list[TokenEdge],
-        open_sets: list[list[TokenEdge]] | None,
-    ) -> None:
-        is_complete = open_sets is not None and all(open_sets)
-        is_wait = self.graph[node.origin].kind in ("ControlFlow", "ObjectFlow")
-        if is_complete or is_wait or len(stated) < len(branches):
+    def _report_missing(self, node: TokenNode, stated: list[TokenEdge]) -> None:
+        origin = self.graph[node.origin]
+        if origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
             return
         guards = ", ".join(edge.guard.text for edge in stated if edge.guard)
-        subject = self.graph.subject(self.graph[node.origin])
+        subject = self.graph.subject(origin)
         self.sink.report(rules.MISSING_BRANCH, subject, node=node.label, guards=guards)
 
     def _branch(self, edge: TokenEdge) -> str:

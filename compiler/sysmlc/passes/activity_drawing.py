@@ -23,12 +23,12 @@ _NODES = (
 )
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _WORDS = {
-    Kind.ACTION: "action",
     Kind.STRUCTURED: "structured node",
     Kind.ACTIVITY_PARAMETER: "parameter",
     Kind.OBJECT_NODE: "object node",
     Kind.DATA_STORE: "data store",
 }
+_ACTION_WORDS = {"accept": "accept action", "accept-call": "accept action", "send": "send action"}
 _CONTROL_WORDS = {"initial": "initial node", "final": "activity final node"}
 
 
@@ -192,6 +192,8 @@ def _name_nodes(drawing: Drawing) -> None:
 def _word(node: Element) -> str:
     if node.kind is Kind.CONTROL:
         return _CONTROL_WORDS.get(node.subkind, node.subkind or "control node")
+    if node.kind is Kind.ACTION:
+        return _ACTION_WORDS.get(node.subkind, "action")
     return _WORDS[node.kind]
 
 
