@@ -177,6 +177,16 @@ Class gate "Gate"
     assert graph["port"].attrs["direction"] == "out"
 
 
+@pytest.mark.parametrize(("own", "expected"), [("", "out"), ("in", "in")])
+def test_conjugated_interface_block_turns_its_original_round_unless_it_says_more(own, expected):
+    text = TRACK.format(direction="in", more="").replace("-> typed-by track", "-> typed-by back")
+    text += 'Class back "~Track"\n'
+    text += f'  FlowProperty back.p "p" direction="{own}"\n' if own else ""
+    text += '  Application a stereotype="ConjugatedInterfaceBlock" tag.original="track"\n'
+    graph, _ = refined(text + "    -> subject back\n", "ports")
+    assert graph["port"].attrs["direction"] == expected
+
+
 def test_undirected_ports_are_counted_for_each_block():
     text = "Class t\n" + "".join(
         f'Class {block} "{block}"\n'

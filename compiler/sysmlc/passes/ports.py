@@ -14,6 +14,7 @@ from sysmlc.ir.query import (
     flow_properties,
     flow_source,
     flow_target,
+    has_stereotype,
     is_boundary,
     opposite,
     parameters,
@@ -105,6 +106,8 @@ Class gate "Gate"
 )
 
 _LISTED = 8
+_CONJUGATED = ("~InterfaceBlock", "_InterfaceBlock", "ConjugatedInterfaceBlock")
+"""SysML 1.6 clause 9.3.2.14, as OMG, MagicDraw and Papyrus call the stereotype."""
 _BY_PARAMETER = {"in": "in", "out": "out", "return": "out", "inout": "inout"}
 
 
@@ -179,8 +182,20 @@ def _by_type(graph: Graph, port: Element) -> str | None:
     type_ = type_of(graph, port)
     if type_ is None:
         return None
+    return _of_type(graph, type_) or opposite(_of_original(graph, type_))
+
+
+def _of_type(graph: Graph, type_: Element) -> str | None:
     flowing = [str(one.attrs.get("direction", "inout")) for one in flow_properties(graph, type_)]
     return _together(flowing) or _together(_parameter_directions(graph, type_))
+
+
+def _of_original(graph: Graph, type_: Element) -> str | None:
+    """Direction of the block that a ~InterfaceBlock conjugates, for tools that leave it empty."""
+    if not has_stereotype(graph, type_, *_CONJUGATED):
+        return None
+    original = graph.get(str(tag(graph, type_, "original")))
+    return None if original is None else _of_type(graph, original)
 
 
 def _parameter_directions(graph: Graph, type_: Element) -> Iterable[str]:
