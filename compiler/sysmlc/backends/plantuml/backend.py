@@ -79,7 +79,7 @@ def _free(name: str, taken: dict[str, Diagram]) -> str:
     number, key = 1, name
     while key in taken:
         number += 1
-        key = f"{name} ({number})"
+        key = f"{name}-{number}"
     return key
 
 

@@ -162,7 +162,7 @@ class _Drawing:
         self.has_ports = True
         shown = ".".join(labels.name(self.graph[id]) for id in key)
         alias = self.aliases.make(_key((*path, *key)), port.name, "port")
-        text = shown if port.name else labels.typed(self.graph, port)
+        text = shown if port.name.strip() else labels.typed(self.graph, port)
         form = _FORMS.get(str(port.attrs.get("direction", "")), "port")
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
         return PortView(alias, stack(rows), form, key)

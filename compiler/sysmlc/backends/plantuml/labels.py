@@ -70,7 +70,7 @@ def name(element: Element) -> str:
     """The element's name, or its kind when it has none; a stub is called by its id at times."""
     if element.attrs.get("external") and _TOOL_ID.fullmatch(element.name):
         return "external"
-    return element.name or str(element.attrs.get("subkind") or element.kind)
+    return element.name.strip() or str(element.attrs.get("subkind") or element.kind)
 
 
 def type_name(graph: Graph, element: Element) -> str:
@@ -87,7 +87,7 @@ def multiplicity(element: Element) -> str:
 
 def typed(graph: Graph, element: Element, shown: str | None = None) -> str:
     """``name : Type [multiplicity]``."""
-    own = element.name if shown is None else shown
+    own = (element.name if shown is None else shown).strip()
     type_ = type_name(graph, element)
     text = f"{own} : {type_}".strip() if type_ else own or name(element)
     bounds = multiplicity(element)

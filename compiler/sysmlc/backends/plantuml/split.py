@@ -48,7 +48,7 @@ def _connected(items: Sequence[str], neighbours: Mapping[str, Collection[str]]) 
 
 def numbered(name: str, index: int, count: int) -> str:
     """Name of one part: the name itself when there is only one."""
-    return name if count == 1 else f"{name}::{index + 1} of {count}"
+    return name if count == 1 else f"{name}::{index + 1}-of-{count}"
 
 
 def footer(index: int, count: int, whole: str) -> str:

@@ -9,6 +9,8 @@ WIDTH = 36
 """Characters in one line of a name before it is broken."""
 
 _BREAK = "\\n"
+_BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
+"""PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
 _ALWAYS = frozenset('"\\<>~%$&{')
 _PAIRS = frozenset(["**", "//", "__", "--", "[[", "/'", "'/", "''"])
 _HARMLESS_FIRST = frozenset("«([:/≤≥→←…✕⚡")
@@ -66,6 +68,8 @@ def _is_invalid(char: str) -> bool:
 
 def _character(line: str, index: int) -> str:
     char = line[index]
+    if line[index : index + 2] == "\\t":
+        return _BACKSLASH_BEFORE_T
     if char in _ALWAYS or _is_markup(line, index) or unicodedata.category(char) in _UNSEEN:
         return _escaped(char)
     return char

@@ -1,0 +1,109 @@
+"""The back end as a whole: file names, splitting, templates of users, what it reports."""
+
+import pytest
+from drawing import emitted, texts
+
+from sysmlc.backends.plantuml import lanes, pieces, split
+from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
+from sysmlc.backends.plantuml.missing import NOT_DRAWN
+from sysmlc.backends.plantuml.views import GraphView, Line, Node
+from sysmlc.ir.text import parse_text
+
+BLOCK = 'Package p "Plant"\n  Class b "Gate" role="block"\n'
+
+
+def test_a_package_of_95_blocks_is_split_and_loses_none():
+    blocks = "".join(f'  Class b{n} "Block{n}" role="block"\n' for n in range(95))
+    made = texts(parse_text(f'Package p "Plant"\n{blocks}'))
+    names = [f"Plant.{n}-of-3.bdd.puml" for n in (1, 2, 3)]
+    assert sorted(made) == names
+    assert all(text.count('\nclass "') <= split.LIMIT for text in made.values())
+    assert all(f"part {n} of 3 of Plant" in made[name] for n, name in enumerate(names, 1))
+    assert all(any(f"**Block{n}**" in text for text in made.values()) for n in range(95))
+
+
+def test_connected_blocks_stay_together():
+    near = {"a": ["c"], "b": ["d"], "c": ["a"], "d": ["b"]}
+    assert split.chunks(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
+
+
+def test_an_item_with_too_many_neighbours_is_a_part_of_its_own():
+    assert split.chunks(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
+
+
+def test_a_cut_graph_shows_every_node_and_every_line():
+    nodes = tuple(Node(f"n{n}", f"n{n}", "action", shows=(f"n{n}",)) for n in range(100))
+    lines = tuple(Line(f"n{n}", "-->", f"n{n + 1}") for n in range(99))
+    parts = pieces.pieces(GraphView(nodes, lines), limit=40)
+    assert len(parts) == 3
+    assert {line for part in parts for line in part.lines} == set(lines)
+    assert {id for part in parts for node in part.nodes for id in node.shows} == {
+        node.alias for node in nodes
+    }
+
+
+def test_a_large_node_is_closed_and_opened_in_its_own_part():
+    inner = tuple(Node(f"i{n}", f"i{n}", "state") for n in range(30))
+    nodes = (Node("big", "big", "state", children=inner), Node("out", "out", "state"))
+    view = GraphView(nodes, (Line("big", "-->", "out"), Line("i3", "-->", "i4")))
+    first, second = pieces.pieces(view, limit=30)
+    assert [node.alias for node in first.nodes] == ["big", "out"]
+    assert first.nodes[0].children == ()
+    assert {node.alias for node in second.nodes} == {node.alias for node in inner}
+
+
+def test_equal_names_get_numbers_in_file_names():
+    twice = '  Activity a{0} "run"\n    Action x{0} "go" subkind="opaque"\n'
+    made = texts(parse_text('Package p "P"\n' + twice.format(1) + twice.format(2)))
+    assert sorted(made) == ["P.run-2.act.puml", "P.run.act.puml"]
+
+
+def test_a_template_of_the_user_replaces_ours_by_name(tmp_path):
+    (tmp_path / "plantuml").mkdir()
+    (tmp_path / "plantuml" / "_style.j2").write_text("skinparam monochrome true\n")
+    files, sink = emitted(parse_text(BLOCK), tmp_path)
+    assert "skinparam monochrome true\nmainframe" in files[0].text
+    assert list(sink) == []
+
+
+@pytest.mark.parametrize("text", ["{{ view.boxs }}", "{% for %}", "{% include 'none.j2' %}"])
+def test_a_wrong_template_is_reported(tmp_path, text):
+    (tmp_path / "bdd.puml.j2").write_text(text)
+    files, sink = emitted(parse_text(BLOCK), tmp_path)
+    assert files == []
+    assert [found.rule for found in sink] == [BAD_TEMPLATE]
+
+
+def test_what_no_diagram_shows_is_reported():
+    _, sink = emitted(parse_text(NOT_DRAWN.wrong))
+    assert [found.message for found in sink] == [
+        "1 UseCase of 'Plant' in no diagram: Start the line"
+    ]
+
+
+def test_what_a_diagram_shows_is_not_reported():
+    files, sink = emitted(parse_text(NOT_DRAWN.right))
+    assert len(files) == 1
+    assert list(sink) == []
+
+
+def test_a_connector_without_second_end_is_reported():
+    text = BLOCK + '    Connector c "loose"\n'
+    _, sink = emitted(parse_text(text))
+    assert [found.message for found in sink] == [
+        "1 Connector of 'Plant::Gate' in no diagram: loose"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("flows", "boxed"),
+    [
+        ([("a", "b"), ("b", "c")], True),
+        ([("a", "b"), ("b", "a2")], False),
+        ([("a", "x"), ("x", "a2")], False),
+        ([("x", "y"), ("y", "x"), ("a", "x")], True),
+    ],
+)
+def test_partitions_are_boxes_when_no_flow_returns_to_one(flows, boxed):
+    lane_of = {"a": "left", "a2": "left", "b": "right", "c": "right"}
+    assert lanes.can_be_boxes(lane_of, flows) is boxed

@@ -1,0 +1,126 @@
+"""Any name can be drawn: real PlantUML shows it as it is written in the model."""
+
+import html
+import json
+import re
+
+import pytest
+from drawing import texts
+from hypothesis import Phase, example, given, settings
+from hypothesis import strategies as st
+
+from sysmlc.backends.plantuml.text import plain
+from sysmlc.ir.text import parse_text
+
+NASTY = (
+    '**bold** //it// __u__ ""mono"" ~~w~~ --s-- ~x',
+    "[[http://x y]] <b>x</b> <U+0041> &#65; &lt; \\n \\t",
+    "$x %date() %newline() !define A B !include x",
+    "@enduml",
+    "' comment /' block '/",
+    "a -> b : c } { | # ^ `",
+    "= head", "* item", "# item", "|t|", "----", "..x..", "==", "+a", "-a", "~a", "{field} a",
+    "note left", "end", "as", "<<fork>>", "}", "]", ":", "a\nb\tc", "", " ", "\u202eabc",
+    "日本語のとても長い名前です" * 4, "émigré «x»", "😀 face", "A" * 130, "a_b" * 40, "x y " * 40,
+)  # fmt: skip
+
+MODEL = """
+Package p {name}
+  Class b {name} role="block"
+    Property b.v {name} role="value" default={name}
+    Port b.p {name}
+    Property b.q {name} role="part" aggregation="composite"
+      -> typed-by c
+    Operation b.o {name}
+      Parameter b.o.p {name} direction="in"
+    Constraint b.c {name} body={name}
+    Connector k {name}
+      -> end k1 k2
+      ConnectorEnd k1
+        -> role b.p
+      ConnectorEnd k2
+        -> role c.p
+        -> path b.q
+    Activity a {name}
+      Partition lane {name}
+      Action a1 {name} subkind="opaque" body={name}
+        -> in-partition lane
+        Pin pin {name} direction="out"
+      Control d {name} subkind="decision"
+      ControlFlow f {name} guard={name}
+        -> flow-source a1
+        -> flow-target d
+      Comment n body={name}
+    StateMachine m {name}
+      Region r {name}
+        State s {name}
+          -> entry e
+          Activity e {name} subkind="opaque" body={name}
+        State s2 {name}
+        Transition t guard={name}
+          -> flow-source s
+          -> flow-target s2
+          -> trigger tt
+          Trigger tt subkind="change" condition={name}
+  Class c {name} role="block"
+    Port c.p {name} direction="out"
+  Enumeration en {name}
+    EnumerationLiteral l {name}
+  Association as {name}
+    -> end as1 as2
+    Property as1 {name}
+      -> typed-by b
+    Property as2 {name}
+      -> typed-by c
+  Class q {name} role="requirement" req_id={name} text={name}
+  Dependency sd {name} role="satisfy"
+    -> client b
+    -> supplier q
+"""
+
+anything = st.text(max_size=60)
+markup = st.text(st.sampled_from("*/_-~\"[]{}<>|&#%$!'@^:;.,=+\\ abn0"), max_size=24)
+
+
+@pytest.mark.plantuml
+@settings(max_examples=2, deadline=None, derandomize=True, phases=[Phase.explicit, Phase.generate])
+@given(st.lists(anything | markup, min_size=1, max_size=8))
+@example(list(NASTY))
+def test_any_name_renders_and_reads_as_written(plantuml, names):
+    files = {}
+    for number, name in enumerate(names):
+        quoted = json.dumps(name)
+        made = texts(parse_text(MODEL.replace("{name}", quoted)))
+        files |= {f"{number} {path[-8:]}": text for path, text in made.items()}
+    pictures = plantuml.render(files)
+    for number, name in enumerate(names):
+        mine = [path for path in pictures if path.startswith(f"{number} ")]
+        assert len(mine) == 5
+        for path in mine:
+            assert _letters(name) in _letters(_shown(pictures[path])), (path, name)
+
+
+def _shown(svg: bytes) -> str:
+    return html.unescape("".join(re.findall(r"<text[^>]*>([^<]*)</text>", svg.decode("utf-8"))))
+
+
+def _letters(text: str) -> str:
+    """The text without spaces and without what XML cannot hold."""
+    return "".join(char for char in text if char.isprintable() and char not in " \ufffd")
+
+
+@pytest.mark.parametrize(
+    ("written", "made"),
+    [
+        ("Bay gate [north]", "Bay gate [north]"),
+        ('say "stop"', "say <U+0022>stop<U+0022>"),
+        ("a//b", "a/<U+002F>b"),
+        ("-x", "<U+002D>x"),
+        ("a-b_c 0..1", "a-b_c 0..1"),
+        ("100 %d", "100 <U+0025>d"),
+        ("two\n lines", "two lines"),
+        ("bell\a", "bell\ufffd"),
+    ],
+)
+def test_only_what_plantuml_would_read_as_markup_is_escaped(written, made):
+    assert plain(written) == made
