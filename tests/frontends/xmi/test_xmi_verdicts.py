@@ -33,8 +33,8 @@ def test_the_five_verdicts():
     assert file["by_type"]["uml:DurationObservation"] == {"unsupported": 2}
     assert file["by_type"]["uml:Property"] == {"mapped": 1}
     assert reading.findings == [
-        "unsupported-element: 2 elements of type 'uml:DurationObservation' (2 elements with their "
-        "content) not read",
+        "unsupported-element: 2 elements of type 'uml:DurationObservation' not read (2 with all "
+        "that they contain)",
         "approximated-element: 1 element of type 'uml:OpaqueExpression' read without its "
         "alternative bodies",
     ]

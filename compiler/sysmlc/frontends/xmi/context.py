@@ -67,36 +67,35 @@ class Context:
 
     def make(self, row: int, kind: Kind, subkind: str, type_name: str, feature: str) -> bool:
         """Add the row's element with its attributes; False where it cannot stand."""
-        parent = self.document.parents[row]
-        owner = self.gids[parent] if parent >= 0 else ""
-        above = self.graph.get(owner) if owner else None
-        allowed = metaclasses.OWNERS.get(kind)
-        if allowed is not None and (above is None or above.kind not in allowed):
-            return False
         document = self.document
+        owner = self.gids[row]
+        if kind in metaclasses.OWNERS and not self._may_own(owner, kind):
+            return False
         values = document.attributes[row]
+        id = self._id(row, owner, feature)
         element = Element(
-            self._id(row, owner, feature),
-            kind,
-            values.get("name", ""),
-            owner or None,
-            document.ordinals[row],
-            document.name,
+            id, kind, values.get("name", ""), owner or None, document.ordinals[row], document.name
         )
         if subkind:
             element.attrs["subkind"] = subkind
         self.graph.add(element)
-        self.gids[row] = element.id
+        self.gids[row] = id
         self.lowered.own[row] = 1
         self.verdicts[row] = Verdict.MAPPED
-        details.of(kind)(self, element, row, type_name, feature)
+        detail = details.OF.get(kind)
+        if detail is not None:
+            detail(self, element, row, type_name, feature)
         for name, value in values.items():
             if name not in _PASSED_OVER and "}" not in name:
                 self.attribute(element, row, name, value)
         return True
 
+    def _may_own(self, owner: str, kind: Kind) -> bool:
+        above = self.graph.get(owner)
+        return above is not None and above.kind in metaclasses.OWNERS[kind]
+
     def _id(self, row: int, owner: str, feature: str) -> str:
-        id = self.document.id(row)
+        id = self.document.attributes[row].get(self.document.id_key)
         if not id:
             return derived_id(owner or self.document.name, self._position(owner, feature))
         known = self.unit.graph_id(self.document.name, id)
@@ -124,15 +123,15 @@ class Context:
 
     def attribute(self, element: Element, row: int, name: str, value: str) -> None:
         """Put one UML attribute (or reference list) of the row into the graph."""
-        flag = v.FLAGS.get(name)
-        if flag is not None:
-            if value == "true":
-                element.attrs[flag] = True
-            return
-        edge = v.SPECIAL.get((element.kind, name)) or v.REFERENCES.get(name)
+        edge = v.REFERENCES.get(name)
         if edge is not None:
+            if name in v.AMBIGUOUS:
+                edge = v.SPECIAL.get((element.kind, name), edge)
             for target in self.document.tokens(value):
                 self.link(edge, element.id, target, row, name)
+        elif name in v.FLAGS:
+            if value == "true":
+                element.attrs[v.FLAGS[name]] = True
         elif name in v.TEXTS:
             key, default = v.TEXTS[name]
             if value != default:

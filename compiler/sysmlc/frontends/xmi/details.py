@@ -14,17 +14,6 @@ Detail = Callable[["Context", Element, int, str, str], None]
 """Completes an element; takes its row, the name of its metaclass and its feature."""
 
 
-def of(kind: Kind) -> Detail:
-    """What completes elements of this kind."""
-    return _DETAILS.get(kind, _nothing)
-
-
-def _nothing(
-    _context: "Context", _element: Element, _row: int, _type_name: str, _feature: str
-) -> None:
-    return None
-
-
 def _parameter(
     _context: "Context", element: Element, _row: int, _type_name: str, _feature: str
 ) -> None:
@@ -98,7 +87,7 @@ def _activity_parameter(
     context.parameters.append((element, row))
 
 
-_DETAILS: dict[Kind, Detail] = {
+OF: dict[Kind, Detail] = {
     Kind.PARAMETER: _parameter,
     Kind.PIN: _pin,
     Kind.PSEUDOSTATE: _pseudostate,
@@ -112,3 +101,4 @@ _DETAILS: dict[Kind, Detail] = {
     Kind.CONNECTOR_END: _connector_end,
     Kind.ACTIVITY_PARAMETER: _activity_parameter,
 }
+"""What completes the elements of a kind."""

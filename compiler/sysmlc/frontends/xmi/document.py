@@ -111,22 +111,21 @@ def read(source: Source) -> Document:
 
 
 def _fill(document: Document, made: Parser, source: Source) -> None:
+    """Set the handlers that fill the columns; they are called for every element."""
     tags, attributes, parents = document.tags, document.attributes, document.parents
     ends, ordinals, texts, drawn = document.ends, document.ordinals, document.texts, document.drawn
     stack = [-1]
     limit = DEFAULT_LIMITS.depth
-    count = 0
+    skipped = 0
     hidden: list[str] = []
 
     def start(tag: str, values: dict[str, str]) -> None:
-        nonlocal count
         row = len(tags)
         tags.append(tag)
         attributes.append(values)
         parents.append(stack[-1])
         ends.append(0)
-        ordinals.append(count)
-        count += 1
+        ordinals.append(row + skipped)
         stack.append(row)
         if len(stack) > limit:
             too_deep(source, made)
@@ -148,8 +147,8 @@ def _fill(document: Document, made: Parser, source: Source) -> None:
         made.CharacterDataHandler = None
 
     def start_hidden(tag: str, _values: dict[str, str]) -> None:
-        nonlocal count
-        count += 1
+        nonlocal skipped
+        skipped += 1
         hidden.append(tag)
         if len(hidden) > limit:
             too_deep(source, made)

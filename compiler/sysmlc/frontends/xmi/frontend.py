@@ -1,6 +1,8 @@
 """The front end for UML and SysML v1 in XMI."""
 
-from collections.abc import Sequence
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.xmi import account, applications, behaviour, detect, links, lowering, rules
@@ -30,18 +32,35 @@ class XmiFrontend:
         limits. The graph does not depend on the order of the files.
         """
         ordered = sorted(sources, key=lambda source: source.name)
-        documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-        unit = Unit(documents, graph)
-        contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
-        for context in contexts:
-            applications.note_namespaces(context)
-            context.finish()
-        for context in contexts:
-            applications.lower(context)
-            behaviour.finish(context)
-        unit.flush()
-        for context in contexts:
-            account.account(context, sink, coverage)
+        with _no_collection():
+            documents = [d for source in ordered if (d := _read(source, sink)) is not None]
+            _lower(documents, graph, sink, coverage)
+
+
+def _lower(documents: list[Document], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+    unit = Unit(documents, graph)
+    contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
+    for context in contexts:
+        applications.note_namespaces(context)
+        context.finish()
+    for context in contexts:
+        applications.lower(context)
+        behaviour.finish(context)
+    unit.flush()
+    for context in contexts:
+        account.account(context, sink, coverage)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Hold the cyclic garbage collector: nothing that is made here dies before the end."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def _read(source: Source, sink: Sink) -> Document | None:

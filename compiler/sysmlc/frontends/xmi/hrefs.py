@@ -2,6 +2,7 @@
 
 import posixpath
 import re
+from functools import lru_cache
 from urllib.parse import unquote
 
 from sysmlc.frontends.xmi.document import Document
@@ -17,6 +18,7 @@ _UNMISTAKABLE = 20
 """Ids that tools make are at least this long; such an id means the same element everywhere."""
 
 
+@lru_cache(4096)
 def normalised(href: str, file: str) -> str:
     """The href with its path relative to the unit's root; what has a scheme stays as it is."""
     path, _, fragment = href.partition("#")
@@ -58,6 +60,7 @@ def likely(feature: str) -> Kind:
     return HINTS.get(feature, Kind.CLASS)
 
 
+@lru_cache(4096)
 def name_in(href: str) -> str:
     """A name that can be read in the fragment of an href, or the empty string.
 

@@ -61,11 +61,9 @@ def _row(context: Context, row: int) -> int:
     feature = document.features[row]
     values = document.attributes[row]
     if feature in vocabulary.NOTATION_FEATURES:
-        end = structure.notation(context, row)
-        if document.parents[row] == 0:
-            _content_of_extension(context, row)
-        return end
-    context.inherit(row)
+        return _notation(context, row)
+    context.gids[row] = context.gids[document.parents[row]]
+    context.verdicts[row] = Verdict.MAPPED
     if "href" in values or document.idref_key in values:
         return structure.reference(context, row, feature)
     special = _FEATURES.get(feature)
@@ -79,6 +77,13 @@ def _row(context: Context, row: int) -> int:
         context.text(row, feature)
         return document.ends[row]
     return _element(context, row, metaclasses.DEFAULT_TYPES.get(feature, ""), feature)
+
+
+def _notation(context: Context, row: int) -> int:
+    end = structure.notation(context, row)
+    if context.document.parents[row] == 0:
+        _content_of_extension(context, row)
+    return end
 
 
 def _content_of_extension(context: Context, row: int) -> None:

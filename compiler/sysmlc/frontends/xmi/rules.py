@@ -28,7 +28,7 @@ UNSUPPORTED = rule(
     "SM111",
     "unsupported-element",
     Severity.WARNING,
-    "{count} of type '{type}' ({number} elements with their content) not read",
+    "{count} of type '{type}' not read ({number} with all that they contain)",
     why="The element has a meaning that the graph cannot hold yet, so outputs do not reflect it. "
     "coverage.json counts such elements; --strict-input makes them errors.",
     wrong="<packagedElement xmi:type='uml:DurationObservation'/>",

@@ -31,9 +31,9 @@ def is_value(context: Context, row: int, feature: str) -> bool:
 def is_text(context: Context, row: int, feature: str) -> bool:
     """Whether the row is only text: an attribute written as a child."""
     document = context.document
-    is_leaf = document.ends[row] == row + 1
-    has_attributes = any("}" not in name for name in document.attributes[row])
-    return is_leaf and not has_attributes and feature not in metaclasses.DEFAULT_TYPES
+    if feature in metaclasses.DEFAULT_TYPES or document.ends[row] != row + 1:
+        return False
+    return all("}" in name for name in document.attributes[row])
 
 
 # -- notation ----------------------------------------------------------------------------------
@@ -178,11 +178,20 @@ def text_of(value: ValueText) -> str:
 
 
 def _lower(context: Context, row: int) -> None:
-    context.bound(row, 0, value_in(context, row).value)
+    context.bound(row, 0, _bound(context, row))
 
 
 def _upper(context: Context, row: int) -> None:
-    context.bound(row, 1, value_in(context, row).value)
+    context.bound(row, 1, _bound(context, row))
+
+
+def _bound(context: Context, row: int) -> AttrValue:
+    written = context.document.attributes[row].get("value", "")
+    known = _BOUNDS.get(written)
+    if known is not None and context.document.types[row] in _WHOLE:
+        context.subtree(row, Verdict.MAPPED)
+        return known
+    return value_in(context, row).value
 
 
 def _default(context: Context, row: int) -> None:
@@ -251,6 +260,10 @@ def _argument(context: Context, row: int) -> None:
     if owner is not None:
         _append(owner, "arguments", text)
 
+
+_BOUNDS: dict[str, AttrValue] = {"": 0, "0": 0, "1": 1, "*": "*"}
+_WHOLE = frozenset({"LiteralInteger", "LiteralUnlimitedNatural"})
+"""Nearly all bounds are these: a fifth of the elements of a large activity model."""
 
 _ALWAYS = frozenset(
     {"lowerValue", "upperValue", "defaultValue", "joinSpec", "upperBound", "specification"}

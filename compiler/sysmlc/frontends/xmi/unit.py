@@ -1,6 +1,5 @@
 """All files of one compile unit: ids that are the same for every order of files, references."""
 
-from collections import Counter
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
@@ -50,13 +49,12 @@ class Unit:
         self.links: list[Link] = []
         self.profiles = Profiles()
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
-        count = Counter(id for document in documents for id in document.ids)
-        taken = Counter({id for id in count if id in graph})
-        self._clashes = {id for id, number in count.items() if number + taken[id] > 1}
         self._holders: dict[str, list[Lowered]] = {}
-        for file in self.files:
+        for file in self.files if len(self.files) > 1 else ():
             for id in file.document.ids:
                 self._holders.setdefault(id, []).append(file)
+        self._clashes = {id for id, holders in self._holders.items() if len(holders) > 1}
+        self._clashes.update(e.id for e in graph if any(e.id in d.ids for d in documents))
 
     def graph_id(self, file: str, id: str) -> str:
         """Id in the graph of an element with the id ``id`` in the file."""
@@ -67,7 +65,7 @@ class Unit:
         if not is_href:
             return self._local(lowered, target)
         path, _, fragment = hrefs.normalised(target, lowered.document.name).partition("#")
-        holders = self._holders.get(fragment, [])
+        holders = self._having(fragment)
         exact = [h for h in holders if _archive(h.document.name) == path or h.document.name == path]
         if not exact and hrefs.is_unmistakable(fragment):
             exact = holders
@@ -76,11 +74,16 @@ class Unit:
             exact = [h for h in holders if hrefs.base_name(h.document.name) == name]
         return (exact[0], exact[0].document.ids[fragment]) if len(exact) == 1 else None
 
+    def _having(self, id: str) -> list[Lowered]:
+        if len(self.files) == 1:
+            return self.files if id in self.files[0].document.ids else []
+        return self._holders.get(id, [])
+
     def _local(self, lowered: Lowered, target: str) -> tuple[Lowered, int] | None:
         row = lowered.document.ids.get(target)
         if row is not None:
             return lowered, row
-        holders = self._holders.get(target, [])
+        holders = self._having(target)
         return (holders[0], holders[0].document.ids[target]) if len(holders) == 1 else None
 
     def target_id(self, lowered: Lowered, target: str, is_href: bool) -> str | None:
@@ -99,7 +102,14 @@ class Unit:
     def flush(self) -> None:
         """Give all references to the graph, in the order in which they were found."""
         for link in self.links:
-            target = self.target_id(link.lowered, link.target, link.is_href)
+            edge, source, lowered, written, row, _, is_href, is_reversed = link
+            at = lowered.document.ids.get(written, -1)
+            if at >= 0 and lowered.own[at] and not is_href and not is_reversed:
+                ordinal = lowered.document.ordinals[row]
+                found = Reference(edge, source, lowered.gids[at], Kind.CLASS, "", ordinal)
+                self.graph.refer(found)
+                continue
+            target = self.target_id(lowered, written, is_href)
             if target is not None and not self._is_loose(link, target):
                 self.graph.refer(self._reference(link, target))
         self.links.clear()

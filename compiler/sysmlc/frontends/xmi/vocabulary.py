@@ -1,6 +1,7 @@
 """Tables: what the features of UML become in the graph (docs/ir.md)."""
 
 import re
+from functools import cache
 
 from sysmlc.ir import Edge, Kind
 
@@ -66,6 +67,7 @@ REFERENCES: dict[str, Edge] = {
     "inInterruptibleRegion": Edge.IN_PARTITION,
     "parameter": Edge.REFERENCES,
     "useCase": Edge.REFERENCES,
+    "subject": Edge.SUBJECT,
 }
 """Edge of a feature that refers to elements; ``SPECIAL`` overrides it for some kinds."""
 
@@ -81,8 +83,11 @@ FOLDED_REFERENCES: dict[str, Edge] = {
 SPECIAL: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTION, "classifier"): Edge.CALLS,
     (Kind.RECEPTION, "signal"): Edge.TYPED_BY,
-    (Kind.USE_CASE, "subject"): Edge.SUBJECT,
 }
+"""Edges of features that mean something else for these kinds."""
+
+AMBIGUOUS = frozenset(name for _, name in SPECIAL)
+"""Features for which the kind has to be looked at."""
 
 REVERSED: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTIVITY, "specification"): Edge.METHOD,
@@ -238,6 +243,7 @@ HINTS: dict[str, Kind] = {
 """What an external target is when only the feature that refers to it is known."""
 
 
+@cache
 def snake(name: str) -> str:
     """Name of an attribute of the graph for a feature that no table names."""
     plain = name[2:] if name.startswith("is") and name[2:3].isupper() else name
