@@ -30,6 +30,8 @@ class Context:
     graph: Graph
     levels: Mapping[str, str] = field(default_factory=dict)
     _segments: dict[str, str] = field(default_factory=dict)
+    _levels: dict[str, str] = field(default_factory=dict)
+    _of_level: dict[str, list[Element]] = field(default_factory=dict)
 
     # -- levels --------------------------------------------------------------------------------
 
@@ -48,6 +50,19 @@ class Context:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
         if element is None:
             return ""
+        if element.id not in self._levels:
+            self._levels[element.id] = ""
+            self._levels[element.id] = self._level(element)
+        return self._levels[element.id]
+
+    def of_level(self, level: str) -> list[Element]:
+        """All elements of a level, in the order of the graph."""
+        if not self._of_level:
+            for element in self.graph:
+                self._of_level.setdefault(self.level(element), []).append(element)
+        return self._of_level.get(level, [])
+
+    def _level(self, element: Element) -> str:
         family = [element, *query.generals(self.graph, element)]
         own = next((found for one in family if (found := self.own_level(one))), "")
         if own:

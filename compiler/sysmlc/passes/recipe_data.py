@@ -37,8 +37,10 @@ class Data:
 
     def bind(self, node: Element) -> tuple[tuple[str, Expr], ...]:
         """Input pins of an action with the expressions that fill them, by name."""
-        found = ((pin.name, self._filled(pin)) for pin in self._pins(node, "in"))
-        return tuple(sorted((name, value) for name, value in found if value is not None))
+        found = {pin.name: self._filled(pin) for pin in self._pins(node, "in")}
+        return tuple(
+            (name, value) for name, value in sorted(found.items(), key=_first) if value is not None
+        )
 
     def assign(self, node: Element) -> tuple[tuple[str, str], ...]:
         """Output pins of an action with the variables that they set, by name."""
@@ -114,6 +116,10 @@ class Data:
     def _parameter_name(self, node: Element) -> str:
         found = self.context.graph.target(node, Edge.REFERENCES)
         return node.name if found is None else found.name
+
+
+def _first(pair: tuple[str, Expr | None]) -> str:
+    return pair[0]
 
 
 def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:

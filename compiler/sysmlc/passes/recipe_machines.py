@@ -63,9 +63,9 @@ def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
 
 
 def _machines_like(context: Context, owner: Element) -> Iterator[Element]:
-    for one in context.graph.of_kind(Kind.CLASS, Kind.COMPONENT):
-        is_machine = context.level(one) == "machine" and not one.attrs.get("abstract")
-        if is_machine and query.conforms(context.graph, one, owner):
+    for one in context.of_level("machine"):
+        is_class = one.kind in (Kind.CLASS, Kind.COMPONENT) and not one.attrs.get("abstract")
+        if is_class and query.conforms(context.graph, one, owner):
             yield one
 
 

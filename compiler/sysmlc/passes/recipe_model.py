@@ -1,6 +1,6 @@
 """One recipe with the closure of what it refers to."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
 
@@ -110,12 +110,8 @@ def _known(
     context: Context, names: set[str], make: Callable[[Context, Element], _T], level: str
 ) -> tuple[_T, ...]:
     """Values for the names that are elements of the level, sorted by name."""
-    found = {context.name(one): one for one in _of_level(context, level)}
+    found = {context.name(one): one for one in context.of_level(level)}
     return tuple(make(context, found[name]) for name in sorted(names) if name in found)
-
-
-def _of_level(context: Context, level: str) -> Iterator[Element]:
-    return (one for one in context.graph if context.level(one) == level)
 
 
 def _sorted(values: Iterable[_T]) -> tuple[_T, ...]:
