@@ -3,7 +3,7 @@
 import pytest
 from drawing import emitted, texts
 
-from sysmlc.backends.plantuml import lanes, pieces, split
+from sysmlc.backends.plantuml import pieces, split
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
 from sysmlc.backends.plantuml.missing import NOT_DRAWN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node
@@ -95,15 +95,18 @@ def test_a_connector_without_second_end_is_reported():
     ]
 
 
-@pytest.mark.parametrize(
-    ("flows", "boxed"),
-    [
-        ([("a", "b"), ("b", "c")], True),
-        ([("a", "b"), ("b", "a2")], False),
-        ([("a", "x"), ("x", "a2")], False),
-        ([("x", "y"), ("y", "x"), ("a", "x")], True),
-    ],
-)
-def test_partitions_are_boxes_when_no_flow_returns_to_one(flows, boxed):
-    lane_of = {"a": "left", "a2": "left", "b": "right", "c": "right"}
-    assert lanes.can_be_boxes(lane_of, flows) is boxed
+def test_partitions_are_written_on_their_nodes():
+    text = """
+Activity a "run"
+  Partition left "Left"
+  Partition right "Right"
+  Partition spare "Spare"
+  Action x "go" subkind="opaque"
+    -> in-partition left
+  Action y "stop" subkind="opaque"
+    -> in-partition right
+"""
+    made = texts(parse_text(text))["run.act.puml"]
+    assert '(Left)</size>\\n<size:10>«opaque»</size>\\ngo" as go_1 <<action>> <<lane1>>' in made
+    assert 'stop" as stop_1 <<action>> <<lane2>>' in made
+    assert 'state "Spare" as spare_1 <<lane>>' in made

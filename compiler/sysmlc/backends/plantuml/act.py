@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from sysmlc.backends.plantuml import actions, labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.bdd import ACTIVITY_NODES
-from sysmlc.backends.plantuml.lanes import can_be_boxes, tint
+from sysmlc.backends.plantuml.lanes import tint
 from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
 from sysmlc.backends.plantuml.text import label, plain, small, stack
@@ -44,10 +44,8 @@ class _Drawing:
 
     def view(self) -> GraphView:
         nodes = [node for node in self._nodes(self.activity) if self._region(node) is None]
-        self.tints = {} if self._boxed(nodes) else self._tints()
-        loose = nodes if self.tints else [node for node in nodes if self._lane(node) is None]
-        held = [] if self.tints else nodes
-        drawn = (*self._lanes(self.activity, held), *map(self._node, loose))
+        self.tints = self._tints()
+        drawn = (*self._empty_lanes(), *map(self._node, nodes))
         said = notes(self.graph, self.activity, self.aliases, not self.signature())
         return GraphView(drawn, tuple(self._lines()), said)
 
@@ -55,18 +53,6 @@ class _Drawing:
         """Parameters for the frame; nothing when they are too long for it."""
         text = labels.signature(self.graph, self.activity)
         return text if len(text) <= _FRAME else ""
-
-    def _boxed(self, nodes: list[Element]) -> bool:
-        """Whether partitions are drawn as boxes around their nodes."""
-        lanes = {node.id: lane.id for node in nodes if (lane := self._lane(node)) is not None}
-        tops = {inner.id: node.id for node in nodes for inner in self.graph.subtree(node)}
-        ends = [
-            (tops.get(source.id, ""), tops.get(target.id, ""))
-            for flow in self._owned(self.activity)
-            for source in self.graph.targets(flow, Edge.FLOW_SOURCE)
-            for target in self.graph.targets(flow, Edge.FLOW_TARGET)
-        ]
-        return can_be_boxes(lanes, ends)
 
     def _tints(self) -> dict[str, str]:
         found = (item for item in self.graph.subtree(self.activity) if item.kind is Kind.PARTITION)
@@ -83,31 +69,18 @@ class _Drawing:
     def _nodes(self, owner: Element) -> list[Element]:
         return [item for item in self._owned(owner) if item.kind in ACTIVITY_NODES]
 
-    def _lane(self, node: Element) -> Element | None:
-        """The first partition of a node."""
-        return next(iter(self._partitions(node)), None)
-
     def _partitions(self, node: Element) -> list[Element]:
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return [group for group in groups if group.kind is Kind.PARTITION]
 
-    def _lanes(self, owner: Element, nodes: list[Element]) -> Iterator[Node]:
-        """Boxes for partitions; one that is written on the nodes gets none."""
-        for partition in self._owned(owner):
-            if partition.kind is not Kind.PARTITION:
-                continue
-            children = tuple(self._lanes(partition, nodes))
-            held = [node for node in nodes if self._lane(node) is partition]
-            children += tuple(map(self._node, held))
-            if children or not self._is_written(partition):
-                yield self._group(partition, self._lane_title(partition), "lane", children)
-
-    def _is_written(self, partition: Element) -> bool:
-        nodes = self.graph.sources(partition, Edge.IN_PARTITION)
-        return bool(self.tints) and any(node.kind is not Kind.CONTROL for node in nodes)
-
-    def _lane_title(self, partition: Element) -> str:
-        return label(self._lane_name(partition))
+    def _empty_lanes(self) -> Iterator[Node]:
+        """Boxes for partitions that no node has written on it."""
+        for partition in map(self.graph.__getitem__, self.tints):
+            nodes = self.graph.sources(partition, Edge.IN_PARTITION)
+            if all(node.kind is Kind.CONTROL for node in nodes):
+                alias = self.aliases.make(partition.id, partition.name, "partition")
+                title = label(self._lane_name(partition))
+                yield Node(alias, title, "lane", shows=(partition.id,))
 
     def _lane_name(self, partition: Element) -> str:
         represented = self.graph.targets(partition, Edge.REPRESENTS)
@@ -140,9 +113,9 @@ class _Drawing:
         )
 
     def _written_lanes(self, node: Element) -> dict[str, str]:
-        """Partitions to be named on the node: all, or the further ones of a grid."""
-        found = self._partitions(node)[0 if self.tints else 1 :]
-        return {} if node.kind is Kind.CONTROL else {p.id: self._lane_name(p) for p in found}
+        """Names of the node's partitions; diamonds and bars have no room for them."""
+        found = () if node.kind is Kind.CONTROL else self._partitions(node)
+        return {partition.id: self._lane_name(partition) for partition in found}
 
     def _content(self, node: Element) -> tuple[Node, ...]:
         if node.kind is not Kind.STRUCTURED:
