@@ -143,7 +143,8 @@ def _without_machine(task: Task, group: tuple[str, ...], tables: Tables) -> Iter
     nodes = {node.id: node for node in tables.service_graphs[task.implementation].nodes}
     services = [tables.service(nodes[id]) for id in group]
     offers = [{p.machine for p in one.providers} for one in services if one is not None]
-    if offers and not set.intersection(*offers):
+    equipment = {machine for mode in task.equipment for machine in mode.machines}
+    if offers and not set.intersection(*offers, *([equipment] if equipment else [])):
         names = ", ".join(f"'{id.rpartition('::')[2]}'" for id in group)
         problem = f"no machine offers all of {names}, which must run on one machine"
         yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})

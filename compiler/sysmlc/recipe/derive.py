@@ -1,6 +1,6 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from sysmlc.recipe.expression import Lit
@@ -106,16 +106,18 @@ def same_machine(graph: FlowGraph, tables: Tables) -> tuple[SameMachine, ...]:
     A service belongs to the group when it takes, holds, uses or gives back the resource and can
     run after it was taken and before it was given back. Groups that share a service are one.
     """
-    groups: list[tuple[list[str], list[str]]] = []
-    for resource in _resources(graph, tables):
-        nodes, because = _group(graph, tables, resource)
-        if len(nodes) > 1:
-            groups.append((nodes, because))
+    groups = [
+        group
+        for resource in _resources(graph, tables)
+        for group in _groups(graph, tables, resource)
+        if len(group[0]) > 1
+    ]
     order = {node.id: number for number, node in enumerate(graph.nodes)}
-    return tuple(
+    found = [
         SameMachine(tuple(sorted(nodes, key=order.__getitem__)), tuple(because))
         for nodes, because in _merged(groups)
-    )
+    ]
+    return tuple(sorted(found, key=lambda group: order[group.nodes[0]]))
 
 
 def _resources(graph: FlowGraph, tables: Tables) -> list[str]:
@@ -143,23 +145,30 @@ def modes(node: Node, resource: str, tables: Tables) -> set[str]:
     return {"use"} if {"acquire", "release"} <= found else found
 
 
-def _group(graph: FlowGraph, tables: Tables, resource: str) -> tuple[list[str], list[str]]:
+def _groups(
+    graph: FlowGraph, tables: Tables, resource: str
+) -> Iterator[tuple[list[str], list[str]]]:
+    """One group for each node that takes the resource: nodes, and what they do with it."""
     does = {node.id: modes(node, resource, tables) for node in graph.nodes}
     pairs = [(edge.source, edge.target) for edge in graph.edges]
-    takes = [id for id, found in does.items() if "acquire" in found]
     gives = {id for id, found in does.items() if "release" in found}
-    taken = reachable(takes, [(a, b) for a, b in pairs if a not in gives])
-    given = reachable(gives, [(b, a) for a, b in pairs if b not in takes])
-    members = {id for id in taken & given if does[id]}
-    nodes = [node for node in graph.nodes if node.id in members]
-    because = (
+    for start in (id for id, found in does.items() if "acquire" in found):
+        taken = reachable([start], [(a, b) for a, b in pairs if a not in gives])
+        given = reachable(gives & taken, [(b, a) for a, b in pairs if b != start])
+        members = {id for id in taken & given if does[id]}
+        nodes = [node for node in graph.nodes if node.id in members]
+        yield [node.id for node in nodes], _because(nodes, resource, tables)
+
+
+def _because(nodes: list[Node], resource: str, tables: Tables) -> list[str]:
+    found = (
         f"{one.id} {use.mode}s {resource}"
         for node in nodes
         for one in functions_of(node, tables)
         for use in one.resources
         if use.id == resource
     )
-    return [node.id for node in nodes], list(dict.fromkeys(because))
+    return list(dict.fromkeys(found))
 
 
 def _merged(groups: list[tuple[list[str], list[str]]]) -> list[tuple[list[str], list[str]]]:
