@@ -211,6 +211,26 @@ def test_a_dependency_on_several_machines_needs_them_all():
     assert [mode.machines for mode in mill.equipment] == [("Plant::Press", "Plant::Robot")]
 
 
+def test_an_association_with_capability_relates_a_task_to_a_machine():
+    text = samples.recipe().replace(
+        '  Dependency drill.on role="allocate"\n    -> client drill\n    -> supplier robot\n',
+        "  Association a\n    "
+        + profiled("a", "Capability", 'tag.duration="70"')
+        + "\n    -> end a.t a.m\n    Property a.t\n      -> typed-by drill\n"
+        "    Property a.m\n      -> typed-by robot\n",
+    )
+    drill = next(task for task in model(text).recipe.tasks if task.name == "drill")
+    assert drill.equipment == (Mode(("Plant::Robot",), 70),)
+
+
+def test_a_machine_may_be_an_object_node_only():
+    text = THESIS.replace('Class Press "Press" level="machine"', 'Class Press "Press"').replace(
+        'ObjectNode m2 "press"', 'ObjectNode m2 "press" level="machine"'
+    )
+    found = model(text.format(capability="", second=""))
+    assert ("P::Build::press",) in [m.machines for m in found.recipe.tasks[0].equipment]
+
+
 def test_a_partition_that_represents_a_machine_equips_the_task():
     text = samples.recipe().replace(
         "      -> calls drill\n",

@@ -20,26 +20,40 @@ class Relation:
 def machine_of(context: Context, element: Element | None) -> Element | None:
     """The machine that an element is or stands for; None when it is none.
 
-    An object node or pin stands for its type; a property, instance or class is itself one.
+    An object node or pin stands for its type when that is a machine; a property, instance or
+    class is itself one.
     """
     if element is None or context.level(element) != "machine":
         return None
     if element.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.PIN, Kind.ACTIVITY_PARAMETER):
         type_ = query.type_of(context.graph, element)
-        return element if type_ is None else type_
+        return type_ if type_ is not None and context.level(type_) == "machine" else element
     return element
 
 
 # -- relations ---------------------------------------------------------------------------------
 
 
-def by_dependency(context: Context, client: Element) -> Iterator[Relation]:
-    """Dependencies and allocations from a task or service to machines."""
+def by_relation(context: Context, client: Element) -> Iterator[Relation]:
+    """Dependencies, allocations and associations from a task or service to machines."""
     for one in context.graph.sources(client, Edge.CLIENT):
         is_allocation = one.role == "allocate" or context.applied(one, "Capability") is not None
         suppliers = context.graph.targets(one, Edge.SUPPLIER)
         if is_allocation and suppliers:
             yield Relation(one, tuple(suppliers))
+    yield from _by_association(context, client)
+
+
+def _by_association(context: Context, client: Element) -> Iterator[Relation]:
+    """Associations with «Capability» between the element and a machine."""
+    for end in context.graph.sources(client, Edge.TYPED_BY):
+        association = context.graph.source(end, Edge.END)
+        if association is None or context.applied(association, "Capability") is None:
+            continue
+        other = query.opposite_end(context.graph, association, end)
+        machine = None if other is None else query.type_of(context.graph, other)
+        if machine is not None:
+            yield Relation(association, (machine,))
 
 
 def by_partition(context: Context, node: Element) -> Iterator[Relation]:

@@ -8,9 +8,9 @@ from sysmlc.passes.recipe_data import data_parameters
 from sysmlc.passes.recipe_expressions import is_data, optional, parameter
 from sysmlc.passes.recipe_machines import (
     Relation,
-    by_dependency,
     by_owner,
     by_partition,
+    by_relation,
     opcua,
     providers,
 )
@@ -64,9 +64,9 @@ def _holder(
 
 def _relations(context: Context, definition: Element, callers: list[Element]) -> Iterator[Relation]:
     """Where a service can run: what is stated, else the owner's machines, else partitions."""
-    found = list(by_dependency(context, definition)) or list(by_owner(context, definition))
+    found = list(by_relation(context, definition)) or list(by_owner(context, definition))
     if not found:
-        found = [one for node in callers for one in by_dependency(context, node)]
+        found = [one for node in callers for one in by_relation(context, node)]
     if not found:
         found = [one for node in callers for one in by_partition(context, node)]
     yield from found

@@ -8,8 +8,8 @@ from sysmlc.passes.recipe_context import Context, number
 from sysmlc.passes.recipe_expressions import optional
 from sysmlc.passes.recipe_machines import (
     Relation,
-    by_dependency,
     by_partition,
+    by_relation,
     machine_of,
     modes,
 )
@@ -79,10 +79,10 @@ def task(context: Context, recipe: Element, step: Step) -> Task:
 
 def _relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
     """Relations to machines on the node itself; when it has none, those of its definition."""
-    own = [*_by_flow(context, recipe, step.node), *by_dependency(context, step.node)]
+    own = [*_by_flow(context, recipe, step.node), *by_relation(context, step.node)]
     own += by_partition(context, step.node)
     if not own and step.definition is not None:
-        own = [*by_dependency(context, step.definition)]
+        own = [*by_relation(context, step.definition)]
     yield from own
 
 
