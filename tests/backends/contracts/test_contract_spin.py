@@ -185,9 +185,7 @@ def test_one_formula_for_the_whole_contract():
         ),
     )
     text = spin(contract)
-    assert text == (
-        "([]<>(p)) -> (({mode==idle}) && [](p -> X {mode==busy}))\n"
-    )
+    assert text == ("([]<>(p)) -> (({mode==idle}) && [](p -> X {mode==busy}))\n")
     assert read(text) == spot.formula('GFp -> ("mode==idle" & G(p -> X"mode==busy"))')
 
 

@@ -1,0 +1,121 @@
+"""The back end ``contracts``: its files for the gate and for token graphs, and their schema."""
+
+import json
+
+import jsonschema
+import pytest
+
+from sysmlc import resources
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.contracts import BACKEND
+from sysmlc.diagnostics import Sink
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Contract,
+    EnumerationDomain,
+    IntegerDomain,
+)
+from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.samples import arrow, machine
+from sysmlc.output import Output
+from sysmlc.passes import pipeline
+
+GATE = machine(
+    arrow("a", "b", "start", "level < 9", "level := level + 1; send opened"),
+    arrow("b", "a", after="after 3 s"),
+)
+
+
+def emitted(text, templates=None):
+    graph, sink, output = parse_text(text), Sink(), Output()
+    pipeline.run(graph, sink, verify_each=True)
+    BACKEND.emit(graph, output, sink, EmitOptions(templates=templates))
+    return graph, {one.path: one for one in output.artefacts()}, sink
+
+
+def schema():
+    return json.loads(resources.text("metamodels", "sysmlc-contract.schema.json"))
+
+
+def domain_of(type_):
+    if type_ == "bool":
+        return BooleanDomain()
+    return IntegerDomain(*type_) if isinstance(type_[0], int) else EnumerationDomain(tuple(type_))
+
+
+def test_three_files_a_contract():
+    _, files, _ = emitted(GATE)
+    assert list(files) == [
+        "contracts/Plant.Gate.contract.json",
+        "contracts/Plant.Gate.md",
+        "contracts/Plant.Gate.spin.ltl",
+    ]
+
+
+def test_the_json_keeps_to_its_schema_and_can_be_read_back():
+    graph, files, _ = emitted(GATE)
+    document = json.loads(files["contracts/Plant.Gate.contract.json"].text)
+    jsonschema.Draft202012Validator.check_schema(schema())
+    jsonschema.validate(document, schema())
+    (contract,) = graph.derived(Contract)
+    domains = {name: domain_of(v["type"]) for name, v in document["variables"].items()}
+    assert domains == {v.name: v.domain for v in contract.variables}
+    read = [
+        (parse_formula(one["formula"], domains), one["class"], one["origin"])
+        for conjuncts in document["guarantees"].values()
+        for one in conjuncts
+    ]
+    assert read == [(c.formula, c.class_, c.origin) for c in contract.guarantees]
+
+
+@pytest.mark.parametrize(
+    ("change", "path"),
+    [
+        (lambda d: d.pop("origin"), []),
+        (lambda d: d["variables"]["level"].update(type="int"), ["variables", "level", "type"]),
+        (lambda d: d["guarantees"]["init"][0].pop("formula"), ["guarantees", "init", 0]),
+    ],
+)
+def test_the_schema_refuses_what_is_no_contract(change, path):
+    document = json.loads(emitted(GATE)[1]["contracts/Plant.Gate.contract.json"].text)
+    change(document)
+    with pytest.raises(jsonschema.ValidationError) as caught:
+        jsonschema.validate(document, schema())
+    assert list(caught.value.absolute_path) == path
+
+
+def test_the_explanation_names_elements_in_words():
+    text = emitted(GATE)[1]["contracts/Plant.Gate.md"].text
+    assert text.startswith("# Contract of Plant::Gate\n")
+    assert "| `level` | 0..9 | property 'level' of 'Gate' |" in text
+    assert (
+        "- In 'A', when 'start' occurs and [level < 9]: the next state is 'B', "
+        "'level' becomes level + 1, 'send_opened' is done. *(transition 'A' to 'B')*\n"
+        "  `state=A & event=start & level<9 -> state'=B & level'=level + 1 & send_opened'`\n"
+    ) in text
+
+
+def test_a_fault_in_an_effect_withholds_the_contract():
+    _, files, sink = emitted(machine(arrow("a", "b", "start", effect="level := 77")))
+    (error,) = [found for found in sink if found.is_error]
+    assert error.rule.code == "SM414"
+    assert all(error.subject.id in one.trace for one in files.values())
+
+
+def test_a_formula_with_too_many_values_is_reported_and_the_rest_is_written():
+    text = machine(arrow("a", "b", "start", "level * fixed * size > 3"))
+    text = text.replace("readonly=true", "").replace("<= 9", "<= 99")
+    _, files, sink = emitted(text)
+    assert list(files) == ["contracts/Plant.Gate.contract.json", "contracts/Plant.Gate.md"]
+    assert "SM520" in [found.rule.code for found in sink]
+    assert len(emitted(text.replace(" * size", ""))[1]) == 3
+
+
+def test_own_templates_replace_ours_and_their_faults_are_reported(tmp_path):
+    (tmp_path / "contract.md.j2").write_text("Mine: {{ page.component }}\n", encoding="utf-8")
+    assert emitted(GATE, tmp_path)[1]["contracts/Plant.Gate.md"].text == "Mine: Plant::Gate\n"
+    (tmp_path / "contract.md.j2").write_text("{{ page.nothing }}", encoding="utf-8")
+    _, files, sink = emitted(GATE, tmp_path)
+    assert "contracts/Plant.Gate.md" not in files
+    assert [found.rule.code for found in sink] == ["SM521"]
