@@ -67,6 +67,25 @@ def test_the_scenario_shown_passes(tmp_path):
     assert (tmp_path / "gripper.seq.puml").read_text().startswith("@startuml\n")
 
 
+@pytest.mark.parametrize("page", ["README.md", "docs/understand-a-message.md"])
+def test_the_finding_shown_is_what_the_command_says(page, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    done = CliRunner().invoke(sysmlc, ["check", "examples/lego-recipe/lego-recipe.uml"])
+    assert block(page, "finding") in done.stderr
+
+
+def test_severities_and_acceptances_shown_are_valid(tmp_path, monkeypatch):
+    text = (ROOT / "docs/understand-a-message.md").read_text(encoding="utf-8")
+    parts = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "sysmlc.toml").write_text("\n".join(parts))
+    monkeypatch.chdir(tmp_path)
+    model = str(ROOT / "examples/lego-recipe/lego-recipe.uml")
+    args = ["check", model, "--config", "sysmlc.toml", "--format", "concise"]
+    done = CliRunner().invoke(sysmlc, args)
+    assert "error[SM410 assumed-range]: property 'target'" in done.stderr
+    assert "'placed'" not in done.stderr
+
+
 def test_a_failing_scenario_is_exit_code_1(tmp_path):
     scenario = tmp_path / "gripper.yaml"
     text = block("docs/simulate-a-scenario.md", "scenario")
