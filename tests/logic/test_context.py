@@ -1,0 +1,147 @@
+"""What names mean: domains of properties, ranges, defaults; and what elaboration refuses."""
+
+import pytest
+
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.context import context_of
+from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition
+from sysmlc.logic.expression import parse_expression
+from sysmlc.logic.formula import Const, Var
+from sysmlc.logic.printing import print_formula
+
+CLASS = """\
+Class g "General"
+  Property g.x "inherited"
+    -> typed-by bool
+Class c "C"
+  -> specializes g
+  Property c.b "open"
+    -> typed-by bool
+  Property c.n "bay"
+    -> typed-by count{default}
+  Property c.m "mode" default="Mode::hand"
+    -> typed-by mode
+  Property c.s "serial"
+    -> typed-by string
+  Property c.u "untyped" default=false
+{more}DataType bool "Boolean" external=true href="lib#Boolean"
+DataType int "Integer"
+DataType count "Count"
+  -> specializes int
+DataType string "String"
+Enumeration mode "Mode"
+  EnumerationLiteral mode.a "full auto"
+  EnumerationLiteral mode.h "hand"
+"""
+
+
+def context(more="", default=""):
+    text = CLASS.replace("{more}", more).replace('"bay"', f'"bay"{default}')
+    graph = parse_text(text.replace("{default}", ""))
+    return context_of(graph, graph["c"])
+
+
+def domain(name, **kwargs):
+    return context(**kwargs).features[name].domain
+
+
+def test_domains_come_from_types():
+    features = context().features
+    assert {name: feature.domain for name, feature in features.items()} == {
+        "bay": IntegerDomain(0, 15),
+        "inherited": BooleanDomain(),
+        "mode": EnumerationDomain(("full_auto", "hand")),
+        "open": BooleanDomain(),
+        "serial": None,
+        "untyped": BooleanDomain(),
+    }
+    assert features["bay"].is_assumed
+    assert features["mode"].default == "hand"
+
+
+@pytest.mark.parametrize(
+    ("body", "low", "high"),
+    [
+        ("0 <= bay <= 7", 0, 7),
+        ("bay >= 1 and bay < 5", 1, 4),
+        ("5 > bay && bay > -2", -1, 4),
+        ("bay == 3", 3, 3),
+        ("self.bay >= 0 and bay <= 2", 0, 2),
+    ],
+)
+def test_ranges_come_from_constraints(body, low, high):
+    assert domain("bay", more=f'  Constraint k body="{body}"\n') == IntegerDomain(low, high)
+
+
+def test_a_half_open_range_is_no_range():
+    assert domain("bay", more='  Constraint k body="bay >= 3"\n') == IntegerDomain(0, 15)
+
+
+def test_ranges_come_from_tagged_values_of_the_type_too():
+    graph = parse_text(
+        CLASS.replace("{more}", "").replace("{default}", "")
+        + 'Application t stereotype="Range" tag.min="2" tag.max="4"\n  -> subject count\n'
+    )
+    assert context_of(graph, graph["c"]).features["bay"].domain == IntegerDomain(2, 4)
+
+
+def test_an_assumed_range_holds_the_default_value():
+    assert domain("bay", default=" default=40") == IntegerDomain(0, 40)
+
+
+# -- elaboration -------------------------------------------------------------------------------
+
+SYMBOLS = {
+    "open": Symbol(Var("open"), BooleanDomain()),
+    "bay": Symbol(Var("bay"), IntegerDomain(0, 7)),
+    "mode": Symbol(Var("mode"), EnumerationDomain(("full", "hand"))),
+    "limit": Symbol(Const(3), IntegerDomain(0, 7)),
+    "serial": Symbol(Var("serial"), None),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "formula"),
+    [
+        ("open", "open"),
+        ("not open or bay > limit", "!open | bay>3"),
+        ("mode == hand", "mode=hand"),
+        ("hand == mode", "mode=hand"),
+        ("mode != Mode::full", "mode!=full"),
+        ("open == true", "open <-> true"),
+        ("(if open ? bay else bay + 1) > 2", "open & bay>2 | !open & bay + 1>2"),
+        ("open xor bay == 1", "!(open <-> bay=1)"),
+        ("self.open implies this.bay <= 6", "open -> bay<=6"),
+    ],
+)
+def test_expressions_become_formulas(text, formula):
+    found = print_formula(condition(parse_expression(text), SYMBOLS.get))
+    assert found in (formula, formula.replace("mode=hand", "hand=mode"))
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "name"),
+    [
+        ("opne", Fault.UNKNOWN, "opne"),
+        ("bay", Fault.TYPE, "bay"),
+        ("open and bay", Fault.TYPE, "bay"),
+        ("bay == hand", Fault.UNKNOWN, "hand"),
+        ("mode == bay", Fault.TYPE, "bay"),
+        ("mode == open", Fault.TYPE, "open"),
+        ("bay == 9", Fault.OUTSIDE, "9"),
+        ("bay > 20", Fault.OUTSIDE, "20"),
+        ('mode == "fast"', Fault.OUTSIDE, "fast"),
+        ("serial == serial", Fault.UNSUPPORTED, "serial"),
+        ("free(bay)", Fault.UNSUPPORTED, "free(bay)"),
+        ("bay > 1.5", Fault.UNSUPPORTED, "1.5"),
+    ],
+)
+def test_what_has_no_meaning_is_refused_with_the_reason(text, fault, name):
+    with pytest.raises(ElaborationError) as caught:
+        condition(parse_expression(text), SYMBOLS.get)
+    assert (caught.value.fault, caught.value.name) == (fault, name)
+
+
+def test_a_bound_next_to_the_range_is_no_fault():
+    assert print_formula(condition(parse_expression("bay < 8"), SYMBOLS.get)) == "bay<8"

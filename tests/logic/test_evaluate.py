@@ -1,0 +1,75 @@
+"""Formulas on traces: values, finite traces, lassos; the lasso against Spot."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Class, Conjunct
+from sysmlc.logic.evaluate import lasso_truth, value_of, violation
+from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.printing import print_formula
+
+P, Q = Var("p"), Var("q")
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "quotient", "rest"),
+    [(7, 2, 3, 1), (-7, 2, -3, -1), (7, -2, -3, 1), (5, 0, 0, 5)],
+)
+def test_integers_divide_towards_zero(left, right, quotient, rest):
+    assert value_of(Apply(Op.DIV, (Const(left), Const(right))), {}) == quotient
+    assert value_of(Apply(Op.MOD, (Const(left), Const(right))), {}) == rest
+
+
+def test_the_step_of_a_violation():
+    rises = Conjunct(f.implies(P, Var("q", True)), Class.SAFETY, "x")
+    trace = [{"p": False, "q": False}, {"p": True, "q": False}, {"p": True, "q": False}]
+    assert violation(rises, trace) == 1
+    assert violation(rises, trace[:2]) is None
+    assert violation(Conjunct(P, Class.INIT, "x"), trace) == 0
+    assert violation(Conjunct(f.negate(P), Class.SAFETY, "x"), trace) == 1
+
+
+def test_liveness_is_violated_only_by_a_lasso():
+    again = Conjunct(P, Class.LIVENESS, "x")
+    trace = [{"p": True}, {"p": False}, {"p": False}]
+    assert violation(again, trace) is None
+    assert violation(again, trace, loop=1) == 1
+    assert violation(again, trace, loop=0) is None
+
+
+_formulas = st.recursive(
+    st.sampled_from([P, Q]),
+    lambda inner: st.one_of(
+        st.builds(f.negate, inner),
+        st.builds(f.both, inner, inner),
+        st.builds(f.implies, inner, inner),
+        st.builds(
+            lambda op, a: Apply(op, (a,)),
+            st.sampled_from([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY]),
+            inner,
+        ),
+        st.builds(
+            lambda op, a, b: Apply(op, (a, b)),
+            st.sampled_from([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL]),
+            inner,
+            inner,
+        ),
+    ),
+    max_leaves=5,
+)
+_traces = st.lists(
+    st.fixed_dictionaries({"p": st.booleans(), "q": st.booleans()}), min_size=1, max_size=4
+)
+
+
+@given(_formulas, _traces, st.data())
+@settings(max_examples=120, deadline=None)
+def test_lassos_mean_what_spot_says(formula, trace, data):
+    spot = pytest.importorskip("spot")
+    loop = data.draw(st.integers(0, len(trace) - 1))
+    letters = ["&".join(n if step[n] else f"!{n}" for n in "pq") for step in trace]
+    word = spot.parse_word(";".join([*letters[:loop], f"cycle{{{';'.join(letters[loop:])}}}"]))
+    accepts = spot.formula(print_formula(formula)).translate().intersects(word.as_automaton())
+    assert lasso_truth(formula, trace, loop)[0] == accepts
