@@ -1,0 +1,1 @@
+"""Three-level recipe models: values, what follows from them, and what can be wrong with them."""

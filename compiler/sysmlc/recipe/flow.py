@@ -1,10 +1,10 @@
 """Paths, cycles and times of a flow graph."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
+from sysmlc.recipe.model import FlowGraph, Node, Range
 
 if TYPE_CHECKING:
     from networkx import DiGraph
@@ -109,11 +109,12 @@ def duration(graph: FlowGraph, cost: Cost) -> Range | None:
     """
     nodes = {node.id: node for node in graph.nodes}
     costs = {id: cost(node) for id, node in nodes.items() if node.kind in STEPS}
-    if any(value is None for value in costs.values()):
-        return None
     known = {id: value for id, value in costs.items() if value is not None}
+    if len(known) < len(costs):
+        return None
+    pairs = list(dict.fromkeys((e.source, e.target) for e in graph.edges))
     starts = [node.id for node in graph.nodes if node.kind == "initial"]
-    done = _spans(nodes, graph.edges, starts[:1], known)
+    done = _Clock(nodes, known).run(list(nodes), pairs, starts[:1])
     ends = [span for id, span in done.items() if nodes[id].kind == "final"]
     ends = ends or [span for id, span in done.items() if nodes[id].kind == "flowFinal"]
     if not ends:
@@ -121,109 +122,83 @@ def duration(graph: FlowGraph, cost: Cost) -> Range | None:
     return _range(min(end.earliest for end in ends), _latest(end.latest for end in ends))
 
 
-def _spans(
-    nodes: Mapping[str, Node],
-    edges: Iterable[FlowEdge],
-    starts: list[str],
-    costs: Mapping[str, Range],
-) -> dict[str, _Span]:
-    """When each node is done after the starts began at 0; cycles count as one step."""
+_Pairs = list[tuple[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Clock:
+    """Tells when nodes are done; ``costs`` has the time of every step."""
+
+    nodes: Mapping[str, Node]
+    costs: Mapping[str, Range]
+
+    def run(self, ids: Iterable[str], pairs: _Pairs, starts: list[str]) -> dict[str, _Span]:
+        """When each node is done after the starts began at 0; cycles count as one step."""
+        done: dict[str, _Span] = {}
+        for part, is_cycle in _parts(ids, pairs):
+            inside = set(part)
+            before = [(a, b) for a, b in pairs if b in inside and a not in inside and a in done]
+            ways = [done[a] for a, _ in before] + [_Span(0, 0)] * (not inside.isdisjoint(starts))
+            if not ways:
+                continue
+            heads = [b for _, b in before] + [id for id in starts if id in inside]
+            start = _arrival(self.nodes[heads[0]], ways)
+            if is_cycle:
+                done.update(self._rounds(heads[0], part, pairs, start))
+            else:
+                done[part[0]] = start.then(self.costs.get(part[0], Range(0, 0)))
+        return done
+
+    def _rounds(self, head: str, part: list[str], pairs: _Pairs, start: _Span) -> dict[str, _Span]:
+        """Times in a cycle entered at ``head``: full rounds, then a last one to the way out."""
+        inside = set(part)
+        inner = [(a, b) for a, b in pairs if a in inside and b in inside and b != head]
+        once = self.run(part, inner, [head])
+        back = [once[a].latest for a, b in pairs if b == head and a in inside and a in once]
+        before = _plus(start.latest, _times(self._count(head, part, inner), _latest(back)))
+        return {
+            id: _Span(start.earliest + span.earliest, _plus(before, span.latest))
+            for id, span in once.items()
+        }
+
+    def _count(self, head: str, part: list[str], inner: _Pairs) -> int | None:
+        """How often the cycle is closed at most; the loop nodes outside inner cycles say it."""
+        nested = {id for one in cycles(part, inner) for id in one}
+        loops = [self.nodes[id] for id in part if id not in nested]
+        loops = [node for node in loops if node.kind == "loop"]
+        bounds = [node.max_iterations for node in loops if node.max_iterations is not None]
+        if not loops or len(bounds) < len(loops):
+            return None
+        tested_first = not any(self._does_something(head, loop.id, inner) for loop in loops)
+        return sum(bounds) - (0 if tested_first else len(loops))
+
+    def _does_something(self, head: str, loop: str, inner: _Pairs) -> bool:
+        """Whether there is a step between the head of a cycle and its loop node."""
+        after = reachable([head], [(a, b) for a, b in inner if a != loop])
+        before = reachable([loop], [(b, a) for a, b in inner])
+        return any(self.nodes[id].kind in STEPS for id in after & before)
+
+
+def _parts(ids: Iterable[str], pairs: _Pairs) -> Iterator[tuple[list[str], bool]]:
+    """Cycles and single nodes, each after what leads to it, and whether it is a cycle."""
     import networkx
 
-    pairs = list(dict.fromkeys((e.source, e.target) for e in edges))
-    pairs = [(a, b) for a, b in pairs if a in nodes and b in nodes]
-    home = {id: index for index, part in enumerate(cycles(nodes, pairs)) for id in part}
-    block = {id: f"cycle {home[id]}" if id in home else f"node {id}" for id in nodes}
+    ordered = list(ids)
+    parts = {f"cycle {number}": part for number, part in enumerate(cycles(ordered, pairs))}
+    home = {id: name for name, part in parts.items() for id in part}
+    parts.update({f"node {id}": [id] for id in ordered if id not in home})
+    home.update({id: f"node {id}" for id in ordered if id not in home})
     order: DiGraph[str] = networkx.DiGraph()
-    order.add_nodes_from(block.values())
-    order.add_edges_from((block[a], block[b]) for a, b in pairs if block[a] != block[b])
-    members: dict[str, list[str]] = {}
-    for id, name in block.items():
-        members.setdefault(name, []).append(id)
-    done: dict[str, _Span] = {}
+    order.add_nodes_from(parts)
+    order.add_edges_from((home[a], home[b]) for a, b in pairs if home[a] != home[b])
     for name in networkx.lexicographical_topological_sort(order):
-        inside = members[name]
-        _finish(inside, inside[0] in home, nodes, pairs, starts, costs, done)
-    return done
-
-
-def _finish(
-    inside: list[str],
-    is_cycle: bool,
-    nodes: Mapping[str, Node],
-    pairs: list[tuple[str, str]],
-    starts: list[str],
-    costs: Mapping[str, Range],
-    done: dict[str, _Span],
-) -> None:
-    members = set(inside)
-    before = [(a, b) for a, b in pairs if b in members and a not in members and a in done]
-    ways = [done[a] for a, _ in before] + [_Span(0, 0)] * any(id in starts for id in inside)
-    if not ways:
-        return
-    if not is_cycle:
-        start = _arrival(nodes[inside[0]], ways)
-        done[inside[0]] = start.then(costs.get(inside[0], Range(0, 0)))
-        return
-    head = next(b for _, b in before) if before else next(id for id in inside if id in starts)
-    done.update(_cycle(head, members, nodes, pairs, costs, _arrival(nodes[head], ways)))
+        yield parts[name], name.startswith("cycle ")
 
 
 def _arrival(node: Node, ways: list[_Span]) -> _Span:
     waits = node.kind == "join" or node.kind in STEPS
     choose = max if waits else min
     return _Span(choose(way.earliest for way in ways), _latest(way.latest for way in ways))
-
-
-def _cycle(
-    head: str,
-    members: set[str],
-    nodes: Mapping[str, Node],
-    pairs: list[tuple[str, str]],
-    costs: Mapping[str, Range],
-    start: _Span,
-) -> dict[str, _Span]:
-    """Times in a cycle entered at ``head``: full rounds, then a last one to the way out."""
-    inner = [(a, b) for a, b in pairs if a in members and b in members and b != head]
-    once = _spans(
-        {id: node for id, node in nodes.items() if id in members},
-        [FlowEdge(a, b) for a, b in inner],
-        [head],
-        costs,
-    )
-    back = [once[a].latest for a, b in pairs if b == head and a in members and a in once]
-    rounds = _rounds(head, members, nodes, pairs, once)
-    whole = _times(rounds, _latest(back))
-    return {
-        id: _Span(start.earliest + span.earliest, _plus(_plus(start.latest, whole), span.latest))
-        for id, span in once.items()
-    }
-
-
-def _rounds(
-    head: str,
-    members: set[str],
-    nodes: Mapping[str, Node],
-    pairs: list[tuple[str, str]],
-    once: Mapping[str, _Span],
-) -> int | None:
-    """How often the cycle is closed at most; the loop nodes in reach of the head say it."""
-    inner = [(a, b) for a, b in pairs if a in members and b in members and b != head]
-    nested = {id for part in cycles(members, inner) for id in part}
-    loops = [nodes[id] for id in sorted(members - nested) if nodes[id].kind == "loop"]
-    if not loops or any(loop.max_iterations is None for loop in loops):
-        return None
-    total = sum(loop.max_iterations or 0 for loop in loops)
-    tested_first = all(not _does_something(head, loop.id, inner, nodes) for loop in loops)
-    return total if tested_first else total - len(loops)
-
-
-def _does_something(
-    head: str, loop: str, inner: list[tuple[str, str]], nodes: Mapping[str, Node]
-) -> bool:
-    after = reachable([head], [(a, b) for a, b in inner if a != loop])
-    before = reachable([loop], [(b, a) for a, b in inner])
-    return any(nodes[id].kind in STEPS for id in after & before)
 
 
 def _plus(left: float | None, right: float | None) -> float | None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from dialects.magicdraw import write_xml
 from sysmlc import resources
 from sysmlc.driver import Request, compile_model, select_backends
 
@@ -196,3 +197,13 @@ def test_services_know_their_opc_ua_calls(lego):
     assert services["CheckQuality"]["opcua"]["method"] == "ns=3;s=Camera.Inspect"
     calls = {p["machine"]: p["opcua"]["method"] for p in services["Pick"]["providers"]}
     assert calls == {"Robot1": "ns=2;s=Robot1.Pick", "Robot2": "ns=2;s=Robot2.Pick"}
+
+
+@pytest.mark.parametrize("name", ["lego-recipe", "four-tasks"])
+def test_the_same_model_as_magicdraw_saves_it_gives_the_same_recipe(name, tmp_path):
+    model = tmp_path / f"{name}.xml"
+    model.write_bytes(write_xml((EXAMPLES / name / f"{name}.uml").read_bytes()))
+    found = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
+    (artefact,) = [one for one in found.written() if one.path.startswith("recipes/")]
+    theirs, ours = short(json.loads(artefact.text)), short(content(name))
+    assert {**theirs, "source": None} == {**ours, "source": None}
