@@ -3,14 +3,17 @@
 import random
 
 from activity_models import Canvas, activity, blocks
-from hypothesis import given, settings
+from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Kind
+from sysmlc.ir import Edge, Kind
+from sysmlc.ir.text import print_text
 from sysmlc.logic import evaluate, token_game, token_net
+from sysmlc.logic.activity_contract import derive
 from sysmlc.logic.tokens import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes import activity_drawing, activity_tokens
+from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 
@@ -97,3 +100,66 @@ def test_many_parallel_branches_are_checked_without_building_their_markings():
     safety = token_net.check(drawn(canvas), ACTIVITY_REGION, 10)
     assert safety.is_complete
     assert not safety.unsafe
+
+
+STATEMENTS = ("ok", "else", "true", "not ok", "level >", "")
+
+
+@st.composite
+def doodles(draw) -> Canvas:
+    """Anything that a tool lets one draw: regions in regions, guards, pins, loose handlers."""
+    canvas = Canvas()
+    nodes = [canvas.control("initial")]
+    for kind in draw(st.lists(st.sampled_from([*KINDS, *BOXES, "accept"]), max_size=7)):
+        outer = canvas.owner
+        boxes = [outer, *(n for n in nodes if n.kind is Kind.STRUCTURED)]
+        canvas.owner = draw(st.sampled_from(boxes))
+        nodes.append(canvas.node(*BOXES.get(kind, (_kind(kind), kind)), name=f"w{len(nodes)}"))
+        canvas.owner = outer
+    ends = st.tuples(st.sampled_from(nodes), st.sampled_from(nodes), st.sampled_from(STATEMENTS))
+    for source, target, guard in draw(st.lists(ends, max_size=10)):
+        flow = canvas.flow(source, target, guard)
+        if draw(st.integers(0, 5)) == 0:
+            regions = [n.id for n in nodes if n.subkind == "interruptible"]
+            flow.attrs["interrupts"] = draw(st.sampled_from(["", "nobody", *regions]))
+    for node in nodes:
+        inside = tuple(n.id for n in canvas.graph.owned(node) if n.id.startswith("n"))
+        if node.subkind == "loop":
+            node.attrs.update(test=inside[:1], body_part=inside[1:])
+        if node.subkind == "conditional":
+            node.attrs["clauses"] = ((inside[:1], inside[1:]),)
+        for region in nodes:
+            if region.subkind == "interruptible" and draw(st.booleans()):
+                canvas.graph.connect(Edge.IN_PARTITION, node, region)
+    return canvas
+
+
+BOXES = {
+    name: (Kind.STRUCTURED, name)
+    for name in ("structured", "sequence", "loop", "conditional", "interruptible")
+}
+
+
+def _kind(kind: str) -> Kind:
+    return Kind.ACTION if kind in ("opaque", "value", "accept") else Kind.CONTROL
+
+
+@settings(max_examples=250, deadline=None)
+@given(doodles(), st.integers(0, 2**16))
+def test_whatever_is_drawn_is_played_as_its_contract_says_or_has_a_rule(canvas, seed):
+    sink = Sink()
+    Activities(max_markings=3000).run(canvas.graph, sink)
+    made = canvas.graph.derived(TokenGraph)
+    assert made or len(sink)
+    note(print_text(canvas.graph))
+    for tokens in made:
+        dice = random.Random(seed)
+        state, trace = token_game.start(tokens), []
+        for _ in range(40):
+            inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
+            trace.append({**inputs, **token_game.values(tokens, state)})
+            state = token_game.step(
+                tokens, state, inputs, evaluate.is_true, lambda _, o, dice=dice: dice.choice(o)
+            )
+        for conjunct in derive(tokens).guarantees:
+            assert evaluate.violation(conjunct, trace) is None, conjunct.text

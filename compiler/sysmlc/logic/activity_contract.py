@@ -134,6 +134,8 @@ class _Game:
         match target.firing:
             case Firing.ANY | Firing.END:
                 return f.TRUE
+            case Firing.NEVER:
+                return f.FALSE
             case Firing.CHOICE:
                 branches = self.graph.outgoing(target)
                 opened = f.either(*map(self.opened, branches)) if branches else f.TRUE
@@ -173,9 +175,14 @@ class _Game:
 
     def interrupted(self, interruptible: Interruptible) -> Formula:
         """A token enters an interrupting edge of the region."""
-        return f.either(
-            *(self.given(e) for e in self.graph.edges if e.interrupts == interruptible.id)
-        )
+        entering = [e for e in self.graph.edges if e.interrupts == interruptible.id]
+        return f.either(*map(self.arrives, entering))
+
+    def arrives(self, edge: TokenEdge) -> Formula:
+        """The edge gets a token; for a branch that is chosen this is seen in the next step."""
+        if not self.is_chosen(edge):
+            return self.given(edge)
+        return f.both(self.given(edge), f.primed(_at(edge)), f.negate(self.kept(edge)))
 
     def begins(self, region: str) -> Formula:
         """The region starts in the next step."""

@@ -4,14 +4,14 @@ A structured node is a region of its own. The tests, bodies and set-ups of loops
 become structured nodes too (``Part``), so that each of them starts and ends as a whole.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Sink
-from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.tokens import ACTIVITY_REGION
 from sysmlc.passes import activity_rules as rules
+from sysmlc.passes.activity_regions import FLOWS, Part, groups_of, handlers_of, parts_of
 
 _NODES = (
     Kind.ACTION,
@@ -21,7 +21,6 @@ _NODES = (
     Kind.OBJECT_NODE,
     Kind.DATA_STORE,
 )
-_FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _WORDS = {
     Kind.STRUCTURED: "structured node",
     Kind.ACTIVITY_PARAMETER: "parameter",
@@ -54,16 +53,6 @@ class Flow:
     leaves: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
-    """Test, body or set-up of a loop or conditional node; ``owner`` is that node."""
-
-    id: str
-    owner: Element
-    word: str
-    nodes: tuple[str, ...]
-
-
 @dataclass(slots=True)
 class Drawing:
     """One activity; ``region`` maps each node's id to the id of its region."""
@@ -87,8 +76,8 @@ class Drawing:
 def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """The drawing of an activity. Raises CannotPlayError after it has reported why."""
     drawing = Drawing(activity)
-    handlers = _handlers(graph, activity)
-    groups = _groups(graph, activity)
+    handlers = handlers_of(graph, activity)
+    groups = groups_of(graph, activity)
     _collect(graph, drawing, activity, ACTIVITY_REGION, handlers, frozenset(groups))
     _name_nodes(drawing)
     for group in groups.values():
@@ -102,39 +91,6 @@ def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     return drawing
 
 
-def _handlers(graph: Graph, activity: Element) -> frozenset[str]:
-    ids = [id for element in graph.subtree(activity) for id in _ids(element.attrs.get("handlers"))]
-    return frozenset(ids)
-
-
-def _groups(graph: Graph, activity: Element) -> dict[str, Element]:
-    """Plain structured nodes that no flow starts or ends at, but whose border flows cross."""
-    found: dict[str, Element] = {}
-    for node in graph.subtree(activity):
-        if node.kind is not Kind.STRUCTURED or node.subkind not in ("structured", ""):
-            continue
-        own = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
-        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
-            continue
-        inside = {element.id for element in graph.subtree(node)}
-        if any(_crosses(graph, e, inside) for e in graph.subtree(activity) if e.kind in _FLOWS):
-            found[node.id] = node
-    return found
-
-
-def _crosses(graph: Graph, flow: Element, inside: set[str]) -> bool:
-    ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    return len({end.id in inside for end in ends if end is not None}) == 2
-
-
-def _ids(value: object) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from _ids(part)
-
-
 def _collect(
     graph: Graph,
     drawing: Drawing,
@@ -143,7 +99,7 @@ def _collect(
     left_out: frozenset[str],
     groups: frozenset[str],
 ) -> None:
-    parts = _parts(owner) if owner.kind is Kind.STRUCTURED else []
+    parts = parts_of(owner) if owner.kind is Kind.STRUCTURED else []
     if parts:
         drawing.parts[owner.id] = parts
     home = {id: part.id for part in parts for id in part.nodes}
@@ -158,25 +114,6 @@ def _collect(
         drawing.region[element.id] = inside
         if element.kind is Kind.STRUCTURED:
             _collect(graph, drawing, element, element.id, left_out, groups)
-
-
-def _parts(node: Element) -> list[Part]:
-    """Parts in the order in which they run first."""
-    if node.subkind == "loop":
-        words = ("setup_part", "test", "body_part")
-        found = [(word.removesuffix("_part"), node.attrs.get(word)) for word in words]
-    elif node.subkind == "conditional":
-        clauses = node.attrs.get("clauses") or ()
-        found = [
-            (f"{word} {number}", ids)
-            for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1)
-            if isinstance(clause, tuple)
-            for word, ids in zip(("test", "body"), clause, strict=False)
-        ]
-    else:
-        found = []
-    listed = [(word, tuple(_ids(ids))) for word, ids in found]
-    return [Part(derived_id(node.id, word), node, word, ids) for word, ids in listed if ids]
 
 
 def _name_nodes(drawing: Drawing) -> None:
@@ -243,7 +180,7 @@ class _Reader:
         while stack:
             owner = stack.pop()
             owned = self.graph.owned(owner)
-            yield from (element for element in owned if element.kind in _FLOWS)
+            yield from (element for element in owned if element.kind in FLOWS)
             inner = [e for e in owned if e.kind is Kind.STRUCTURED and e.id not in self.left_out]
             stack.extend(reversed(inner))
 
@@ -340,22 +277,3 @@ def _with_region(flow: Flow, region: str, enters: bool = False, leaves: bool = F
 
 def _is_special_join(node: Element) -> bool:
     return str(node.attrs.get("join_spec") or "and").strip() not in ("and", "")
-
-
-def interruptible_regions(
-    graph: Graph, activity: Element, nodes: Iterable[Element]
-) -> list[tuple[Element, list[Element]]]:
-    """Interruptible regions of the activity with their nodes."""
-    regions = [e for e in graph.subtree(activity) if e.subkind == "interruptible"]
-    members = list(nodes)
-    return [
-        (
-            region,
-            [
-                n
-                for n in members
-                if region in graph.targets(n, Edge.IN_PARTITION) or graph.owner(n) is region
-            ],
-        )
-        for region in regions
-    ]

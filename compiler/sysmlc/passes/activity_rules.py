@@ -303,3 +303,13 @@ GROUPING = _rule(
     "initial i\nstructured s\n  action x\nfinal end\ni -> x\nx -> end",
     "initial i\nstructured s\n  action x\nfinal end\ni -> s\ns -> end",
 )
+ODD_END = _rule(
+    "SM472",
+    "flow-into-initial-or-from-final-node",
+    Severity.WARNING,
+    "{node} has {flows}, which no token passes",
+    "Tokens start at initial nodes and end at final nodes (UML 2.5.1, 15.3.3).",
+    "Lead the flow to a merge node after the initial node, or delete it.",
+    "initial i\naction x\ni -> x\nx -> i",
+    "initial i\nmerge m\naction x\ni -> m\nm -> x\nx -> m",
+)

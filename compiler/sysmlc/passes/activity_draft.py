@@ -1,0 +1,97 @@
+"""A token graph while it grows: nodes, edges, and names for their variables."""
+
+from itertools import pairwise
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.identity import derived_id
+from sysmlc.logic.names import identifier
+from sysmlc.logic.tokens import Guard, NodeKind, TokenEdge, TokenNode
+from sysmlc.passes.activity_drawing import Drawing, Flow, flow_label
+from sysmlc.passes.activity_inputs import Answer, Inputs
+
+
+class Draft:
+    """Nodes and edges so far; ``short`` has the name of each node inside variables.
+
+    ``chained`` holds nodes that start after another one of a sequence node, ``takers`` the
+    accept actions by event, ``answers`` the inputs of decisions.
+    """
+
+    def __init__(self, graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> None:
+        self.graph = graph
+        self.drawing = drawing
+        self.inputs = inputs
+        self.sink = sink
+        self.nodes: dict[str, TokenNode] = {}
+        self.edges: list[TokenEdge] = []
+        self.short: dict[str, str] = {}
+        self.answers: dict[str, Answer] = {}
+        self.chained: set[str] = set()
+        self._used: set[str] = set()
+        self.takers: dict[str, list[Element]] = {}
+        self.incoming: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
+        self.outgoing: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
+        for flow in drawing.flows:
+            if not flow.enters:
+                self.outgoing[flow.source.id].append(flow)
+            if not flow.leaves:
+                self.incoming[flow.target.id].append(flow)
+
+    def put(self, node: TokenNode, short: str) -> TokenNode:
+        """Add or replace a node."""
+        self.nodes[node.id] = node
+        self.short[node.id] = short
+        return node
+
+    def extra(self, base: Element, role: str, kind: NodeKind, label: str, region: str) -> TokenNode:
+        """The node that plays a role for what is drawn, added when it is asked for first."""
+        id = derived_id(base.id, role)
+        if id in self.nodes:
+            return self.nodes[id]
+        short = f"{role}_{self.short.get(base.id, identifier(base.name, 'node'))}"
+        return self.put(TokenNode(id, kind, label, base.id, region), identifier(short))
+
+    def link(
+        self,
+        source: str,
+        target: str,
+        origin: Element,
+        region: str,
+        *,
+        marked: bool = False,
+        guard: Guard | None = None,
+        interrupts: str = "",
+    ) -> TokenEdge:
+        """Add an edge; the first one of a flow has the flow's id."""
+        label = flow_label(origin, self.nodes[source].label, self.nodes[target].label)
+        variable = self.inputs.names.new(f"at_{self.short[source]}_to_{self.short[target]}")
+        id = origin.id if self._is_free(origin) else derived_id(origin.id, variable)
+        self._used.add(id)
+        edge = TokenEdge(
+            id, variable, label, source, target, (origin.id,), region, marked, guard, interrupts
+        )
+        self.edges.append(edge)
+        return edge
+
+    def path(
+        self, node: Element, *path: str, marked: bool = False, guard: Guard | None = None
+    ) -> None:
+        """Edges along the nodes; mark and guard belong to the first one."""
+        for source, target in pairwise(path):
+            self.link(source, target, node, node.id, marked=marked, guard=guard)
+            marked, guard = False, None
+
+    def primary(self, node: Element) -> list[Flow]:
+        """Incoming flows without the flow that only brings a decision's input."""
+        side = node.attrs.get("decision_input_flow")
+        return [flow for flow in self.incoming[node.id] if flow.element.id != side]
+
+    def role(self, word: str, node: Element, region: str) -> str:
+        """The word, and the part of the node that the region is."""
+        parts = self.drawing.parts.get(node.id, ())
+        return " ".join([word, *(part.word for part in parts if part.id == region)])
+
+    def _is_free(self, origin: Element) -> bool:
+        is_flow = origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
+        return is_flow and origin.id not in self._used
