@@ -38,7 +38,7 @@ def test_rule_reports_its_wrong_model_and_not_its_right_one(rule):
 
 
 def test_every_rule_is_there():
-    assert len(RULES) == 25
+    assert len(RULES) == 26
 
 
 GATE = machine(
@@ -171,6 +171,17 @@ def test_submachines_and_deferred_events_are_named():
     _, contracts, sink = derived(nested)
     assert contracts == []
     assert any("submachine" in one.message for one in sink)
+
+
+def test_extended_machines_are_named():
+    text = (
+        machine(arrow("a", "b", "start"))
+        .replace("Signal start", 'StateMachine old "Old"\n  Signal start')
+        .replace('"Behaviour"\n', '"Behaviour"\n      -> redefines old\n')
+    )
+    _, contracts, sink = derived(text)
+    assert contracts == []
+    assert any("extension by 'Behaviour'" in one.message for one in sink)
 
 
 def test_a_transition_out_of_the_machine_is_no_crash():

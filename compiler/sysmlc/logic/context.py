@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.domains import contains
+from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expression import (
     Binary,
     Expression,
@@ -34,6 +34,17 @@ ASSUMED_RANGE = rule(
     right=machine(arrow("a", "b", "start", "level > 2")),
 )
 
+DEFAULT_OUTSIDE = rule(
+    "SM433",
+    "default-out-of-range",
+    Severity.ERROR,
+    "default value '{default}' of property '{name}' is none of {domain}",
+    why="The property cannot start with it.",
+    help="Correct the default value or the range.",
+    wrong=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=33", 1),
+    right=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=3", 1),
+)
+
 _BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
 _INTEGER = frozenset(
     ["integer", "int", "natural", "positive", "unlimitednatural", "eint", "short", "long", "byte"]
@@ -54,6 +65,8 @@ class Feature:
     constant: bool = False
     is_assumed: bool = False
     """Whether the range is assumed; ``note_range`` says so when the property is used."""
+    refused: str = ""
+    """A default value that is not in the domain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +125,12 @@ def _enumeration(graph: Graph, enumeration: Element) -> dict[str, str]:
 
 
 def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
-    """Report that the range of a property that matters is assumed."""
+    """Report, of a property that matters, an assumed range and a default value outside it."""
     domain = feature.domain
+    if feature.refused and domain is not None:
+        subject, name = graph.subject(feature.element), feature.element.name
+        shown = describe(domain)
+        sink.report(DEFAULT_OUTSIDE, subject, default=feature.refused, name=name, domain=shown)
     if feature.is_assumed and isinstance(domain, IntegerDomain):
         low, high, name = domain.low, domain.high, feature.element.name
         subject, shown = graph.subject(feature.element), f"{low}..{high}"
@@ -128,7 +145,10 @@ def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, 
         domain = _assume(graph, element, type_, assumed)
     default = _default(graph, element, type_, domain)
     constant = element.attrs.get("readonly") is True and default is not None
-    return Feature(element, variable, domain, default, constant, is_assumed)
+    written = element.attrs.get("default")
+    is_range = written is not None and ".." in str(written)
+    refused = "" if written is None or default is not None or is_range else str(written)
+    return Feature(element, variable, domain, default, constant, is_assumed, refused)
 
 
 def _domain(graph: Graph, element: Element, type_: Element | None) -> Domain | None:

@@ -94,7 +94,7 @@ DANGLING = rule(
 )
 
 _PSEUDO = frozenset(["initial", "choice", "junction", "entry-point", "exit-point"])
-_EVENTS = frozenset(["signal", "call"])
+_REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRANSITION])
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +171,8 @@ def _is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
 def _unsupported(graph: Graph, element: Element) -> str:
     if element.kind is Kind.PSEUDOSTATE:
         return _unsupported_pseudostate(graph, element)
+    if element.kind in _REDEFINABLE and graph.targets(element, Edge.REDEFINES):
+        return f"the redefinition or extension by '{element.name or element.kind}'"
     if element.kind is not Kind.STATE:
         return ""
     if any(one.kind is Kind.TRIGGER for one in graph.owned(element)):
