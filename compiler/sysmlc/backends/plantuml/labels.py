@@ -7,6 +7,10 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
+_TOOL_NAMESPACE = re.compile(
+    r"https?://www\.magicdraw\.com/(spec/Customization/|schemas/additional_stereotypes)"
+)
+"""MagicDraw's own stereotypes (PartProperty, ValueProperty) repeat what the type says."""
 _ROLE_WORDS = {
     "block": "block",
     "interface block": "interfaceBlock",
@@ -52,9 +56,14 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
 
 def applied(graph: Graph, element: Element) -> tuple[str, ...]:
     """Names of the stereotypes that are applied to the element."""
-    found = (item for item in graph.owned(element) if item.kind is Kind.APPLICATION)
+    found = (item for item in graph.owned(element) if _is_telling(item))
     names = (_lower_first(str(item.attrs.get("stereotype", item.name))) for item in found)
     return tuple(dict.fromkeys(name for name in names if name))
+
+
+def _is_telling(item: Element) -> bool:
+    namespace = str(item.attrs.get("namespace", ""))
+    return item.kind is Kind.APPLICATION and not _TOOL_NAMESPACE.match(namespace)
 
 
 _ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])
