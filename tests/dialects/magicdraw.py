@@ -21,10 +21,19 @@ from dialects.papyrus import XMI, Element, id_of
 UML = "http://www.omg.org/spec/UML/20131001"
 SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
 PROFILE = "http://www.omg.org/spec/UML/20131001/MagicDrawProfile"
+CUSTOMISATION = "http://www.magicdraw.com/spec/Customization/180/SysML"
 DIAGRAM = "http://www.nomagic.com/ns/magicdraw/core/diagram/1.0"
 EXTENDER = "MagicDraw UML 19.0"
 ROOT_ID = "eee_1045467100313_135436_1"
 MODEL_ENTRY = "com.nomagic.magicdraw.uml_model.model"
+
+_PREFIXES = {
+    "uml": UML,
+    "xmi": XMI,
+    "sysml": SYSML,
+    "MagicDraw_Profile": PROFILE,
+    "MD_Customization_for_SysML__additional_stereotypes": CUSTOMISATION,
+}
 
 _LISTS = frozenset(
     (
@@ -77,10 +86,16 @@ _LIBRARY = "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML."
 _SYSML_PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#"
 
 
-def write_xml(papyrus: bytes) -> bytes:
-    """The document as MagicDraw saves it in one XML file."""
+def write_xml(papyrus: bytes, customised: bool = False) -> bytes:
+    """The document as MagicDraw saves it in one XML file.
+
+    ``customised`` adds the stereotypes of MagicDraw's own SysML customisation, which repeat what
+    the type of a property says.
+    """
     source = etree.fromstring(papyrus)
     writer = _Writer(source)
+    if customised:
+        writer.customise(source)
     etree.indent(writer.root, space="\t")
     return etree.tostring(writer.root, xml_declaration=True, encoding="UTF-8")
 
@@ -113,7 +128,7 @@ class _Writer:
         own = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
         self.root = etree.Element(
             f"{{{XMI}}}XMI",
-            nsmap={"uml": UML, "xmi": XMI, "sysml": SYSML, "MagicDraw_Profile": PROFILE, **own},
+            nsmap={**_PREFIXES, **own},
         )
         self._head()
         for element in source:
@@ -199,6 +214,18 @@ class _Writer:
                 path.set(f"{{{XMI}}}id", _magicdraw_id(id_of(end) + "path"))
                 path.set("base_ConnectorEnd", self.ids[id_of(end)])
                 path.set("propertyPath", self.ids[str(end.get("partWithPort"))])
+
+    def customise(self, source: Element) -> None:
+        """PartProperty and ValueProperty, as MagicDraw applies them to typed properties."""
+        types = {id_of(element): _type(element) for element in _with_id(source)}
+        for one in source.iter("ownedAttribute"):
+            kind = types.get(str(one.get("type")), "")
+            is_part = kind == "uml:Class" and one.get("aggregation") == "composite"
+            if _type(one) == "uml:Property" and (is_part or kind == "uml:Enumeration"):
+                name = "PartProperty" if is_part else "ValueProperty"
+                made = etree.SubElement(self.root, f"{{{CUSTOMISATION}}}{name}")
+                made.set(f"{{{XMI}}}id", _magicdraw_id(id_of(one) + name))
+                made.set("base_Property", self.ids[id_of(one)])
 
     def _diagram(self, model: Element) -> None:
         box = etree.SubElement(_extension(model), "modelExtension")

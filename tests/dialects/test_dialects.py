@@ -25,6 +25,17 @@ def test_an_example_is_the_same_in_both_dialects(model, dialect, tmp_path):
     assert here
 
 
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+def test_what_magicdraw_adds_to_sysml_changes_no_output(model, tmp_path):
+    papyrus = model.read_bytes()
+    adorned = write_xml(papyrus, customised=True)
+    assert b"PartProperty" in adorned
+    one = compile_text(tmp_path, "model.uml", papyrus, *DEFAULT)
+    other = compile_text(tmp_path, "model.xml", adorned, *DEFAULT)
+    here, there = common_outputs(papyrus, one, other)
+    assert here == there
+
+
 @pytest.mark.parametrize("seed", range(25))
 def test_a_random_model_is_the_same_in_both_dialects(seed, tmp_path):
     papyrus = random_model(Random(seed))
