@@ -365,3 +365,11 @@ def test_a_model_with_a_line_missing_is_no_crash(text):
 def test_a_tag_that_cannot_be_read_is_told_and_left_out():
     found = model(samples.task(close="-3"))
     assert next(one for one in found.functions if one.id == "Plant::Close").duration is None
+
+
+def test_a_condition_of_a_service_that_cannot_be_read_is_told():
+    place = '  Activity place "Place" level="machine service"\n'
+    tagged = place + "    " + profiled("place", "MachineService", 'tag.pre="piece in hand"') + "\n"
+    _, codes, sink = run(samples.task().replace(place, tagged))
+    assert codes == ["SM616"]
+    assert "'piece in hand' at 'Plant::Place'" in next(iter(sink)).message

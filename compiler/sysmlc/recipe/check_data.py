@@ -6,13 +6,12 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, declared, graphs
 from sysmlc.recipe.derive import Tables
-from sysmlc.recipe.expression import Expr, variables
+from sysmlc.recipe.expression import Expr, unreadable, variables
 from sysmlc.recipe.flow import forward_edges
 from sysmlc.recipe.guards import (
     UndecidedError,
     holds,
     is_condition,
-    is_readable,
     literals_as_values,
     valuations,
 )
@@ -24,6 +23,8 @@ from sysmlc.recipe.model import (
     Node,
     Parameter,
     Scalar,
+    Service,
+    Task,
     ValueType,
 )
 
@@ -234,12 +235,21 @@ def _misfit(wanted: Parameter | None, given: Parameter | None) -> str:
 
 def readable(model: Model, tables: Tables) -> Iterator[Finding]:
     """Expressions that stayed text."""
+    for element, id, expression in _expressions(model):
+        for text in () if expression is None else unreadable(expression):
+            yield Finding(UNREADABLE, element, {"text": text, "element": id})
+
+
+def _expressions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
+    """Every expression of a model: element, id of what it belongs to, expression."""
     for graph in graphs(model):
         for edge in graph.edges:
-            if edge.guard is not None and not is_readable(edge.guard):
-                facts = {"text": edge.text, "element": edge.source}
-                yield Finding(UNREADABLE, edge.element, facts)
+            yield edge.element, edge.source, edge.guard
         for node in graph.nodes:
-            for name, bound in node.bind:
-                if not is_readable(bound):
-                    yield Finding(UNREADABLE, node.element, {"text": name, "element": node.id})
+            yield from ((node.element, node.id, bound) for _, bound in node.bind)
+            if node.kind != "loop":
+                yield node.element, node.id, node.expression
+    conditioned: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
+    for one in conditioned:
+        yield one.element, one.id, one.pre
+        yield one.element, one.id, one.post

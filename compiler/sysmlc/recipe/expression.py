@@ -84,3 +84,16 @@ def variables(expression: Expr) -> Iterator[str]:
         case Index(base, index):
             yield from variables(base)
             yield from variables(index)
+
+
+def unreadable(expression: Expr) -> Iterator[str]:
+    """Parts that are mere text."""
+    match expression:
+        case Opaque(text):
+            yield text
+        case Apply(_, args) | Call(_, args):
+            for arg in args:
+                yield from unreadable(arg)
+        case Index(base, index):
+            yield from unreadable(base)
+            yield from unreadable(index)

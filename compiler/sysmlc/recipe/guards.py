@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 
-from sysmlc.recipe.expression import Apply, Expr, Lit, Opaque, Var, variables
+from sysmlc.recipe.expression import Apply, Expr, Lit, Var, variables
 from sysmlc.recipe.model import EnumType, Scalar, ValueType
 
 _LIMIT = 5000
@@ -130,17 +130,6 @@ def _is_numeric(name: str, expression: Expr) -> bool:
             return direct or compared or any(_is_numeric(name, arg) for arg in args)
         case _:
             return False
-
-
-def is_readable(expression: Expr) -> bool:
-    """Whether no part of the expression is mere text."""
-    match expression:
-        case Opaque():
-            return False
-        case Apply(_, args):
-            return all(map(is_readable, args))
-        case _:
-            return True
 
 
 def literals_as_values(expression: Expr, types: Mapping[str, ValueType | None]) -> Expr:
