@@ -215,6 +215,22 @@ def test_formulas_of_the_model_are_conjuncts(body, side, class_, formula):
     assert codes(sink) == (["SM503"] if class_ is Class.OTHER else [])
 
 
+def test_a_formula_of_a_requirement_goes_to_what_satisfies_it():
+    text = machine(arrow("a", "b", "start")) + (
+        '  Class q "Answer" role="requirement"\n'
+        '    Constraint f "Answer" language="SPIN" body="[](event=start -> <>{state==B})"\n'
+        '  Dependency d role="satisfy"\n    -> client c\n    -> supplier q\n'
+    )
+    text = text.replace(
+        "    -> classifier-behavior m\n", "    -> classifier-behavior m\n    -> satisfies q\n", 1
+    )
+    _, (contract,), sink = derived(text)
+    assert contract.guarantees[-1].origin == "f"
+    assert contract.guarantees[-1].class_ is Class.OTHER
+    assert print_formula(contract.guarantees[-1].formula) == "G (event=start -> F state=B)"
+    assert "SM503" in codes(sink)
+
+
 def test_twice_equals_once_and_the_graph_stays_as_it_is():
     graph, contracts, _ = derived(GATE)
     before = print_text(graph)
