@@ -20,6 +20,7 @@ HEAVY = ("lxml", "networkx", "lark", "jinja2", "pyecore", "jsonschema", "ruamel"
 def test_explain_shows_why_and_a_wrong_and_a_right_model(here):
     lines = here.sysmlc("explain", "test-nameless-port").stdout.splitlines()
     assert lines[0] == "SM942 test-nameless-port (error)"
+    assert lines[2] == "  a port of '<owner>' has no name"
     assert lines[-6:] == [
         '  Class gate "Gate"',
         "    Port gate.in",

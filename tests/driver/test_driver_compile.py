@@ -105,6 +105,17 @@ def test_a_suppressed_finding_is_gone_and_an_unused_suppression_is_reported(faul
     )
 
 
+def test_a_recipe_level_for_an_element_that_is_not_there_is_reported(plant):
+    config = Config(passes={"recipe": {"levels": {"Plant::Robbot": "machine", "gate": "machine"}}})
+    found = [f for f in compiled(plant, config=config).diagnostics if f.rule.code == "SM903"]
+    assert [(f.message, f.help) for f in found] == [
+        (
+            "[recipe.levels] names 'Plant::Robbot', which is not in the model",
+            "did you mean 'Plant::Robot'?",
+        )
+    ]
+
+
 def test_a_missing_file_stops_us(tmp_path, plant):
     made = compiled(tmp_path / "plant.irr")
     assert codes(made) == ["SM170"]

@@ -1,5 +1,6 @@
 """``sysmlc explain``: what a rule means and how to satisfy it."""
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -37,13 +38,18 @@ def command(code: str | None) -> None:
     click.echo("\n".join(_explanation(found[key])))
 
 
+def _shown(template: str) -> str:
+    """``port '{port}'`` as ``port '<port>'``."""
+    return re.sub(r"\{(\w+)[^{}]*\}", r"<\1>", template)
+
+
 def _explanation(rule: "Rule") -> Iterator[str]:
     yield f"{rule.code} {rule.name} ({rule.severity.value})"
     yield ""
-    yield f"  {rule.phrase}"
+    yield f"  {_shown(rule.phrase)}"
     for title, text in (
         ("Why", rule.why),
-        ("What to do", rule.help),
+        ("What to do", _shown(rule.help)),
         ("Wrong", rule.wrong),
         ("Right", rule.right),
     ):

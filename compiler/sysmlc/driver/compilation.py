@@ -1,7 +1,7 @@
 """One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
 
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
+from sysmlc.suggest import did_you_mean
 
 
 class Observer:
@@ -214,7 +215,21 @@ class _Run:
             late.report(
                 faults.UNUSED_SUPPRESSION, Subject(), name=entry.rule, element=entry.element
             )
+        for name, advice in self._unknown_level_elements():
+            late.report(
+                faults.UNKNOWN_LEVEL_ELEMENT, Subject(), help="{advice}", name=name, advice=advice
+            )
         return tuple(sorted([*left, *late], key=_by_place))
+
+    def _unknown_level_elements(self) -> Iterator[tuple[str, str]]:
+        """Names in ``[recipe.levels]``; with several units an element may be in another one."""
+        levels = self._request.config.passes.get("recipe", {}).get("levels")
+        if not isinstance(levels, dict) or len(self._request.config.models) > 1:
+            return
+        names = {self._graph.qualified_name(element) for element in self._graph}
+        for name in levels:
+            if name not in names and name not in self._graph:
+                yield name, did_you_mean(name, names)
 
 
 def _cuts_short(found: Diagnostic) -> bool:

@@ -129,6 +129,16 @@ UNUSED_SUPPRESSION = rule(
     wrong='[[suppress]]\nrule = "untyped-port"\nelement = "Plant::Gone"\nreason = "legacy"',
     right='[[suppress]]\nrule = "untyped-port"\nelement = "Plant::Gate::in"\nreason = "legacy"',
 )
+UNKNOWN_LEVEL_ELEMENT = rule(
+    "SM903",
+    "unknown-level-element",
+    Severity.WARNING,
+    "[recipe.levels] names '{name}', which is not in the model",
+    why="The level that was meant for an element is given to none, and the recipe misses it.",
+    help="write the qualified name as the findings and 'sysmlc show' do",
+    wrong='[recipe.levels]\n"Plant::Asemble" = "task"',
+    right='[recipe.levels]\n"Plant::Assemble" = "task"',
+)
 
 _BY_FAULT = {
     Fault.MALFORMED: MALFORMED,
