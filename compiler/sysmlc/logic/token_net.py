@@ -59,8 +59,8 @@ def check(graph: TokenGraph, region: str, limit: int) -> Safety:
     """Search the markings of a region, at most ``limit`` of them.
 
     What is small is searched as it is, which finds the right place of a fault; what is large
-    is reduced before. The reduced net errs on the safe side only where a token reaches a final
-    node in the same step as a node that would go on: the end forestalls what it would do.
+    is reduced before. In the reduced net others may move on before a final node ends the
+    region: this errs on the safe side.
     """
     net = net_of(graph, region)
     whole = search(net, min(limit, _SMALL))
@@ -132,9 +132,20 @@ def _reset(graph: TokenGraph, edge: TokenEdge, places: Iterable[str]) -> frozens
 
 def reduce(net: Net) -> None:
     """Apply the reductions until none applies."""
+    _delay_ends(net)
     rules = (_drop_idle, _merge_parallel_moves, _fuse_places, _fuse_moves, _merge_parallel_places)
     while sum(rule(net) for rule in rules):
         pass
+
+
+def _delay_ends(net: Net) -> None:
+    """Let a token reach a final node one move later, so that what is before it can be fused."""
+    for move in [move for move in net.moves if move.is_end]:
+        (place,) = move.takes
+        end = f"{place}$end"
+        net.places[end] = None
+        net.moves.append(Move({place}, {end}, set()))
+        move.takes = {end}
 
 
 def _makers(net: Net) -> dict[str, list[Move]]:
@@ -220,8 +231,7 @@ def _fuse_places(net: Net) -> bool:
             continue
         if {before, after} <= net.marked or any(after in m.gives for m in makers[before]):
             continue
-        # A token at a final node ends the region at once, a token before it does not.
-        if any(taker.is_end for taker in takers[after]):
+        if _has_end(takers, {after}):
             continue
         touched |= {before, after}
         gone.append(move)
@@ -246,7 +256,7 @@ def _fuse_moves(net: Net) -> bool:
             continue
         maker, taker = makers[place][0], takers[place][0]
         is_free = not any(m is maker or m is taker for m in touched)
-        if not is_free or not _fusible(maker, taker, place):
+        if not is_free or not _fusible(maker, taker, place) or _has_end(takers, taker.gives):
             continue
         touched += [maker, taker]
         gone.append(taker)
@@ -255,6 +265,11 @@ def _fuse_moves(net: Net) -> bool:
         _forget(net, place)
     net.moves = [move for move in net.moves if not any(move is other for other in gone)]
     return bool(gone)
+
+
+def _has_end(takers: dict[str, list[Move]], places: set[str]) -> bool:
+    """Whether a token there ends the region at once, which a token before it does not."""
+    return any(taker.is_end for place in places for taker in takers[place])
 
 
 def _fusible(maker: Move, taker: Move, place: str) -> bool:
