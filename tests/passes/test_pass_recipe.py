@@ -367,6 +367,15 @@ def test_a_tag_that_cannot_be_read_is_told_and_left_out():
     assert next(one for one in found.functions if one.id == "Plant::Close").duration is None
 
 
+def test_an_unnamed_attribute_and_pin_show_their_kind():
+    text = samples.task().replace('Property mount.n "n"', "Property mount.n")
+    text = text.replace('Pin l.ok "ok"', "Pin l.ok")
+    graph = model(text).service_graphs[0]
+    assert [one.name for one in graph.variables] == ["ok", "pin", "property"]
+    look = next(node for node in graph.nodes if node.id == "Plant::Mount::look")
+    assert look.assign == (("pin", "pin"),)
+
+
 def test_a_condition_of_a_service_that_cannot_be_read_is_told():
     place = '  Activity place "Place" level="machine service"\n'
     tagged = place + "    " + profiled("place", "MachineService", 'tag.pre="piece in hand"') + "\n"

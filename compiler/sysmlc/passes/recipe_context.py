@@ -99,6 +99,10 @@ class Context:
         path = [element, *self.graph.ancestors(element)]
         return "::".join(self._segment(part) for part in reversed(path))
 
+    def label(self, element: Element) -> str:
+        """Own name; an unnamed element shows its kind and number among its siblings."""
+        return element.name or self._segment(element)
+
     def reference(self, value: str) -> str:
         """Id for the JSON of what a tagged value names: an element of the graph, or its text."""
         element = self.graph.get(value)

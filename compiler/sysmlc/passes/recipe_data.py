@@ -28,8 +28,8 @@ class Data:
     def of(cls, context: Context, activity: Element) -> "Data":
         """The data of an activity."""
         owned = context.graph.owned(activity)
-        names = {one.name for one in owned if one.kind in (Kind.PARAMETER, Kind.PROPERTY)}
-        pins = Counter(pin.name for pin in _outputs(context, activity))
+        names = {context.label(one) for one in owned if one.kind in (Kind.PARAMETER, Kind.PROPERTY)}
+        pins = Counter(context.label(pin) for pin in _outputs(context, activity))
         shared = {name for name, count in pins.items() if count > 1}
         return cls(context, activity, frozenset(names), frozenset(shared - names))
 
@@ -37,14 +37,18 @@ class Data:
 
     def bind(self, node: Element) -> tuple[tuple[str, Expr], ...]:
         """Input pins of an action with the expressions that fill them, by name."""
-        found = {pin.name: self._filled(pin) for pin in self._pins(node, "in")}
+        found = {self.context.label(pin): self._filled(pin) for pin in self._pins(node, "in")}
         return tuple(
             (name, value) for name, value in sorted(found.items(), key=_first) if value is not None
         )
 
     def assign(self, node: Element) -> tuple[tuple[str, str], ...]:
         """Output pins of an action with the variables that they set, by name."""
-        return tuple(sorted((pin.name, self.variable(pin)) for pin in self._pins(node, "out")))
+        return tuple(sorted(self._assigned(node)))
+
+    def _assigned(self, node: Element) -> Iterator[tuple[str, str]]:
+        for pin in self._pins(node, "out"):
+            yield self.context.label(pin), self.variable(pin)
 
     def variable(self, pin: Element) -> str:
         """Variable that an output pin sets."""
@@ -52,10 +56,11 @@ class Data:
             target = query.flow_target(self.context.graph, flow)
             if target is not None and target.kind is Kind.ACTIVITY_PARAMETER:
                 return self._parameter_name(target)
-        if pin.name in self.shared:
-            owner = self.context.graph.owner(pin)
-            return f"{'' if owner is None else owner.name}.{pin.name}"
-        return pin.name
+        name = self.context.label(pin)
+        owner = self.context.graph.owner(pin)
+        if name in self.shared and owner is not None:
+            return f"{self.context.label(owner)}.{name}"
+        return name
 
     def source_of(self, flow: Element) -> Expr | None:
         """Value that an object flow carries: the variable of the pin or parameter it starts at."""
@@ -86,7 +91,7 @@ class Data:
         attributes = [
             one for one in owned if one.kind is Kind.PROPERTY and is_data(self.context, one)
         ]
-        found = {one.name: parameter(self.context, one) for one in attributes}
+        found = {self.context.label(one): parameter(self.context, one) for one in attributes}
         names = self.declared
         for pin in _outputs(self.context, self.activity):
             name = self.variable(pin)
@@ -111,11 +116,12 @@ class Data:
             found = self.source_of(flow)
             if found is not None:
                 return found
-        return Var(pin.name) if pin.name in self.declared else None
+        name = self.context.label(pin)
+        return Var(name) if name in self.declared else None
 
     def _parameter_name(self, node: Element) -> str:
         found = self.context.graph.target(node, Edge.REFERENCES)
-        return node.name if found is None else found.name
+        return self.context.label(node if found is None else found)
 
 
 def _first(pair: tuple[str, Expr | None]) -> str:

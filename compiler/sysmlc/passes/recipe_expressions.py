@@ -80,7 +80,7 @@ def assignments(text: str) -> list[tuple[str, Expr]] | None:
 def parameter(context: Context, element: Element) -> Parameter:
     """A parameter, pin or property as a recipe's parameter."""
     return Parameter(
-        element.name, value_type(context, element), unit(context, element), value(element)
+        context.label(element), value_type(context, element), unit(context, element), value(element)
     )
 
 
