@@ -35,31 +35,10 @@ from sysmlc.logic.machine_actions import (
     told_time,
 )
 from sysmlc.logic.machine_checks import have_common_cause, is_derivable, may_compete
+from sysmlc.logic.machine_support import initial_of, is_supported
 from sysmlc.logic.names import Names, identifier, unique
-from sysmlc.logic.samples import arrow, choice, machine
+from sysmlc.logic.samples import arrow, machine
 
-NOT_DERIVED = rule(
-    "SM420",
-    "construct-not-derived",
-    Severity.WARNING,
-    "{what} of state machine '{machine}' is not derived; the component gets no contract",
-    why="A contract that leaves part of the diagram out would promise what the diagram does "
-    "not say.",
-    help="Draw it with states, choices and junctions, or leave the machine without contract.",
-    wrong=machine(choice("h", "deep-history"), arrow("a", "h", "start"), arrow("h", "b")),
-    right=machine(choice("h", "junction"), arrow("a", "h", "start"), arrow("h", "b")),
-)
-NO_INITIAL = rule(
-    "SM421",
-    "region-without-initial",
-    Severity.ERROR,
-    "region '{region}' of '{owner}' has no initial pseudostate with one transition",
-    why="Nothing says in which state the region starts.",
-    help="Add an initial pseudostate and a transition from it.",
-    wrong='StateMachine m "M"\n  Region r "r"\n    State a "A"\n',
-    right='StateMachine m "M"\n  Region r "r"\n    Pseudostate i subkind="initial"\n'
-    '    State a "A"\n    Transition t\n      -> flow-source i\n      -> flow-target a\n',
-)
 NONDETERMINISTIC = rule(
     "SM422",
     "competing-transitions",
@@ -81,20 +60,6 @@ COINCIDING = rule(
     wrong=machine(arrow("a", "b", "start"), arrow("a", "a", after="after 2 s")),
     right=machine(arrow("a", "b", "start"), arrow("a", "a", "stop")),
 )
-DANGLING = rule(
-    "SM423",
-    "transition-without-end",
-    Severity.ERROR,
-    "transition '{transition}' has no {end}",
-    why="A transition leads from one vertex to another.",
-    wrong='StateMachine m "M"\n  Region r\n    State a "A"\n    Transition t "T"\n'
-    "      -> flow-source a\n",
-    right='StateMachine m "M"\n  Region r\n    State a "A"\n    Transition t "T"\n'
-    "      -> flow-source a\n      -> flow-target a\n",
-)
-
-_PSEUDO = frozenset(["initial", "choice", "junction", "entry-point", "exit-point"])
-_REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRANSITION])
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +100,7 @@ def read_machine(
     Everything that is missing or wrong is reported.
     """
     options = options or MachineOptions()
-    if not _is_supported(graph, machine, sink):
+    if not is_supported(graph, machine, sink):
         return None
     parts = _start(graph, machine, sink, options)
     top = _read_regions(parts, machine, "")
@@ -152,82 +117,6 @@ def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) 
     return _Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
 
 
-# -- what is not derived -----------------------------------------------------------------------
-
-
-def _is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
-    missing = [
-        (element, what)
-        for element in graph.subtree(machine)
-        for what in [_unsupported(graph, element)]
-        if what
-    ]
-    for element, what in missing:
-        sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine.name)
-    broken = [_is_broken(graph, element, sink) for element in graph.subtree(machine)]
-    return not missing and not any(broken)
-
-
-def _unsupported(graph: Graph, element: Element) -> str:
-    if element.kind is Kind.PSEUDOSTATE:
-        return _unsupported_pseudostate(graph, element)
-    if element.kind in _REDEFINABLE and graph.targets(element, Edge.REDEFINES):
-        return f"the redefinition or extension by '{element.name or element.kind}'"
-    if element.kind is not Kind.STATE:
-        return ""
-    if any(one.kind is Kind.TRIGGER for one in graph.owned(element)):
-        return f"the deferral of events in state '{element.name}'"
-    is_submachine = "submachine" in element.attrs or any(
-        target.kind is Kind.STATE_MACHINE
-        for edge in (Edge.CALLS, Edge.TYPED_BY, Edge.REFERENCES)
-        for target in graph.targets(element, edge)
-    )
-    return f"submachine state '{element.name}'" if is_submachine else ""
-
-
-def _unsupported_pseudostate(graph: Graph, element: Element) -> str:
-    if element.subkind not in _PSEUDO:
-        return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
-    region = graph.owner(element)
-    is_second = region is not None and _initial(graph, region) not in (None, element)
-    if element.subkind == "initial" and is_second:
-        return f"the second initial pseudostate '{element.name}'"
-    return ""
-
-
-def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
-    if element.kind is Kind.REGION:
-        return _lacks_initial(graph, element, sink)
-    if element.kind is not Kind.TRANSITION:
-        return False
-    ends = {
-        "source": graph.target(element, Edge.FLOW_SOURCE),
-        "target": graph.target(element, Edge.FLOW_TARGET),
-    }
-    for end, vertex in ends.items():
-        if vertex is None:
-            name = element.name or "<Transition>"
-            sink.report(DANGLING, graph.subject(element), transition=name, end=end)
-    return None in ends.values()
-
-
-def _lacks_initial(graph: Graph, region: Element, sink: Sink) -> bool:
-    initial = _initial(graph, region)
-    if initial is not None and len(graph.sources(initial, Edge.FLOW_SOURCE)) == 1:
-        return False
-    if not any(one.kind in (Kind.STATE, Kind.FINAL_STATE) for one in graph.owned(region)):
-        return False
-    owner = graph.owner(region) or region
-    name = region.name or "<Region>"
-    sink.report(NO_INITIAL, graph.subject(region), region=name, owner=owner.name)
-    return True
-
-
-def _initial(graph: Graph, region: Element) -> Element | None:
-    owned = graph.owned(region)
-    return next((one for one in owned if one.subkind == "initial"), None)
-
-
 # -- vertices ----------------------------------------------------------------------------------
 
 
@@ -236,7 +125,7 @@ def _read_regions(parts: _Parts, owner: Element, state: str) -> tuple[str, ...]:
     found = [
         one
         for one in graph.owned(owner)
-        if one.kind is Kind.REGION and _initial(graph, one) is not None
+        if one.kind is Kind.REGION and initial_of(graph, one) is not None
     ]
     for region in found:
         alone = len(found) == 1
@@ -260,7 +149,7 @@ def _read_region(parts: _Parts, region: Element, state: str, name: str) -> None:
     literals = unique(fallbacks, "state", INACTIVE)
     domain = EnumerationDomain((*((INACTIVE,) if state else ()), *literals))
     variable = parts.reading.make(f"region {region.id}", name, Owner.SYSTEM, domain, region.id)
-    initial = _initial(graph, region)
+    initial = initial_of(graph, region)
     parts.regions[region.id] = Region(
         region.id, variable, state, initial.id if initial else "", tuple(v.id for v in vertices)
     )

@@ -23,12 +23,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
-from sysmlc.logic.context import name_of
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import values
-from sysmlc.logic.expression import Binary, Conditional, Expression, Member, Name, Unary
-from sysmlc.logic.expression import Literal as Written
-from sysmlc.logic.formula import Const, Literal, Var
+from sysmlc.logic.formula import Literal
 from sysmlc.logic.machine import (
     INACTIVE,
     NO_EVENT,
@@ -44,6 +41,7 @@ from sysmlc.logic.machine import (
     Vertex,
     WhenTold,
 )
+from sysmlc.logic.step_values import value_of
 
 Valuation = dict[str, Literal]
 
@@ -137,7 +135,7 @@ def _settle(
         if state.timer:
             after[state.timer] = 0 if first else _ticks(machine, now, after, run, state)
     for name, condition in machine.memories.items():
-        after[name] = bool(_value(machine, condition, after if first else now))
+        after[name] = bool(value_of(machine, condition, after if first else now))
     return after
 
 
@@ -232,7 +230,7 @@ def _occurs(
             case AfterTicks(count):
                 happens = now[state.timer] == count - 1
             case OnRise(memory, condition):
-                happens = bool(_value(machine, condition, now)) and not now[memory]
+                happens = bool(value_of(machine, condition, now)) and not now[memory]
             case WhenTold(variable):
                 happens = bool(now[variable])
         if happens:
@@ -275,7 +273,7 @@ def _pass(
         source = machine.vertices[one.source]
         if source.kind == "choice":
             seen = run.store
-        if one.guard is not None and not _value(machine, one.guard, seen):
+        if one.guard is not None and not value_of(machine, one.guard, seen):
             return None
         if source.pick:
             run = run.pick(source.pick, one.literal)
@@ -335,7 +333,7 @@ def _act(machine: Machine, run: _Run, actions: tuple[Action, ...]) -> _Run:
             case Raise(output):
                 run = replace(run, raised=run.raised | {output})
             case Assign(variable, expression):
-                value = _value(machine, expression, run.store)
+                value = value_of(machine, expression, run.store)
                 domain = machine.variable(variable).domain
                 if isinstance(domain, IntegerDomain):
                     value = _bounded(int(value), domain)
@@ -345,62 +343,3 @@ def _act(machine: Machine, run: _Run, actions: tuple[Action, ...]) -> _Run:
 
 def _bounded(value: int, domain: IntegerDomain) -> int:
     return max(domain.low, min(domain.high, value))
-
-
-# -- values of expressions ---------------------------------------------------------------------
-
-
-def _value(machine: Machine, expression: Expression, store: Mapping[str, Literal]) -> Literal:
-    match expression:
-        case Written(value):
-            return value if isinstance(value, bool | int | str) else 0
-        case Name() | Member():
-            return _named(machine, expression, store)
-        case Unary(op, operand):
-            inner = _value(machine, operand, store)
-            return not inner if op == "not" else int(inner) * (-1 if op == "-" else 1)
-        case Conditional(condition, then, otherwise):
-            branch = then if _value(machine, condition, store) else otherwise
-            return _value(machine, branch, store)
-        case Binary(op, left, right):
-            return _OPERATIONS[op](_value(machine, left, store), _value(machine, right, store))
-        case _:
-            raise TypeError(f"{expression} has no finite value")
-
-
-def _named(machine: Machine, name: Name | Member, store: Mapping[str, Literal]) -> Literal:
-    written = name_of(name) or ""
-    symbol = machine.scope(written)
-    match None if symbol is None else symbol.formula:
-        case Var(variable):
-            return store[variable]
-        case Const(value):
-            return value
-        case _:
-            return written.replace(".", "::").rpartition("::")[2]
-
-
-def _quotient(left: int, right: int) -> int:
-    if right == 0:
-        return 0
-    sign = 1 if (left < 0) == (right < 0) else -1
-    return sign * (abs(left) // abs(right))
-
-
-_OPERATIONS: dict[str, Callable[..., Literal]] = {
-    "and": lambda a, b: a and b,
-    "or": lambda a, b: a or b,
-    "xor": lambda a, b: a != b,
-    "implies": lambda a, b: not a or b,
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": _quotient,
-    "%": lambda a, b: a - b * _quotient(a, b),
-}
