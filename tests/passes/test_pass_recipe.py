@@ -367,6 +367,15 @@ def test_a_tag_that_cannot_be_read_is_told_and_left_out():
     assert next(one for one in found.functions if one.id == "Plant::Close").duration is None
 
 
+def test_a_missing_flow_is_told_once_at_each_of_its_ends():
+    steps = tuple(step for step in samples.STEPS if step != "g l")
+    found = [one for one in run(samples.task(steps=steps))[2] if one.rule.code == "SM603"]
+    assert [one.message for one in found] == [
+        "in 'Plant::Mount', nothing leads to 'look'",
+        "in 'Plant::Mount', no way leads from 'grip' to an end",
+    ]
+
+
 def test_an_unnamed_attribute_and_pin_show_their_kind():
     text = samples.task().replace('Property mount.n "n"', "Property mount.n")
     text = text.replace('Pin l.ok "ok"', "Pin l.ok")

@@ -7,7 +7,7 @@ from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, graphs
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.flow import STEPS, cycles, forward_edges, reachable
-from sysmlc.recipe.model import FlowGraph, Model
+from sysmlc.recipe.model import FlowGraph, Model, Node
 
 _FORK = samples.NODES.replace('"good?" subkind="decision"', '"both" subkind="fork"')
 _FORKED = ("s g", "g l", "l d", "d a", "d b", "a m", "b m", "m e")
@@ -55,11 +55,19 @@ def _way_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     pairs = [(edge.source, edge.target) for edge in graph.edges]
     begun = reachable(starts, pairs)
     done = reachable(ends, [(b, a) for a, b in pairs])
-    for node in graph.nodes:
-        if node.id not in begun:
-            yield node.element, f"nothing leads to '{_short(node.id)}'"
-        elif node.id not in done:
-            yield node.element, f"no way leads from '{_short(node.id)}' to an end"
+    lost = [node for node in graph.nodes if node.id not in begun]
+    stuck = [node for node in graph.nodes if node.id in begun and node.id not in done]
+    for node in _first_of(lost, [(b, a) for a, b in pairs]):
+        yield node.element, f"nothing leads to '{_short(node.id)}'"
+    for node in _first_of(stuck, pairs):
+        yield node.element, f"no way leads from '{_short(node.id)}' to an end"
+
+
+def _first_of(nodes: list[Node], pairs: list[tuple[str, str]]) -> list[Node]:
+    """The nodes from which no pair leads to another of them: the others follow from these."""
+    ids = {node.id for node in nodes}
+    leading = {a for a, b in pairs if a != b and b in ids}
+    return [node for node in nodes if node.id not in leading] or nodes[:1]
 
 
 def nesting(model: Model, tables: Tables) -> Iterator[Finding]:
