@@ -1,6 +1,6 @@
 """From the graph to ``Machine``: vertices, regions, transitions and their variables."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
@@ -17,25 +17,19 @@ from sysmlc.logic.expression import Literal as Written
 from sysmlc.logic.machine import (
     INACTIVE,
     NO_EVENT,
-    AfterTicks,
     Machine,
-    Occurrence,
-    OnEvent,
-    OnRise,
     Region,
     Transition,
     Vertex,
-    WhenTold,
 )
 from sysmlc.logic.machine_actions import (
     Reading,
     read_behaviours,
     read_condition,
-    ticks_of,
-    told_time,
 )
 from sysmlc.logic.machine_checks import have_common_cause, is_derivable, may_compete
 from sysmlc.logic.machine_support import initial_of, is_supported
+from sysmlc.logic.machine_triggers import Parts, occurrence_of
 from sysmlc.logic.names import Names, identifier, unique
 from sysmlc.logic.samples import arrow, machine
 
@@ -70,20 +64,6 @@ class MachineOptions:
     assumed_range: tuple[int, int] = (0, 15)
 
 
-@dataclass(slots=True)
-class _Parts:
-    """The machine while it grows."""
-
-    reading: Reading
-    machine: Element
-    vertices: dict[str, Vertex] = field(default_factory=dict)
-    regions: dict[str, Region] = field(default_factory=dict)
-    outgoing: dict[str, tuple[Transition, ...]] = field(default_factory=dict)
-    events: dict[str, str] = field(default_factory=dict)
-    bounds: dict[str, int] = field(default_factory=dict)
-    memories: dict[str, Expression] = field(default_factory=dict)
-
-
 def context_classifier(graph: Graph, behaviour: Element) -> Element | None:
     """The classifier in which a behaviour's names are resolved: the nearest that is none."""
     for above in graph.ancestors(behaviour):
@@ -110,17 +90,17 @@ def read_machine(
     return made if is_derivable(graph, made, sink) else None
 
 
-def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> _Parts:
+def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> Parts:
     context = context_of(graph, context_classifier(graph, machine), options.assumed_range)
     taken = [one.variable for one in context.features.values()] + list(context.features)
     names = Names("event", NO_EVENT, *taken)
-    return _Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
+    return Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
 
 
 # -- vertices ----------------------------------------------------------------------------------
 
 
-def _read_regions(parts: _Parts, owner: Element, state: str) -> tuple[str, ...]:
+def _read_regions(parts: Parts, owner: Element, state: str) -> tuple[str, ...]:
     graph = parts.reading.graph
     found = [
         one
@@ -138,7 +118,7 @@ def _region_name(owner: Element, region: Element, state: str, alone: bool) -> st
     return f"{identifier(owner.name)}_{own}" if state else own
 
 
-def _read_region(parts: _Parts, region: Element, state: str, name: str) -> None:
+def _read_region(parts: Parts, region: Element, state: str, name: str) -> None:
     graph = parts.reading.graph
     kinds = (Kind.STATE, Kind.FINAL_STATE, Kind.PSEUDOSTATE)
     vertices = [one for one in graph.owned(region) if one.kind in kinds]
@@ -158,7 +138,7 @@ def _read_region(parts: _Parts, region: Element, state: str, name: str) -> None:
         _read_vertex(parts, vertex, region.id, names.get(vertex.id, ""))
 
 
-def _read_vertex(parts: _Parts, element: Element, region: str, literal: str) -> None:
+def _read_vertex(parts: Parts, element: Element, region: str, literal: str) -> None:
     if element.kind is not Kind.STATE:
         kind = "final" if element.kind is Kind.FINAL_STATE else element.subkind
         parts.vertices[element.id] = Vertex(element.id, kind, literal, region)
@@ -179,7 +159,7 @@ def _read_vertex(parts: _Parts, element: Element, region: str, literal: str) -> 
     parts.vertices[element.id] = replace(parts.vertices[element.id], regions=inner)
 
 
-def _read_do(parts: _Parts, state: Element) -> str:
+def _read_do(parts: Parts, state: Element) -> str:
     behaviour = parts.reading.graph.target(state, Edge.DO)
     if behaviour is None:
         return ""
@@ -191,7 +171,7 @@ def _read_do(parts: _Parts, state: Element) -> str:
 # -- transitions -------------------------------------------------------------------------------
 
 
-def _read_transitions(parts: _Parts) -> None:
+def _read_transitions(parts: Parts) -> None:
     graph = parts.reading.graph
     for vertex in tuple(parts.vertices.values()):
         element = graph[vertex.id]
@@ -211,7 +191,7 @@ def _label(graph: Graph, transition: Element) -> str:
     return transition.name or f"to_{target.name if target and target.name else 'next'}"
 
 
-def _read_transition(parts: _Parts, element: Element, vertex: Vertex, literal: str) -> Transition:
+def _read_transition(parts: Parts, element: Element, vertex: Vertex, literal: str) -> Transition:
     graph = parts.reading.graph
     text = _guard_text(graph, element)
     guard = None
@@ -226,7 +206,7 @@ def _read_transition(parts: _Parts, element: Element, vertex: Vertex, literal: s
         vertex.id,
         target.id if target else "",
         element.subkind or "external",
-        tuple(_occurrence(parts, trigger, vertex) for trigger in triggers),
+        tuple(occurrence_of(parts, trigger, vertex) for trigger in triggers),
         guard,
         read_behaviours(parts.reading, element, Edge.EFFECT),
     )
@@ -277,53 +257,10 @@ def _share_occurrence(left: Transition, right: Transition) -> bool:
     return bool(same) or (not left.occurrences and not right.occurrences)
 
 
-# -- triggers ----------------------------------------------------------------------------------
-
-
-def _occurrence(parts: _Parts, trigger: Element, vertex: Vertex) -> Occurrence:
-    kind = trigger.subkind
-    if kind == "time" or (not kind and "when" in trigger.attrs):
-        return _time(parts, trigger, vertex)
-    if kind == "change" or (not kind and "condition" in trigger.attrs):
-        return _change(parts, trigger)
-    if kind == "any":
-        parts.events.setdefault("any", unique([*parts.events.values(), "other"], "", NO_EVENT)[-1])
-        return OnEvent(None)
-    return OnEvent(_event(parts, trigger))
-
-
-def _event(parts: _Parts, trigger: Element) -> str:
-    graph = parts.reading.graph
-    type_ = graph.target(trigger, Edge.TYPED_BY)
-    key = trigger.name if type_ is None else type_.id
-    name = (type_.name if type_ is not None else "") or trigger.name or "event"
-    if key not in parts.events:
-        taken = unique([*parts.events.values(), name], "event", NO_EVENT)
-        parts.events[key] = taken[-1]
-    return parts.events[key]
-
-
-def _time(parts: _Parts, trigger: Element, vertex: Vertex) -> Occurrence:
-    count = ticks_of(parts.reading, trigger)
-    if count is None:
-        return WhenTold(told_time(parts.reading, trigger))
-    parts.bounds[vertex.id] = max(count, parts.bounds.get(vertex.id, 0))
-    return AfterTicks(count)
-
-
-def _change(parts: _Parts, trigger: Element) -> Occurrence:
-    text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
-    condition = read_condition(parts.reading, text, "change condition", trigger)
-    key = f"memory {text}"
-    memory = parts.reading.make(key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id)
-    parts.memories[memory] = condition
-    return OnRise(memory, condition)
-
-
 # -- the whole ---------------------------------------------------------------------------------
 
 
-def _complete_states(parts: _Parts) -> None:
+def _complete_states(parts: Parts) -> None:
     """Give states and branching pseudostates the variables that their transitions need."""
     graph, reading = parts.reading.graph, parts.reading
     for id, vertex in tuple(parts.vertices.items()):
@@ -358,7 +295,7 @@ def _with(vertex: Vertex, changes: dict[str, str]) -> Vertex:
     )
 
 
-def _pick(parts: _Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -> str:
+def _pick(parts: Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -> str:
     reading = parts.reading
     literals = tuple(one.literal for one in outgoing)
     domain = EnumerationDomain((NO_EVENT, *literals))
@@ -371,7 +308,7 @@ def _pick(parts: _Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -
     return pick
 
 
-def _assemble(parts: _Parts, top: tuple[str, ...]) -> Machine:
+def _assemble(parts: Parts, top: tuple[str, ...]) -> Machine:
     reading = parts.reading
     features = {one.variable: one for one in reading.context.features.values()}
     assigned = tuple(name for name in features if name in reading.assigned)
@@ -392,7 +329,7 @@ def _assemble(parts: _Parts, top: tuple[str, ...]) -> Machine:
     )
 
 
-def _event_variable(parts: _Parts) -> tuple[Variable, ...]:
+def _event_variable(parts: Parts) -> tuple[Variable, ...]:
     if not parts.events:
         return ()
     domain = EnumerationDomain((NO_EVENT, *parts.events.values()))
