@@ -198,6 +198,16 @@ def test_without_an_assumption_the_activity_may_hang(name):
         assert holds_somewhere(f"{joined(others)} & {joined(moves)} & !({temporal(finish)})")
 
 
+def test_an_exit_guard_that_holds_again_and_again_is_not_enough_to_leave_a_loop():
+    """It may hold only while the token is elsewhere (docs/decisions/0011-exits-of-loops.md)."""
+    found = contract(MODELS["loop"])
+    moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
+    (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
+    ended = [c for c in found.assumptions if c.text.startswith("Whenever")]
+    plain = f"{joined(ended)} & (G F ok) & {joined(moves)}"
+    assert holds_somewhere(f"{plain} & !({temporal(finish)})")
+
+
 def test_a_choice_that_the_diagram_leaves_open_stays_open():
     found = derive(tokens_of(activity(("choose", ("act",), ("act",)))))
     first, second = (v.name for v in found.variables if v.name.startswith("run_"))
