@@ -1,0 +1,42 @@
+"""Where the corpus is there, and in continuous integration, a skip is a failure."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+TESTS = """
+import pytest
+
+@pytest.mark.corpus
+def test_corpus():
+    pytest.skip("no model")
+
+@pytest.mark.plantuml
+def test_plantuml():
+    pytest.skip("no java")
+
+def test_other():
+    pytest.skip("not here")
+"""
+
+
+@pytest.mark.parametrize(
+    ("env", "expected"),
+    [({}, "3 skipped"), ({"CI": "1"}, "1 failed, 2 skipped"), ({"SYSMLC_CORPUS": "x"}, "2 failed")],
+)
+def test_a_skip_is_a_failure_where_it_hides_something(tmp_path, env, expected):
+    (tmp_path / "test_skips.py").write_text(TESTS)
+    clean = {k: v for k, v in os.environ.items() if k not in ("CI", "SYSMLC_CORPUS")}
+    run = [sys.executable, "-m", "pytest", "-p", "conftest", "-p", "no:cacheprovider"]
+    options = ["-c", str(ROOT / "pyproject.toml"), "--rootdir", str(ROOT), "-v"]
+    done = subprocess.run(
+        [*run, *options, str(tmp_path / "test_skips.py")],
+        env={**clean, "PYTHONPATH": str(ROOT / "tests"), **env},
+        capture_output=True,
+        text=True,
+    )
+    assert expected in done.stdout
