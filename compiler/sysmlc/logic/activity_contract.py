@@ -67,6 +67,7 @@ class _Game:
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
+        self._complete: dict[str, Formula] = {}
 
     # -- nodes -----------------------------------------------------------------------------
 
@@ -85,6 +86,11 @@ class _Game:
 
     def complete(self, region: str) -> Formula:
         """A token is at a final node of the region, or none is left in the region."""
+        if region not in self._complete:
+            self._complete[region] = self._completion(region)
+        return self._complete[region]
+
+    def _completion(self, region: str) -> Formula:
         at_final = [_at(edge) for edge in self.graph.ends(region)]
         if not self.graph.can_empty(region):
             return f.either(*at_final)
