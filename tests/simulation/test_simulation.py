@@ -213,6 +213,7 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
             3,
         ),
         ("component: Gate.pass\nsteps: [{}]\ntrace: [{}, {}]\n", "SM556", "has 2 entries", 3),
+        ("&x {component: *x, steps: []}", "SM550", "contains itself", 0),
         ("\x00", "SM550", "the scenario is not YAML", 0),
     ],
 )

@@ -1,6 +1,7 @@
 """Scenarios: read from YAML, checked against their schema, with the line of every value."""
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -62,6 +63,14 @@ class Scenario:
 
 def read(source: Source, sink: Sink) -> list[Scenario]:
     """The scenarios of a file; empty when it can't be read, which is reported."""
+    try:
+        return _read(source, sink)
+    except RecursionError:
+        _report(source, sink, Spot(), "it is nested too deeply, or contains itself")
+        return []
+
+
+def _read(source: Source, sink: Sink) -> list[Scenario]:
     document = _load(source, sink)
     if document is None or not _is_valid(document, source, sink):
         return []
@@ -76,11 +85,13 @@ def _load(source: Source, sink: Sink) -> "Mapping[str, object] | None":
     from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
     try:
-        document = YAML(typ="rt").load(source.data.decode("utf-8-sig"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            document = YAML(typ="rt").load(source.data.decode("utf-8-sig"))
     except MarkedYAMLError as error:
         _report(source, sink, _mark(error), str(error.problem or error).strip())
         return None
-    except (YAMLError, UnicodeDecodeError, RecursionError, ValueError) as error:
+    except (YAMLError, UnicodeDecodeError, ValueError) as error:
         _report(source, sink, Spot(), str(error).splitlines()[0])
         return None
     if not isinstance(document, Mapping):
