@@ -86,3 +86,49 @@ def test_an_id_that_one_file_uses_twice_is_an_error():
     assert len(reading.graph) == 3
     near = twice.replace('"a"', '"b"', 1)
     assert read(papyrus(near)).findings == []
+
+
+def test_events_may_be_in_another_file():
+    events = papyrus(
+        '<packagedElement xmi:type="uml:Signal" xmi:id="s"/>'
+        '<packagedElement xmi:type="uml:SignalEvent" xmi:id="ev" signal="s"/>',
+        name="events.uml",
+    )
+    machine = papyrus(
+        '<packagedElement xmi:type="uml:StateMachine" xmi:id="sm"><region xmi:id="r">'
+        '<transition xmi:id="t"><trigger xmi:id="tr"><event xmi:type="uml:SignalEvent"'
+        ' href="events.uml#ev"/></trigger></transition></region></packagedElement>'
+    )
+    reading = read(machine, events)
+    assert reading.graph["tr"].attrs == {"subkind": "signal"}
+    assert [(r.source, r.target, r.ordinal) for r in reading.graph.pending] == [("tr", "s", -1)]
+
+
+def test_ids_in_attributes_lead_into_other_files():
+    functions = papyrus(
+        '<packagedElement xmi:type="uml:FunctionBehavior" xmi:id="f"/>', name="functions.uml"
+    )
+    activity = papyrus(
+        '<packagedElement xmi:type="uml:Activity" xmi:id="a"><node xmi:type="uml:DecisionNode"'
+        ' xmi:id="d"><decisionInput href="functions.uml#f"/></node></packagedElement>'
+    )
+    assert read(activity, functions).graph["d"].attrs["decision_input"] == "f"
+    assert read(activity).graph["d"].attrs["decision_input"] == "functions.uml#f"
+
+
+def test_what_a_trigger_or_transition_cannot_find_is_left_for_resolve_to_report():
+    reading = read(
+        papyrus(
+            '<packagedElement xmi:type="uml:StateMachine" xmi:id="sm"><region xmi:id="r">'
+            '<transition xmi:id="t" guard="gone"><trigger xmi:id="tr" event="lost"/>'
+            '<trigger xmi:id="tt"><event xmi:type="uml:TimeEvent" href="e.uml#x"/></trigger>'
+            "</transition></region></packagedElement>"
+        )
+    )
+    waiting = sorted((str(r.edge), r.source, r.target) for r in reading.graph.pending)
+    assert waiting == [
+        ("guard", "t", "gone"),
+        ("references", "tr", "lost"),
+        ("references", "tt", "e.uml#x"),
+    ]
+    assert reading.graph["tt"].subkind == "time"

@@ -19,6 +19,7 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     _report_unsupported(context, sink)
     _report_approximated(context, sink)
+    _report_baseless(context, sink)
     if not any(context.lowered.own):
         subject = Subject(document.name, place=context.place(0))
         sink.report(rules.NO_MODEL, subject, file=document.name)
@@ -46,11 +47,13 @@ def _report_unsupported(context: Context, sink: Sink) -> None:
     document = context.document
     found: dict[str, list[tuple[int, int]]] = {}
     types = _types(context)
+    baseless = frozenset(context.baseless)
     end = -1
     for row, verdict in enumerate(context.verdicts):
-        if verdict is Verdict.UNSUPPORTED and row >= end and row not in context.reported:
+        if verdict is Verdict.UNSUPPORTED and row >= end:
             end = document.ends[row]
-            found.setdefault(types[row], []).append((row, end - row))
+            if row not in baseless:
+                found.setdefault(types[row], []).append((row, end - row))
     for type_name, rows in found.items():
         number = sum(size for _, size in rows)
         subject = Subject(document.name, place=context.place(rows[0][0]))
@@ -67,6 +70,16 @@ def _report_approximated(context: Context, sink: Sink) -> None:
         subject = Subject(context.document.name, place=context.place(rows[0]))
         count = _count(len(rows))
         sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=lost)
+
+
+def _report_baseless(context: Context, sink: Sink) -> None:
+    found: dict[str, list[int]] = {}
+    for row in context.baseless:
+        found.setdefault(context.document.features[row], []).append(row)
+    for name, rows in found.items():
+        subject = Subject(name, context.document.id(rows[0]), context.place(rows[0]))
+        times = "once" if len(rows) == 1 else f"{len(rows)} times"
+        sink.report(rules.BASELESS, subject, stereotype=name, times=times)
 
 
 def _count(number: int) -> str:

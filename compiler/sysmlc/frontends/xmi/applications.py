@@ -1,7 +1,6 @@
 """Applications of stereotypes: siblings of the model that name their base elements."""
 
-from sysmlc.diagnostics import Subject, Verdict
-from sysmlc.frontends.xmi import rules
+from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.unit import Lowered
@@ -38,7 +37,8 @@ def _application(context: Context, row: int) -> None:
         return
     kept = _kept(context, bases)
     if not kept and not any(is_href for _, _, is_href in bases):
-        _report(context, row)
+        context.subtree(row, Verdict.UNSUPPORTED)
+        context.baseless.append(row)
         return
     context.subtree(row, Verdict.MAPPED if kept else Verdict.EXTERNAL)
     element = _element(context, row, kept)
@@ -72,14 +72,6 @@ def _kept(context: Context, bases: list[_Target]) -> list[tuple[Lowered, int]]:
     """Bases that are elements of the graph."""
     found = [context.unit.find(context.lowered, t, is_href) for t, _, is_href in bases]
     return [place for place in found if place is not None and place[0].own[place[1]]]
-
-
-def _report(context: Context, row: int) -> None:
-    context.subtree(row, Verdict.UNSUPPORTED)
-    context.reported.update(range(row, context.document.ends[row]))
-    name = context.document.features[row]
-    subject = Subject(name, context.document.id(row), context.place(row))
-    context.sink.report(rules.BASELESS, subject, stereotype=name)
 
 
 def _element(context: Context, row: int, kept: list[tuple[Lowered, int]]) -> Element:

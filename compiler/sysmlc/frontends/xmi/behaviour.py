@@ -83,8 +83,8 @@ def finish(context: Context) -> None:
         _trigger(context, element, row)
     for element, row in context.messages:
         _message(context, element, row)
-    for element, target in context.guards:
-        _transition_guard(context, element, target)
+    for element, target, row in context.guards:
+        _transition_guard(context, element, target, row)
     _parameter_directions(context)
 
 
@@ -107,6 +107,7 @@ def _ids(context: Context, row: int, feature: str) -> list[str]:
 def _trigger(context: Context, element: Element, row: int) -> None:
     event = _target(context.unit, context.lowered, row, "event")
     if event is None:
+        _unknown_event(context, element, row)
         return
     holder, at = event
     subkind = metaclasses.EVENT_TYPES.get(holder.document.types[at])
@@ -116,6 +117,16 @@ def _trigger(context: Context, element: Element, row: int) -> None:
     if not element.name:
         context.graph.rename(element, holder.document.attributes[at].get("name", ""))
     _event_details(context, element, holder, at)
+
+
+def _unknown_event(context: Context, element: Element, row: int) -> None:
+    """The event is in no file of the unit: its metaclass may be known, and ``resolve`` asks."""
+    document = context.document
+    for target, at, is_href in references(document, row, "event"):
+        subkind = metaclasses.EVENT_TYPES.get(document.types[at])
+        if subkind is not None and is_href:
+            element.attrs["subkind"] = subkind
+        context.link(Edge.REFERENCES, element.id, target, at, "event", is_href)
 
 
 def _event_details(context: Context, element: Element, holder: Lowered, row: int) -> None:
@@ -158,10 +169,11 @@ def _message(context: Context, element: Element, row: int) -> None:
                 context.link_from(holder, edge, element.id, target, place, "covered", is_href)
 
 
-def _transition_guard(context: Context, element: Element, target: str) -> None:
+def _transition_guard(context: Context, element: Element, target: str, row: int) -> None:
     id = context.unit.target_id(context.lowered, target, False)
     constraint = context.graph.get(id)
-    if constraint is None or constraint is element:
+    if constraint is None:
+        context.link(Edge.GUARD, element.id, target, row, "guard")
         return
     context.graph.connect(Edge.GUARD, element, constraint)
     for key in ("body", "language"):

@@ -24,10 +24,10 @@ class Context:
         self.messages: list[tuple[Element, int]] = []
         self.ends: list[tuple[Element, int]] = []
         self.parameters: list[tuple[Element, int]] = []
-        self.guards: list[tuple[Element, str]] = []
+        self.guards: list[tuple[Element, str, int]] = []
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
         self.lost: dict[int, str] = {}
-        self.reported: set[int] = set()
+        self.baseless: list[int] = []
         self.flow_targets: frozenset[str] | None = None
         self._bounds: dict[str, list[AttrValue]] = {}
         self._positions: dict[tuple[str, str], int] = {}

@@ -32,20 +32,20 @@ def _pseudostate(
 
 
 def _constraint(
-    context: "Context", element: Element, _row: int, _type_name: str, feature: str
+    context: "Context", element: Element, row: int, _type_name: str, feature: str
 ) -> None:
     owner = context.graph.owner(element)
     if feature in v.CONDITIONS:
         element.attrs["subkind"] = v.CONDITIONS[feature]
     if feature == "guard" and owner is not None:
-        context.guards.append((owner, element.id))
+        context.guards.append((owner, element.id, row))
 
 
 def _transition(
     context: "Context", element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
     for target in context.document.targets(row, "guard"):
-        context.guards.append((element, target))
+        context.guards.append((element, target, row))
 
 
 def _behaviour(

@@ -48,7 +48,7 @@ BASELESS = rule(
     "SM113",
     "stereotype-without-element",
     Severity.WARNING,
-    "stereotype '{stereotype}' is applied to nothing that is in the model",
+    "stereotype '{stereotype}' is applied {times} to nothing that is in the model",
     why="Tools leave such applications behind when the element was deleted, or when it is drawn "
     "only. They have no effect.",
     help="remove the application, or apply the stereotype again",

@@ -105,7 +105,7 @@ class Unit:
             edge, source, lowered, written, row, _, is_href, is_reversed = link
             at = lowered.document.ids.get(written, -1)
             if at >= 0 and lowered.own[at] and not is_href and not is_reversed:
-                ordinal = lowered.document.ordinals[row]
+                ordinal = self._ordinal(source, lowered, row)
                 found = Reference(edge, source, lowered.gids[at], Kind.CLASS, "", ordinal)
                 self.graph.refer(found)
                 continue
@@ -122,9 +122,11 @@ class Unit:
 
     def _reference(self, link: Link, target: str) -> Reference:
         edge, source, lowered, _, row, _, is_href, is_reversed = link
-        ordinal = lowered.document.ordinals[row]
         if is_reversed and target in self.graph:
-            return Reference(edge, target, source, ordinal=ordinal)
+            return Reference(edge, target, source, ordinal=self._ordinal(target, lowered, row))
+        if is_reversed:
+            edge = Edge.REFERENCES
+        ordinal = self._ordinal(source, lowered, row)
         if not is_href or target in self.graph:
             return Reference(edge, source, target, ordinal=ordinal)
         if lowered.verdicts[row] is Verdict.MAPPED:
@@ -132,6 +134,11 @@ class Unit:
         known = hrefs.hint(lowered.document, row, link.feature)
         kind = known[0] or self._likely(link)
         return Reference(edge, source, target, kind, known[1], ordinal)
+
+    def _ordinal(self, source: str, lowered: Lowered, row: int) -> int:
+        """Place of a reference in the file of the element that it leaves, -1 in other files."""
+        document = lowered.document
+        return document.ordinals[row] if self.graph[source].source == document.name else -1
 
     def _likely(self, link: Link) -> Kind:
         """What is general or redefined is most likely of the kind of what refers to it."""
