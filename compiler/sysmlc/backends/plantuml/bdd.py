@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
+from sysmlc.backends.plantuml.text import keyword_label, lines, padded, plain, small, stack
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
 
@@ -227,8 +227,8 @@ def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
         relation.arrow,
         aliases[relation.target],
         keyword_label(relation.label),
-        label(relation.near),
-        label(relation.far),
+        padded(relation.near),
+        padded(relation.far),
         relation.shows,
     )
 

@@ -103,8 +103,8 @@ def _is_navigable(association: Element, end: Element) -> bool:
 
 def _is_default_name(association: Element, ends: list[Element]) -> bool:
     """``A_line_gate``: what Papyrus and MagicDraw write, and do not show themselves."""
-    names = [end.name for end in ends]
-    return association.name in (f"A_{names[0]}_{names[1]}", f"A_{names[1]}_{names[0]}")
+    first, second = (end.name.lower() for end in ends)
+    return association.name.lower() in (f"a_{first}_{second}", f"a_{second}_{first}")
 
 
 def _end(association: Element, end: Element, type_: Element) -> str:

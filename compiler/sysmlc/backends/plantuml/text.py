@@ -51,6 +51,11 @@ def keyword_label(text: str) -> str:
     return stack(map(small, rows)) if text.startswith("«") else stack(rows)
 
 
+def padded(text: str) -> str:
+    """The text for the end of a line, kept off the arrow head by a blank on each side."""
+    return stack(f"<U+00A0>{row}<U+00A0>" for row in lines(text))
+
+
 def comment(text: str) -> str:
     """Text of a line comment: neither a line end nor the start of a block comment is left."""
     return " ".join(_visible(text).split()).replace("/'", "/ '").replace("'/", "' /")
