@@ -7,7 +7,7 @@ become structured nodes too (``Part``), so that each of them starts and ends as 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.diagnostics import Rule, Sink
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.tokens import ACTIVITY_REGION
 from sysmlc.passes import activity_rules as rules
@@ -153,12 +153,16 @@ class _Reader:
             if "handlers" in node.attrs:
                 self.sink.report(rules.HANDLER, self.graph.subject(node), node=label)
             if node.kind is Kind.DATA_STORE:
-                self._fail(rules.UNSUPPORTED, node, node=label, what="a data store")
+                self.sink.report(
+                    rules.UNSUPPORTED, self._failed(node), node=label, what="a data store"
+                )
             elif node.subkind == "expansion":
-                self._fail(rules.UNSUPPORTED, node, node=label, what="an expansion region")
+                self.sink.report(
+                    rules.UNSUPPORTED, self._failed(node), node=label, what="an expansion region"
+                )
             elif _is_special_join(node):
                 text = str(node.attrs["join_spec"])
-                self._fail(rules.JOIN_SPEC, node, node=label, text=text)
+                self.sink.report(rules.JOIN_SPEC, self._failed(node), node=label, text=text)
             self._check_parts(node, label)
 
     def _check_parts(self, node: Element, label: str) -> None:
@@ -167,7 +171,7 @@ class _Reader:
         loose = [n for n in self.drawing.nodes if self.drawing.region[n.id] == node.id]
         if node.subkind in ("loop", "conditional") and (loose or not inside):
             what = f"a {node.subkind} node with nodes outside its tests and bodies"
-            self._fail(rules.UNSUPPORTED, node, node=label, what=what)
+            self.sink.report(rules.UNSUPPORTED, self._failed(node), node=label, what=what)
 
     def read_flows(self) -> None:
         for element in self._flow_elements():
@@ -192,7 +196,9 @@ class _Reader:
         weight = element.attrs.get("weight", 1)
         # Papyrus writes weight 0, which UML forbids, where nobody set one.
         if weight not in (0, 1, "0", "1"):
-            self._fail(rules.WEIGHT, element, flow=self._flow_label(element), weight=weight)
+            self.sink.report(
+                rules.WEIGHT, self._failed(element), flow=self._flow_label(element), weight=weight
+            )
             return None
         return self._placed(element, *source, *target)
 
@@ -204,7 +210,9 @@ class _Reader:
             node = self.graph.owner(node)
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
-            self._fail(rules.LOOSE_FLOW, element, flow=self._flow_label(element), end=end)
+            self.sink.report(
+                rules.LOOSE_FLOW, self._failed(element), flow=self._flow_label(element), end=end
+            )
         if node is None or node.id in self.left_out or self._is_left_out(node):
             return None
         return node, None if found is node else found
@@ -230,7 +238,7 @@ class _Reader:
             return _with_region(flow, here, leaves=True)
         if here == there:
             return _with_region(flow, here)
-        self._fail(rules.CROSSING, element, flow=self._flow_label(element))
+        self.sink.report(rules.CROSSING, self._failed(element), flow=self._flow_label(element))
         return None
 
     def _is_border(self, node: Element, region: str) -> bool:
@@ -251,9 +259,10 @@ class _Reader:
             node = self.graph.owner(node)
         return "" if node is None else self.drawing.labels[node.id]
 
-    def _fail(self, rule: Rule, element: Element, **facts: object) -> None:
+    def _failed(self, element: Element) -> Subject:
+        """The element as the subject of what stops the drawing from being a token graph."""
         self.has_failed = True
-        self.sink.report(rule, self.graph.subject(element), **facts)
+        return self.graph.subject(element)
 
 
 def flow_label(element: Element, source: str, target: str) -> str:

@@ -1,6 +1,6 @@
 """Connections inside a block: connectors with their item flows, and item flows between parts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import labels
@@ -61,7 +61,11 @@ def _connector(graph: Graph, connector: Element) -> Connection | None:
         return None
     flows = graph.sources(connector, Edge.REALIZING)
     ways = [_way(graph, flow, paths[0], paths[1]) for flow in flows]
-    rows = [f"{sign} {conveyed(graph, flow)}" for sign, flow in zip(ways, flows, strict=True)]
+    aims = {"→": _end_name(graph, paths[1]), "←": _end_name(graph, paths[0])}
+    rows = [
+        _row(conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1)
+        for way, flow in zip(ways, flows, strict=True)
+    ]
     named = _name(graph, connector)
     return Connection(
         paths[0],
@@ -72,6 +76,18 @@ def _connector(graph: Graph, connector: Element) -> Connection | None:
         labels.multiplicity(ends[1]),
         (connector.id, *(end.id for end in ends), *(flow.id for flow in flows)),
     )
+
+
+def _end_name(graph: Graph, path: Path) -> str:
+    return graph[path.ids()[-1]].name
+
+
+def _row(text: str, way: str, aims: Mapping[str, str], is_both: bool) -> str:
+    """One way is told by the arrow head; two ways need the end that each flow runs to.
+
+    A layout may draw either end on the left, so that an arrow sign alone would mislead.
+    """
+    return f"{text} → {aims[way]}" if is_both and way in aims else text
 
 
 def _path(graph: Graph, end: Element) -> Path | None:
