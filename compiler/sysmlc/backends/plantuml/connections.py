@@ -87,7 +87,7 @@ def _row(text: str, way: str, aims: Mapping[str, str], is_both: bool) -> str:
 
     A layout may draw either end on the left, so that an arrow sign alone would mislead.
     """
-    return f"{text} → {aims[way]}" if is_both and way in aims else text
+    return f"to {aims[way]}: {text}" if is_both and way in aims else text
 
 
 def _path(graph: Graph, end: Element) -> Path | None:
