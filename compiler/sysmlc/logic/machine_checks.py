@@ -119,7 +119,7 @@ def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) 
         return False
     is_state = vertex.kind == "state"
     return any(
-        (not is_state or coincide(one, other)) and _compatible(one, other, scope)
+        (not is_state or coincide(one, other)) and compatible(one, other, scope)
         for one, other in combinations(outgoing, 2)
     )
 
@@ -127,8 +127,7 @@ def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) 
 def have_common_cause(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) -> bool:
     """Whether two of them can be enabled by one and the same occurrence."""
     return any(
-        (vertex.kind != "state" or _have_same_trigger(one, other))
-        and _compatible(one, other, scope)
+        (vertex.kind != "state" or _have_same_trigger(one, other)) and compatible(one, other, scope)
         for one, other in combinations(outgoing, 2)
     )
 
@@ -167,7 +166,8 @@ def simultaneous(one: Transition, other: Transition) -> bool:
     return bool(events) or coincide(one, other)
 
 
-def _compatible(one: Transition, other: Transition, scope: Scope) -> bool:
+def compatible(one: Transition, other: Transition, scope: Scope) -> bool:
+    """Whether some values of the variables satisfy both guards."""
     guards = [guard for guard in (one.guard, other.guard) if guard is not None]
     return is_satisfiable(f.both(*(condition(guard, scope) for guard in guards)), guards, scope)
 
@@ -309,7 +309,7 @@ def _common_state(machine: Machine, one: str, other: str) -> str | None:
 def _races(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
     for one, other, _ in _orthogonal_pairs(machine):
         shared = [v for v in _touched(machine, one) if v in _touched(machine, other)]
-        if shared and _compatible(one, other, machine.scope):
+        if shared and compatible(one, other, machine.scope):
             subject = graph.subject(graph[one.id])
             sink.report(RACE, subject, first=one.words, second=other.words, variable=shared[0])
             yield one.id
@@ -336,7 +336,7 @@ def _regions_above(machine: Machine, vertex: str) -> list[str]:
 def _crossings(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
     for one, other, state in _orthogonal_pairs(machine):
         for leaver, stayer in ((one, other), (other, one)):
-            if _leaves(machine, leaver, state) and _compatible(one, other, machine.scope):
+            if _leaves(machine, leaver, state) and compatible(one, other, machine.scope):
                 subject = graph.subject(graph[leaver.id])
                 sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
                 yield leaver.id

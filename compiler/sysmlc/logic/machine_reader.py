@@ -28,6 +28,7 @@ from sysmlc.logic.machine_actions import (
     read_condition,
 )
 from sysmlc.logic.machine_checks import have_common_cause, is_derivable, may_compete
+from sysmlc.logic.machine_overrides import report_overrides
 from sysmlc.logic.machine_support import initial_of, is_supported
 from sysmlc.logic.machine_triggers import Parts, occurrence_of
 from sysmlc.logic.names import Names, identifier, unique
@@ -87,7 +88,10 @@ def read_machine(
     _read_transitions(parts)
     _complete_states(parts)
     made = _assemble(parts, top)
-    return made if is_derivable(graph, made, sink) else None
+    if not is_derivable(graph, made, sink):
+        return None
+    report_overrides(graph, made, sink)
+    return made
 
 
 def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> Parts:
