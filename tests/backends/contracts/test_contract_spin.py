@@ -162,6 +162,13 @@ formulas = st.recursive(
 )
 
 
+@pytest.mark.parametrize("op", [Op.EQ, Op.NE, Op.LT, Op.GE])
+def test_a_value_beyond_the_range_is_no_proposition_of_its_own(op):
+    formula = Apply(op, (Var("n"), Const(9)))
+    assert "9" not in spin_conjunct(Conjunct(formula, Class.SAFETY, "x"), DOMAINS)
+    assert_same(Conjunct(formula, Class.SAFETY, "x"))
+
+
 @given(formulas, st.sampled_from([Class.SAFETY, Class.LIVENESS]))
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_spot_reads_the_text_and_finds_it_equivalent(formula, class_):

@@ -84,7 +84,9 @@ def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
     if number > LIMIT:
         raise TooLargeError
     match formula:
-        case Apply(Op.NE, (Var(name, primed), Const(value))):
+        case Apply(Op.NE, (Var(name, primed), Const(value))) if value in domains.values(
+            known[name]
+        ):
             return f"!{_atom(name, primed, value, known)}"
         case _:
             return _cases(formula, variables, {}, {}, known)
