@@ -6,16 +6,12 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from sysmlc import resources
+from sysmlc.backends.templates import environment
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 _FOLDER = "contracts"
 _TITLES = {
@@ -60,7 +56,9 @@ class Page:
 def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
     """Markdown text. Raises ``jinja2.TemplateError`` when a template of the user's is wrong."""
     return (
-        _environment(templates).get_template("contract.md.j2").render(page=_page(graph, contract))
+        environment(_FOLDER, templates)
+        .get_template("contract.md.j2")
+        .render(page=_page(graph, contract))
     )
 
 
@@ -114,18 +112,3 @@ def _quoted(vertex: Element) -> str:
 def _place(graph: Graph, id: str) -> str:
     element = graph.get(id)
     return "" if element is None or not element.source else element.source
-
-
-def _environment(templates: Path | None) -> Environment:
-    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
-
-    ours = resources.path("templates", _FOLDER)
-    folders = [ours] if templates is None else [templates / _FOLDER, templates, ours]
-    return Environment(
-        loader=ChoiceLoader([FileSystemLoader(folder) for folder in folders]),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,
-    )

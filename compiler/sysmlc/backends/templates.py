@@ -1,0 +1,28 @@
+"""Templates of back ends: the user's before ours, and no name left undefined in silence."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sysmlc import resources
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+def environment(folder: str, templates: Path | None) -> "Environment":
+    """Templates of one back end, from ``templates/<folder>`` of the user, ``templates``, ours.
+
+    jinja2 is imported here, because only back ends with templates need it.
+    """
+    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
+
+    ours = resources.path("templates", folder)
+    folders = [ours] if templates is None else [templates / folder, templates, ours]
+    return Environment(
+        loader=ChoiceLoader([FileSystemLoader(one) for one in folders]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
