@@ -14,6 +14,7 @@ from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.driver import Observer, Request, compile_model
 from sysmlc.output import Output
+from sysmlc.sources import whole
 
 
 @pytest.fixture
@@ -160,7 +161,7 @@ def test_a_file_that_may_not_be_opened_stops_us(plant, monkeypatch):
     def refuses(*_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "open", refuses)
+    monkeypatch.setattr(whole, "_without_waiting", refuses)
     made = compiled(plant)
     assert (codes(made), made.exit_code()) == (["SM179"], 2)
 

@@ -101,6 +101,17 @@ SKIPPED = rule(
     wrong="models/ with plant.uml and an empty notes.xml",
     right="models/ with plant.uml",
 )
+CHANGING = rule(
+    "SM127",
+    "changing-file",
+    Severity.ERROR,
+    "'{path}' {reason}",
+    why="Another program is writing the file. It was read twice and changed both times; half of "
+    "a model would give wrong outputs, so nothing of it is used.",
+    help="compile again when the modelling tool has saved; 'sysmlc watch' waits for that",
+    wrong="sysmlc plant.mdzip while the tool saves it",
+    right="sysmlc plant.mdzip after the tool has saved it",
+)
 INTERNAL_FAULT = rule(
     "SM900",
     "internal-fault",
@@ -145,10 +156,12 @@ _BY_FAULT = {
     Fault.REFUSED: REFUSED,
     Fault.LIMIT: TOO_LARGE,
     Fault.MISSING: UNOPENED,
+    Fault.CHANGING: CHANGING,
 }
 
 STOPPING = frozenset(
-    found.code for found in (MISSING_FILE, UNOPENED, TOO_LARGE, INTERNAL_FAULT, INVALID_GRAPH)
+    found.code
+    for found in (MISSING_FILE, UNOPENED, TOO_LARGE, CHANGING, INTERNAL_FAULT, INVALID_GRAPH)
 )
 """Rules after which we could not do our work: exit code 2."""
 

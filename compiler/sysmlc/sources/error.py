@@ -14,6 +14,8 @@ class Fault(StrEnum):
     """It is larger or deeper than the limits: exit code 2."""
     MISSING = "missing"
     """It cannot be opened: exit code 2."""
+    CHANGING = "changing"
+    """Another program is writing it: exit code 2."""
 
 
 class SourceError(Exception):
@@ -31,4 +33,4 @@ class SourceError(Exception):
     @property
     def exit_code(self) -> int:
         """1 when the model is wrong, 2 when we could not do our work."""
-        return 2 if self.fault in (Fault.LIMIT, Fault.MISSING) else 1
+        return 2 if self.fault in (Fault.LIMIT, Fault.MISSING, Fault.CHANGING) else 1

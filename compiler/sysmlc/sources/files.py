@@ -5,9 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sysmlc.sources.archive import entries, is_archive
-from sysmlc.sources.error import Fault, SourceError
+from sysmlc.sources.error import SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
+from sysmlc.sources.whole import read_whole
 
 _MODEL_ENTRY = re.compile(
     r"(^|/)com\.nomagic\.magicdraw\.uml_model(?!____sharepoints).*\.(shared_)?model$"
@@ -34,23 +35,10 @@ def load(
 
     ``name`` is what outputs call it. Raises SourceError.
     """
-    source = Source(name, _read(path, name, limits))
+    source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
         return [source]
     found = entries(source, wanted, limits)
     if not found:
         raise SourceError("the archive holds no model", name)
     return found
-
-
-def _read(path: Path, name: str, limits: Limits) -> bytes:
-    try:
-        with path.open("rb") as stream:
-            data = stream.read(limits.file_size + 1)
-    except OSError as problem:
-        message = f"cannot be opened: {problem.strerror or type(problem).__name__}"
-        raise SourceError(message, name, fault=Fault.MISSING) from None
-    if len(data) > limits.file_size:
-        message = f"larger than {limits.file_size} bytes"
-        raise SourceError(message, name, fault=Fault.LIMIT)
-    return data

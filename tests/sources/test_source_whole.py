@@ -1,0 +1,62 @@
+"""Files are read whole: never half of one being saved, never a pipe or a device."""
+
+import os
+
+import pytest
+
+from sysmlc.sources import Fault, Limits, SourceError, whole
+
+LIMITS = Limits()
+
+
+def stamps(monkeypatch, *pairs):
+    """What the file looks like before and after each reading: size and time."""
+    left = list(pairs)
+    monkeypatch.setattr(whole, "_seen", lambda _: left.pop(0))
+    monkeypatch.setattr(whole, "_PAUSE", 0)
+
+
+def test_a_file_that_changes_once_while_it_is_read_is_read_again(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    stamps(monkeypatch, (4, 1), (4, 2), (4, 2), (4, 2))
+    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
+
+
+def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    stamps(monkeypatch, (4, 1), (4, 2), (4, 3), (4, 4))
+    with pytest.raises(SourceError, match="changes while it is read") as raised:
+        whole.read_whole(path, "plant.uml", LIMITS)
+    assert (raised.value.fault, raised.value.exit_code) == (Fault.CHANGING, 2)
+
+
+def test_a_file_that_grows_after_it_was_looked_at_is_read_again(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    stamps(monkeypatch, (2, 1), (2, 1), (4, 1), (4, 1))
+    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
+
+
+def test_the_old_content_is_whole_when_the_file_is_replaced_while_open(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<old/>")
+
+    def opener(name, flags):
+        handle = os.open(name, flags)
+        (tmp_path / "new").write_bytes(b"<newer/>")
+        (tmp_path / "new").replace(path)
+        return handle
+
+    monkeypatch.setattr(whole, "_without_waiting", opener)
+    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<old/>"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    path = tmp_path / "plant.uml"
+    os.mkfifo(path)
+    with pytest.raises(SourceError, match="is no regular file") as raised:
+        whole.read_whole(path, "plant.uml", LIMITS)
+    assert raised.value.exit_code == 2
