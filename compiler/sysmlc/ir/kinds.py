@@ -27,6 +27,8 @@ class Kind(StrEnum):
     COMPONENT = "Component"
     # Relation between classifiers; its ends are Property elements.
     ASSOCIATION = "Association"
+    # Set of generalizations that divide a classifier in one respect. UML 2.5.1 clause 9.7.
+    GENERALIZATION_SET = "GeneralizationSet"
     # Feature that holds values: part, reference, value, constraint property.
     PROPERTY = "Property"
     # Interaction point of a classifier. UML 2.5.1 clause 11.3, SysML 1.6 clause 9.
@@ -37,6 +39,14 @@ class Kind(StrEnum):
     RECEPTION = "Reception"
     # Parameter of an operation or a behaviour.
     PARAMETER = "Parameter"
+    # Alternative set of the parameters of a behaviour or operation. UML 2.5.1 clause 9.4.
+    PARAMETER_SET = "ParameterSet"
+    # Formal parameter of a template, owned by the template. UML 2.5.1 clause 7.3.
+    TEMPLATE_PARAMETER = "TemplateParameter"
+    # Binding of an element to the template of which it is made. UML 2.5.1 clause 7.3.
+    TEMPLATE_BINDING = "TemplateBinding"
+    # Actual parameter for one formal parameter of a template.
+    TEMPLATE_SUBSTITUTION = "TemplateSubstitution"
     # What flows: a classifier used only as the type of item flows.
     ITEM = "Item"
     # Measurement unit.
@@ -57,6 +67,8 @@ class Kind(StrEnum):
     CONNECTOR = "Connector"
     # One end of a connector: a role and the path of parts that leads to it.
     CONNECTOR_END = "ConnectorEnd"
+    # Use of a collaboration in a classifier, whose parts play its roles. UML 2.5.1 clause 11.7.
+    COLLABORATION_USE = "CollaborationUse"
     # Direction in which one kind of item may pass a port. SysML 1.6 clause 9.3.2.7.
     FLOW_PROPERTY = "FlowProperty"
     # Items conveyed over connectors or associations. SysML 1.6 clause 9.3.2.5.
@@ -73,6 +85,11 @@ class Kind(StrEnum):
     USE_CASE = "UseCase"
     # Role played by what is outside the system.
     ACTOR = "Actor"
+    # Extension of a use case by another, with its condition and extension points. UML 2.5.1 clause
+    # 18.1.
+    EXTEND = "Extend"
+    # Point of a use case at which others may extend it.
+    EXTENSION_POINT = "ExtensionPoint"
     # Viewpoint-conforming selection of the model.
     VIEW = "View"
     # Behaviour made of actions that tokens order. UML 2.5.1 clause 15.
@@ -119,6 +136,26 @@ class Kind(StrEnum):
     LIFELINE = "Lifeline"
     # Communication between two lifelines.
     MESSAGE = "Message"
+    # Point on a lifeline at which something happens; `subkind`: message, execution, destruction.
+    # UML 2.5.1 clause 17.5.
+    OCCURRENCE = "Occurrence"
+    # Time in which a lifeline executes something; `subkind`: behavior, action. UML 2.5.1 clause
+    # 17.5.
+    EXECUTION = "Execution"
+    # Part of an interaction; `subkind` is the operator of a combined fragment (alt, opt, loop,
+    # break, par, seq, strict, critical, neg, assert, ignore, consider), or ref, state-invariant,
+    # continuation. UML 2.5.1 clauses 17.2, 17.6, 17.7.
+    FRAGMENT = "Fragment"
+    # One alternative, repetition or thread of a combined fragment. UML 2.5.1 clause 17.6.
+    OPERAND = "Operand"
+    # Point at which messages enter or leave an interaction, an interaction use or a combined
+    # fragment. UML 2.5.1 clause 17.4.
+    GATE = "Gate"
+    # Demand that one occurrence comes before another. UML 2.5.1 clause 17.5.
+    GENERAL_ORDERING = "GeneralOrdering"
+    # Name for when something happens or how long it takes; `subkind`: time, duration. UML 2.5.1
+    # clause 8.5.
+    OBSERVATION = "Observation"
     # Client-supplier relation; its role (satisfy, allocate, ...) comes from its stereotype.
     DEPENDENCY = "Dependency"
     # Text attached to elements.
@@ -202,15 +239,26 @@ class Edge(StrEnum):
     REPRESENTS = "represents"
     # From a node to its activity partition.
     IN_PARTITION = "in-partition"
+    # From an occurrence, execution or fragment to the lifelines that it covers.
+    COVERS = "covers"
+    # From a message to the occurrence or gate at which it is sent.
+    SEND_EVENT = "send-event"
+    # From a message to the occurrence or gate at which it is received.
+    RECEIVE_EVENT = "receive-event"
+    # From an execution to the occurrence at which it starts.
+    START = "start"
+    # From an execution to the occurrence at which it ends.
+    FINISH = "finish"
     # From an instance, slot or application to its classifier, feature or stereotype.
     INSTANCE_OF = "instance-of"
     # From a classifier to its features, own and inherited.
     FEATURE = "feature"
     # From a mirror to its master (AutomationML).
     MIRRORS = "mirrors"
-    # From one side of a binding to the other.
+    # From one side of a binding to the other: a template binding to its template, a role of a
+    # collaboration to what plays it.
     BINDS = "binds"
-    # From a requirement, contract or application to the element it is about.
+    # From a requirement, contract, application or use case to the element it is about.
     SUBJECT = "subject"
     # From a requirement to an assumption.
     ASSUMES = "assumes"
