@@ -1,6 +1,7 @@
 """Findings in each form."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -8,7 +9,7 @@ from jsonschema import Draft202012Validator
 from sysmlc import resources
 from sysmlc.cli.session import _has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
-from sysmlc.diagnostics.render import FORMATS, make_report, render
+from sysmlc.diagnostics.render import FORMATS, Report, make_report, render
 from sysmlc.sources import Source
 
 OPEN = rule(
@@ -36,8 +37,12 @@ def report(*findings):
     return make_report(sink, [SOURCE])
 
 
+def without_xpath(made):
+    return Report(tuple(replace(finding, xpath="") for finding in made.findings))
+
+
 def test_text_has_an_excerpt_and_a_caret():
-    assert render(report(), "text") == (
+    assert render(without_xpath(report()), "text") == (
         "error[SM944 test-open-end]: connector 'belt' has an open end\n"
         "  --> plant.uml:2:3 (Plant::belt)\n"
         "   |\n"
@@ -48,6 +53,12 @@ def test_text_has_an_excerpt_and_a_caret():
         "\n"
         "1 error in 1 file\n"
     )
+
+
+def test_text_shows_the_xpath_that_it_is_given():
+    made = render(report(), "text").splitlines()
+    assert made[5] == "  xpath: /uml:Model/ownedConnector[1]"
+    assert made[:5] + made[6:] == render(without_xpath(report()), "text").splitlines()
 
 
 def test_text_is_coloured_when_asked():
@@ -98,6 +109,7 @@ def test_json_follows_its_schema():
                 "file": "plant.uml",
                 "line": 2,
                 "column": 3,
+                "xpath": "/uml:Model/ownedConnector[1]",
                 "severity": "error",
                 "code": "SM944",
                 "name": "test-open-end",
@@ -200,6 +212,9 @@ def test_sarif_has_the_shape_that_scanning_services_read():
     run = log["runs"][0]
     assert [entry["id"] for entry in run["tool"]["driver"]["rules"]] == ["SM944", "SM945"]
     assert [result["ruleIndex"] for result in run["results"]] == [0, 1, 1]
+    assert run["results"][0]["locations"][0]["properties"] == {
+        "xpath": "/uml:Model/ownedConnector[1]"
+    }
     archive = run["results"][1]["locations"][0]["physicalLocation"]
     assert archive == {"artifactLocation": {"uri": "my%20plant.mdzip"}}
 

@@ -1,4 +1,4 @@
-"""Lines and columns of places, found only when something is to be shown."""
+"""Lines, columns and XPaths of places, found only when something is to be shown."""
 
 import codecs
 import re
@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
+from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import parse, parser
@@ -22,14 +23,21 @@ _BOMS = (
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """Where something stands: line and column count characters from 1; ``text`` is the line."""
+    """Where something stands: line and column count characters from 1; ``text`` is the line.
+
+    ``xpath`` leads to the element, or to the innermost one that is open there; it is empty
+    when it was not asked for or the file is not XML.
+    """
 
     line: int
     column: int
     text: str
+    xpath: str = ""
 
 
-def locate(sources: Iterable[Source], places: Iterable[Place]) -> dict[Place, Location]:
+def locate(
+    sources: Iterable[Source], places: Iterable[Place], *, with_xpath: bool = False
+) -> dict[Place, Location]:
     """Locations of the places that can be found; each file is parsed at most once."""
     wanted: dict[str, list[Place]] = {}
     for place in places:
@@ -37,21 +45,37 @@ def locate(sources: Iterable[Source], places: Iterable[Place]) -> dict[Place, Lo
     found: dict[Place, Location] = {}
     for source in sources:
         if source.name in wanted:
-            found.update(_in_file(source, wanted[source.name]))
+            found.update(_in_file(source, wanted[source.name], with_xpath))
     return found
 
 
-def _in_file(source: Source, places: Sequence[Place]) -> dict[Place, Location]:
-    offsets = _offsets(source, {place.ordinal for place in places if place.ordinal >= 0})
-    exact = [(_offset(place, offsets), place) for place in places]
+def _in_file(source: Source, places: Sequence[Place], with_xpath: bool) -> dict[Place, Location]:
+    offsets = (_spots if with_xpath else _plain)(source, places)
+    exact = [(offsets.get(place, (-1, ""))[0], place) for place in places]
     known = sorted(((o, p) for o, p in exact if o >= 0), key=lambda pair: pair[0])
     text = _Text(source)
-    found = {place: text.location(offset) for offset, place in known}
+    found = {place: text.location(offset, offsets[place][1]) for offset, place in known}
     return found | {p: text.line(p) for o, p in exact if o < 0 and p.line > 0}
 
 
-def _offset(place: Place, offsets: dict[int, int]) -> int:
-    return offsets.get(place.ordinal, -1) if place.ordinal >= 0 else place.offset
+def _plain(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
+    """Offsets of the places that can be found."""
+    offsets = _offsets(source, {place.ordinal for place in places if place.ordinal >= 0})
+    found = ((p, offsets.get(p.ordinal, -1) if p.ordinal >= 0 else p.offset) for p in places)
+    return {place: (offset, "") for place, offset in found}
+
+
+def _spots(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
+    """Offsets and XPaths of the places that can be found."""
+    ordinals = {place.ordinal for place in places if place.ordinal >= 0}
+    offsets = {place.offset for place in places if place.ordinal < 0 <= place.offset}
+    spots = xpath.find(source, ordinals, offsets)
+    return {
+        place: spots.by_ordinal.get(place.ordinal, (-1, ""))
+        if place.ordinal >= 0
+        else (place.offset, spots.around.get(place.offset, ""))
+        for place in places
+    }
 
 
 def _offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
@@ -86,13 +110,14 @@ class _Text:
         self._text = self._decode(source.data[mark:])
         self._starts = [0, *(found.end() for found in _NEWLINE.finditer(self._text))]
 
-    def location(self, offset: int) -> Location:
+    def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
         if offset > self._offset:
             self._before += len(self._decode(self._data[self._offset : offset]))
             self._offset = offset
         line = bisect_right(self._starts, self._before)
-        return Location(line, self._before - self._starts[line - 1] + 1, self._show(line))
+        column = self._before - self._starts[line - 1] + 1
+        return Location(line, column, self._show(line), path)
 
     def line(self, place: Place) -> Location:
         """Location of a place whose line is known already."""

@@ -20,6 +20,7 @@ def _finding(finding: Finding) -> dict[str, object]:
         "file": finding.file or None,
         "line": finding.line or None,
         "column": finding.column or None,
+        "xpath": finding.xpath or None,
         "severity": diagnostic.severity.value,
         "code": diagnostic.rule.code,
         "name": diagnostic.rule.name,

@@ -12,6 +12,9 @@ FORMATS = ("text", "concise", "json", "sarif", "github")
 MACHINE_FORMATS = frozenset({"json", "sarif"})
 """Formats that are one document, printed on standard output."""
 
+XPATH_FORMATS = frozenset({"json", "sarif"})
+"""Formats that say where in the XML tree an element is; text does with ``--verbose``."""
+
 
 def render(report: Report, format: str, *, color: bool = False) -> str:
     """The findings in one format, with a line end, or nothing when there is nothing to say."""

@@ -20,6 +20,8 @@ class Finding:
     column: int = 0
     excerpt: str = ""
     """The line of the input, without its line end."""
+    xpath: str = ""
+    """Way through the XML file to the element, or to the innermost one that is open there."""
 
     @property
     def where(self) -> str:
@@ -47,13 +49,14 @@ def make_report(
     sources: Iterable[Source],
     shown_name: Callable[[str], str] = str,
 ) -> Report:
-    """The findings with lines, columns and excerpts.
+    """The findings with lines, columns, excerpts and XPaths.
 
     ``shown_name`` makes of a file's name in the unit the one that the reader knows (usually
     relative to the working folder).
     """
     diagnostics = list(diagnostics)
-    found = locate(sources, [d.subject.place for d in diagnostics if d.subject.place])
+    places = [d.subject.place for d in diagnostics if d.subject.place]
+    found = locate(sources, places, with_xpath=True)
     return Report(tuple(_finding(diagnostic, found, shown_name) for diagnostic in diagnostics))
 
 
@@ -67,4 +70,4 @@ def _finding(
     file = shown_name(place.file)
     if at is None:
         return Finding(diagnostic, file, place.line, place.column)
-    return Finding(diagnostic, file, at.line, at.column, at.text)
+    return Finding(diagnostic, file, at.line, at.column, at.text, at.xpath)

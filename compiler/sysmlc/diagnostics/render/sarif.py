@@ -84,6 +84,8 @@ def _location(finding: Finding) -> dict[str, object]:
         location["logicalLocations"] = [
             {"fullyQualifiedName": finding.diagnostic.subject.name, "kind": "element"}
         ]
+    if finding.xpath:
+        location["properties"] = {"xpath": finding.xpath}
     return location
 
 

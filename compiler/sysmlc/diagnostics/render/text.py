@@ -12,7 +12,10 @@ _BEFORE = 40
 
 
 def render(report: Report, *, color: bool = False) -> str:
-    """All findings, one block each, then how many there are."""
+    """All findings, one block each, then how many there are.
+
+    A finding that has an XPath shows it; whoever wants it short leaves it out.
+    """
     paint = _paint if color else _plain
     blocks = ["\n".join(_block(finding, paint)) for finding in report.findings]
     return "\n\n".join([*blocks, summary_line(report)]) + "\n" if blocks else ""
@@ -54,6 +57,8 @@ def _block(finding: Finding, paint: _Painter) -> Iterator[str]:
     if finding.where or diagnostic.subject.name:
         yield "  " + paint("-->", "34") + " " + " ".join(_where(finding))
     yield from _excerpt(finding, paint, code)
+    if finding.xpath:
+        yield f"  xpath: {visible(finding.xpath)}"
     for note in diagnostic.notes:
         yield f"  note: {visible(note)}"
     if diagnostic.help:
@@ -91,6 +96,8 @@ def _window(line: str, at: int) -> tuple[str, int]:
 
 def _columns(text: str) -> int:
     """Columns of a terminal that the text takes."""
+    if text.isascii():
+        return len(text)
     wide = sum(unicodedata.east_asian_width(sign) in "WF" for sign in text)
     marks = sum(unicodedata.combining(sign) > 0 for sign in text)
     return len(text) + wide - marks
@@ -98,6 +105,8 @@ def _columns(text: str) -> int:
 
 def visible(text: str) -> str:
     """The text with control characters shown: a name must not steer the terminal."""
+    if text.isprintable():
+        return text
     return "".join(
         f"\\x{ord(sign):02x}" if unicodedata.category(sign) == "Cc" else sign for sign in text
     )
