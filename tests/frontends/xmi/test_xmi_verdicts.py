@@ -15,8 +15,8 @@ def test_the_five_verdicts():
   <eAnnotations xmi:id="e" source="tool"><details xmi:id="d" key="k"/></eAnnotations>
   <packagedElement xmi:type="uml:Class" xmi:id="k" name="K">
     <ownedAttribute xmi:id="a"><type href="x.uml#_1"/></ownedAttribute>
-    <ownedRule xmi:id="r"><specification xmi:type="uml:OpaqueExpression" xmi:id="s">
-      <body>a</body><body>b</body></specification></ownedRule></packagedElement>
+    <ownedAttribute xmi:id="r"><upperValue xmi:type="uml:OpaqueExpression" xmi:id="s">
+      <body>a</body><body>b</body></upperValue></ownedAttribute></packagedElement>
   <packagedElement xmi:type="uml:DurationObservation" xmi:id="o"/>
   <packagedElement xmi:type="uml:DurationObservation" xmi:id="o2"/>"""
         )
@@ -31,7 +31,7 @@ def test_the_five_verdicts():
     }
     (file,) = reading.coverage.as_json()["files"]
     assert file["by_type"]["uml:DurationObservation"] == {"unsupported": 2}
-    assert file["by_type"]["uml:Property"] == {"mapped": 1}
+    assert file["by_type"]["uml:Property"] == {"mapped": 2}
     assert reading.findings == [
         "unsupported-element: 2 elements of type 'uml:DurationObservation' not read (2 with all "
         "that they contain)",

@@ -6,9 +6,9 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.structure import text_of, value_in
+from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, text_of, value_in
 from sysmlc.frontends.xmi.unit import Lowered, Unit
-from sysmlc.frontends.xmi.values import value_of
+from sysmlc.frontends.xmi.values import ValueText, opaque, value_of
 from sysmlc.ir import AttrValue, Edge, Element
 
 _Reader = Callable[[Context, int], None]
@@ -25,13 +25,14 @@ def _guard(context: Context, row: int) -> None:
     owner.attrs["guard"] = text_of(value)
     if value.language:
         owner.attrs["guard_language"] = value.language
+    keep_alternatives(owner, value, "guard")
     if value.is_literal or value.instance:
         owner.attrs["guard_literal"] = True
 
 
 def _weight(context: Context, row: int) -> None:
     owner = context.owner(row)
-    value = value_in(context, row).value
+    value = lone_value_in(context, row).value
     if owner is not None and value not in (1, 0):
         owner.attrs["weight"] = value
 
@@ -86,6 +87,17 @@ def finish(context: Context) -> None:
     for element, target, row in context.guards:
         _transition_guard(context, element, target, row)
     _parameter_directions(context)
+    for element, row in context.opaque.values():
+        _opaque(element, opaque(context.document, row))
+
+
+def _opaque(element: Element, value: ValueText) -> None:
+    """An element with several bodies: that which can be read is the one that counts."""
+    for key, text in (("body", value.value), ("language", value.language)):
+        element.attrs.pop(key, None)
+        if text:
+            element.attrs[key] = text
+    keep_alternatives(element, value)
 
 
 def _add_record(context: Context, name: str, element: Element, row: int) -> None:
@@ -135,11 +147,16 @@ def _event_details(context: Context, element: Element, holder: Lowered, row: int
         for target, at, is_href in references(document, row, feature):
             context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
     for child in document.children(row, "when"):
-        element.attrs["when"] = text_of(value_of(document, child))
+        _condition(element, "when", value_of(document, child))
         if document.attributes[row].get("isRelative") == "true":
             element.attrs["relative"] = True
     for child in document.children(row, "changeExpression"):
-        element.attrs["condition"] = text_of(value_of(document, child))
+        _condition(element, "condition", value_of(document, child))
+
+
+def _condition(element: Element, key: str, value: ValueText) -> None:
+    element.attrs[key] = text_of(value)
+    keep_alternatives(element, value, key)
 
 
 def references(document: Document, row: int, feature: str) -> list[tuple[str, int, bool]]:
@@ -176,10 +193,19 @@ def _transition_guard(context: Context, element: Element, target: str, row: int)
         context.link(Edge.GUARD, element.id, target, row, "guard")
         return
     context.graph.connect(Edge.GUARD, element, constraint)
-    for key in ("body", "language"):
+    for key, name in _GUARD.items():
         value = constraint.attrs.get(key)
         if value is not None:
-            element.attrs["guard" if key == "body" else "guard_language"] = value
+            element.attrs[name] = value
+
+
+_GUARD = {
+    "body": "guard",
+    "language": "guard_language",
+    "bodies": "guard_bodies",
+    "languages": "guard_languages",
+}
+"""What a transition says itself of the constraint that is its guard."""
 
 
 def _parameter_directions(context: Context) -> None:

@@ -1,15 +1,24 @@
 """What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
 
+from collections.abc import Callable
+
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import details, metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
+from sysmlc.frontends.xmi.values import bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 
+Completion = Callable[["Context", Element, int], None]
+"""Adds to an element what is special about it; takes its row."""
+
 
 class Context:
-    """The lowering of one document."""
+    """The lowering of one document.
+
+    Readers leave in ``deferred`` what can only be said when every document is read.
+    """
 
     def __init__(self, unit: Unit, lowered: Lowered, sink: Sink) -> None:
         self.unit = unit
@@ -21,9 +30,10 @@ class Context:
         self.verdicts = lowered.verdicts
         self.applications: list[int] = []
         self.triggers: list[tuple[Element, int]] = []
-        self.messages: list[tuple[Element, int]] = []
+        self.deferred: list[tuple[Completion, Element, int]] = []
         self.ends: list[tuple[Element, int]] = []
         self.parameters: list[tuple[Element, int]] = []
+        self.opaque: dict[str, tuple[Element, int]] = {}
         self.guards: list[tuple[Element, str, int]] = []
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
         self.lost: dict[int, str] = {}
@@ -112,8 +122,14 @@ class Context:
     def _report_repeated(self, row: int, id: str) -> None:
         if self.document.is_in_extension(row):
             return
-        subject = Subject(id=id, place=self.place(row))
+        subject = Subject(self._qualified_name(row), id, self.place(row))
         self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
+
+    def _qualified_name(self, row: int) -> str:
+        """Name of a row that has no element of its own yet."""
+        owner = self.owner(row)
+        name = self.document.attributes[row].get("name") or f"<{self.document.features[row]}>"
+        return f"{self.graph.qualified_name(owner)}::{name}" if owner is not None else name
 
     def place(self, row: int) -> Place:
         """Place of the row."""
@@ -136,9 +152,9 @@ class Context:
             key, default = v.TEXTS[name]
             if value != default:
                 element.attrs[key] = value
-        elif name == "isUnique":
+        elif name in v.UNLESS_FALSE:
             if value == "false":
-                element.attrs["unique"] = False
+                element.attrs[v.UNLESS_FALSE[name]] = False
         else:
             self._other(element, row, name, value)
 
@@ -149,10 +165,12 @@ class Context:
                 self.link(backwards, element.id, target, row, name, is_reversed=True)
         elif name in v.CONDITIONS:
             self.conditions(value.split(), name)
+        elif name in _BOUNDS:
+            self.bound(row, _BOUNDS.index(name), bound(value))
         elif name == "kind" and element.kind in _KINDS:
             if value != _KINDS[element.kind]:
                 element.attrs["subkind"] = metaclasses.hyphenated(value)
-        elif name not in _PASSED_OVER and name not in v.REDUNDANT:
+        elif name not in _PASSED_OVER and name not in v.REDUNDANT and value != v.default(name):
             self.keep(element, v.snake(name), value)
 
     def keep(self, element: Element, key: str, value: str) -> None:
@@ -179,7 +197,7 @@ class Context:
         if feature == "name":
             self.graph.rename(owner, value)
         elif feature in ("body", "language") and feature in owner.attrs:
-            self.approximate(row, "its alternative bodies")
+            self.opaque[owner.id] = (owner, self.document.parents[row])
         else:
             self.attribute(owner, row, feature, value)
 
@@ -257,6 +275,9 @@ _HANDLED = frozenset({"partWithPort", "guard", "event", "sendEvent", "receiveEve
 
 _PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}
 """Attributes that never need a look at the other tables; most of a large file's."""
+
+_BOUNDS = ("lower", "upper")
+"""Derived attributes, which Enterprise Architect writes."""
 
 _KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
 """Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""

@@ -61,6 +61,6 @@ APPROXIMATED = rule(
     Severity.INFO,
     "{count} of type '{type}' read without {lost}",
     why="The element is in the graph, but part of its meaning is not.",
-    wrong="<guard xmi:type='uml:OpaqueExpression'><body>a</body><body>b</body></guard>",
-    right="<guard xmi:type='uml:OpaqueExpression'><body>a</body></guard>",
+    wrong="<weight xmi:type='uml:OpaqueExpression'><body>a</body><body>b</body></weight>",
+    right="<weight xmi:type='uml:OpaqueExpression'><body>a</body></weight>",
 )

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.values import ValueText, value_of
+from sysmlc.frontends.xmi.values import ValueText, bound, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _Reader = Callable[[Context, int], None]
@@ -162,12 +162,25 @@ def _image(context: Context, row: int) -> None:
 
 
 def value_in(context: Context, row: int) -> ValueText:
-    """The value in a row; it and its content are mapped, alternatives are reported."""
+    """The value in a row; it and its content are mapped."""
     context.subtree(row, Verdict.MAPPED)
-    value = value_of(context.document, row)
-    if value.bodies > 1:
+    return value_of(context.document, row)
+
+
+def lone_value_in(context: Context, row: int) -> ValueText:
+    """The value in a row, where the graph has no room for alternatives: they are reported."""
+    value = value_in(context, row)
+    if value.bodies:
         context.approximate(row, "its alternative bodies")
     return value
+
+
+def keep_alternatives(element: Element, value: ValueText, key: str = "") -> None:
+    """Note all bodies and languages of an expression that has several."""
+    if value.bodies:
+        prefix = f"{key}_" if key else ""
+        element.attrs[f"{prefix}bodies"] = value.bodies
+        element.attrs[f"{prefix}languages"] = value.languages
 
 
 def text_of(value: ValueText) -> str:
@@ -191,7 +204,19 @@ def _bound(context: Context, row: int) -> AttrValue:
     if known is not None and context.document.types[row] in _WHOLE:
         context.subtree(row, Verdict.MAPPED)
         return known
-    return value_in(context, row).value
+    return lone_value_in(context, row).value
+
+
+def _written(index: int) -> _Reader:
+    """A derived bound, which Enterprise Architect writes instead of a value specification."""
+
+    def read(context: Context, row: int) -> None:
+        context.subtree(row, Verdict.MAPPED)
+        document = context.document
+        text = document.attributes[row].get("value") or document.texts.get(row, "")
+        context.bound(row, index, bound(text.strip()))
+
+    return read
 
 
 def _default(context: Context, row: int) -> None:
@@ -207,6 +232,7 @@ def _specification(context: Context, row: int) -> None:
     owner.attrs["body"] = text_of(value)
     if value.language:
         owner.attrs["language"] = value.language
+    keep_alternatives(owner, value)
 
 
 def _value(context: Context, row: int) -> None:
@@ -242,21 +268,24 @@ def _put(context: Context, row: int, key: str) -> None:
         context.keep_ids(owner, f"{key}_instance", [value.instance], is_href)
     elif not value.is_literal:
         owner.attrs[f"{key}_language"] = value.language
+        keep_alternatives(owner, value, key)
 
 
 def _text(key: str, unless: str = "") -> _Reader:
     def read(context: Context, row: int) -> None:
         owner = context.owner(row)
-        text = text_of(value_in(context, row))
+        value = value_in(context, row)
+        text = text_of(value)
         if owner is not None and text != unless:
             owner.attrs[key] = text
+            keep_alternatives(owner, value, key)
 
     return read
 
 
 def _argument(context: Context, row: int) -> None:
     owner = context.owner(row)
-    text = text_of(value_in(context, row))
+    text = text_of(lone_value_in(context, row))
     if owner is not None:
         _append(owner, "arguments", text)
 
@@ -266,13 +295,24 @@ _WHOLE = frozenset({"LiteralInteger", "LiteralUnlimitedNatural"})
 """Nearly all bounds are these: a fifth of the elements of a large activity model."""
 
 _ALWAYS = frozenset(
-    {"lowerValue", "upperValue", "defaultValue", "joinSpec", "upperBound", "specification"}
+    {
+        "lowerValue",
+        "upperValue",
+        "lower",
+        "upper",
+        "defaultValue",
+        "joinSpec",
+        "upperBound",
+        "specification",
+    }
     | {"clause", "handler", "endData", "weight", "nameExpression"}
 )
 
 FEATURES: dict[str, _Reader] = {
     "lowerValue": _lower,
     "upperValue": _upper,
+    "lower": _written(0),
+    "upper": _written(1),
     "defaultValue": _default,
     "specification": _specification,
     "value": _value,

@@ -17,6 +17,13 @@ _LITERALS = frozenset(
 )
 
 
+_LEGIBLE = (
+    frozenset({"", "kerml", "sysml", "sysmlv2", "sysml v2", "ocl", "ocl2.0", "ltl", "promela"}),
+    frozenset({"english", "natural language", "text", "plain text"}),
+)
+"""Languages by how well the expression grammar reads them, lower case; programs come last."""
+
+
 class ValueText(NamedTuple):
     """A value: a JSON literal or text; ``language`` is set when it is an expression."""
 
@@ -25,8 +32,10 @@ class ValueText(NamedTuple):
     is_literal: bool = False
     instance: str = ""
     """Local id or href of the instance that it names."""
-    bodies: int = 1
-    """Number of alternative texts; only the first is the value."""
+    bodies: tuple[str, ...] = ()
+    """All texts, when there are several that say the same; ``value`` is one of them."""
+    languages: tuple[str, ...] = ()
+    """Languages of ``bodies``, one each, empty where the source gives none."""
 
 
 def value_of(document: Document, row: int) -> ValueText:
@@ -47,11 +56,33 @@ def value_of(document: Document, row: int) -> ValueText:
 
 
 def opaque(document: Document, row: int) -> ValueText:
-    """First body and language of an opaque expression, action or behaviour."""
+    """Body and language of an opaque expression, action or behaviour.
+
+    Of several bodies the first counts whose language is a language of expressions, else the
+    first in a natural language, else the first (UML 2.5.1, 8.3.3: they mean the same).
+    """
     bodies = _texts(document, row, "body")
     languages = _texts(document, row, "language")
-    body = bodies[0] if bodies else document.get(row, "value")
-    return ValueText(body, languages[0] if languages else "", bodies=max(len(bodies), 1))
+    if len(bodies) < 2:
+        body = bodies[0] if bodies else document.get(row, "value")
+        return ValueText(body, languages[0] if languages else "")
+    spoken = (*languages, *[""] * len(bodies))[: len(bodies)]
+    best = min(range(len(bodies)), key=lambda i: _rank(bodies[i], spoken[i]))
+    return ValueText(bodies[best], spoken[best], bodies=tuple(bodies), languages=spoken)
+
+
+def _rank(body: str, language: str) -> int:
+    if not body:
+        return len(_LEGIBLE) + 1
+    known = (i for i, names in enumerate(_LEGIBLE) if language.lower() in names)
+    return next(known, len(_LEGIBLE))
+
+
+def bound(text: str) -> AttrValue:
+    """A bound written as text: a number, ``*`` for unlimited (``-1`` too), or an expression."""
+    if text in ("*", "-1"):
+        return "*"
+    return int(text) if text.isascii() and text.isdigit() else text
 
 
 def name_of_instance(document: Document, row: int) -> str:

@@ -6,6 +6,7 @@ from functools import cache
 from sysmlc.ir import Edge, Kind
 
 _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
+_FLAG = re.compile(r"is[A-Z]")
 
 NOTATION_FEATURES = frozenset({"eAnnotations", "icon", "Documentation", "Extension", "Diagram"})
 """Features whose content says how a tool shows or stores the model."""
@@ -66,8 +67,25 @@ REFERENCES: dict[str, Edge] = {
     "inPartition": Edge.IN_PARTITION,
     "inInterruptibleRegion": Edge.IN_PARTITION,
     "parameter": Edge.REFERENCES,
-    "useCase": Edge.REFERENCES,
     "subject": Edge.SUBJECT,
+    "extendedCase": Edge.EXTENDS,
+    "extensionLocation": Edge.REFERENCES,
+    "covered": Edge.COVERS,
+    "sendEvent": Edge.SEND_EVENT,
+    "receiveEvent": Edge.RECEIVE_EVENT,
+    "start": Edge.START,
+    "finish": Edge.FINISH,
+    "action": Edge.CALLS,
+    "refersTo": Edge.CALLS,
+    "before": Edge.FLOW_SOURCE,
+    "after": Edge.FLOW_TARGET,
+    "formal": Edge.INSTANCE_OF,
+    "actual": Edge.REFERENCES,
+    "parameteredElement": Edge.REFERENCES,
+    "generalization": Edge.REFERENCES,
+    "powertype": Edge.TYPED_BY,
+    "entry": Edge.REFERENCES,
+    "exit": Edge.REFERENCES,
 }
 """Edge of a feature that refers to elements; ``SPECIAL`` overrides it for some kinds."""
 
@@ -76,18 +94,33 @@ FOLDED_REFERENCES: dict[str, Edge] = {
     "contract": Edge.REALIZES,
     "appliedProfile": Edge.APPLIES,
     "addition": Edge.INCLUDES,
-    "extendedCase": Edge.EXTENDS,
+    "generalMachine": Edge.REALIZES,
 }
 """Features of folded elements; the edge leaves the element that owns them."""
 
 SPECIAL: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTION, "classifier"): Edge.CALLS,
     (Kind.RECEPTION, "signal"): Edge.TYPED_BY,
+    (Kind.TEMPLATE_BINDING, "signature"): Edge.BINDS,
+    (Kind.STATE, "entry"): Edge.ENTRY,
+    (Kind.STATE, "exit"): Edge.EXIT,
 }
 """Edges of features that mean something else for these kinds."""
 
 AMBIGUOUS = frozenset(name for _, name in SPECIAL)
 """Features for which the kind has to be looked at."""
+
+_SUBJECTS = (
+    Kind.CLASS,
+    Kind.COMPONENT,
+    Kind.INTERFACE,
+    Kind.DATA_TYPE,
+    Kind.ASSOCIATION,
+    Kind.ACTIVITY,
+    Kind.STATE_MACHINE,
+    Kind.INTERACTION,
+)
+"""Classifiers that may be what use cases are about."""
 
 REVERSED: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTIVITY, "specification"): Edge.METHOD,
@@ -95,6 +128,7 @@ REVERSED: dict[tuple[Kind, str], Edge] = {
     (Kind.INTERACTION, "specification"): Edge.METHOD,
     (Kind.PARTITION, "node"): Edge.IN_PARTITION,
     (Kind.STRUCTURED, "node"): Edge.IN_PARTITION,
+    **{(kind, "useCase"): Edge.SUBJECT for kind in _SUBJECTS},
 }
 """Features whose edge leads from the target to the element that has the feature."""
 
@@ -152,6 +186,21 @@ REDUNDANT = frozenset(
         "owningExpression",
         "subExpression",
         "bodyPin",
+        "message",
+        "toBefore",
+        "toAfter",
+        "execution",
+        "enclosingInteraction",
+        "enclosingOperand",
+        "extension",
+        "includingCase",
+        "specificMachine",
+        "parameterSet",
+        "boundElement",
+        "template",
+        "templateBinding",
+        "templateParameter",
+        "owningTemplateParameter",
         "ownedRule",
         "contract",
         "specific",
@@ -170,11 +219,13 @@ FLAGS = {
     "isStatic": "static",
     "isActive": "active",
     "isBehavior": "behavior",
-    "isService": "service",
     "isTestedFirst": "tested_first",
     "isRelative": "relative",
 }
 """Attributes that are true or absent in the graph."""
+
+UNLESS_FALSE = {"isUnique": "unique", "isService": "service", "isReentrant": "reentrant"}
+"""Attributes that are true unless they say otherwise: false or absent in the graph."""
 
 TEXTS = {
     "aggregation": ("aggregation", "none"),
@@ -186,6 +237,25 @@ TEXTS = {
 }
 """Attributes with text: the graph's name, and the value that is not written."""
 
+_DEFAULTS = {
+    "allowSubstitutable": "true",
+    "concurrency": "sequential",
+    "firstEvent": "true",
+    "interactionOperator": "seq",
+    "isCombineDuplicate": "true",
+    "isIndirectlyInstantiated": "true",
+    "isSubstitutable": "true",
+    "isSynchronous": "true",
+    "messageSort": "synchCall",
+    "mode": "iterative",
+    "mustIsolate": "false",
+    "ordering": "FIFO",
+}
+"""Values that the tools write or leave out as they like (UML 2.5.1, defaults of the metamodel).
+
+Other attributes are false when they are truth values; numbers and texts have no default.
+"""
+
 PIN_DIRECTIONS = {"InputPin": "in", "ValuePin": "in", "ActionInputPin": "in", "OutputPin": "out"}
 
 CONDITIONS = {
@@ -195,6 +265,10 @@ CONDITIONS = {
     "localPrecondition": "precondition",
     "localPostcondition": "postcondition",
     "stateInvariant": "invariant",
+    "invariant": "invariant",
+    "condition": "condition",
+    "preCondition": "precondition",
+    "postCondition": "postcondition",
 }
 """Subkind of a constraint by the feature that owns or names it."""
 
@@ -239,6 +313,11 @@ HINTS: dict[str, Kind] = {
     "realizingConnector": Kind.CONNECTOR,
     "parameter": Kind.PARAMETER,
     "represents": Kind.PROPERTY,
+    "addition": Kind.USE_CASE,
+    "extendedCase": Kind.USE_CASE,
+    "refersTo": Kind.INTERACTION,
+    "covered": Kind.LIFELINE,
+    "formal": Kind.TEMPLATE_PARAMETER,
 }
 """What an external target is when only the feature that refers to it is known."""
 
@@ -246,5 +325,11 @@ HINTS: dict[str, Kind] = {
 @cache
 def snake(name: str) -> str:
     """Name of an attribute of the graph for a feature that no table names."""
-    plain = name[2:] if name.startswith("is") and name[2:3].isupper() else name
+    plain = name[2:] if _FLAG.match(name) else name
     return _CAPITAL.sub(r"_\1", plain).lower()
+
+
+@cache
+def default(name: str) -> str:
+    """The value that an absent attribute means, for those that no other table names."""
+    return _DEFAULTS.get(name, "false" if _FLAG.match(name) else "")
