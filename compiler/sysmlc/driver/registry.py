@@ -26,7 +26,7 @@ GROUP = "sysmlc.backends"
 _FRONTENDS = ("sysmlc.frontends.xmi", "sysmlc.frontends.ir")
 _BACKENDS = {
     name: f"sysmlc.backends.{name}"
-    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir")
+    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable")
 }
 _RULE_PACKAGES = ("frontends", "logic", "recipe", "simulation", "passes", "backends", "driver")
 
@@ -78,13 +78,13 @@ def _fits(value: object, default: object) -> bool:
 
 def backend_names() -> list[str]:
     """Names of all back ends, those of plug-ins included; loads none."""
-    return sorted({*_BACKENDS, *(entry.name for entry in _plug_ins())})
+    return sorted({*_BACKENDS, *(entry.name for entry in plug_ins())})
 
 
 def load_backends(names: Iterable[str]) -> list[Backend]:
     """The back ends with these names, each once. Raises BackendError."""
-    plug_ins = {entry.name: entry for entry in _plug_ins()}
-    return [_load(name, plug_ins) for name in dict.fromkeys(names)]
+    others = {entry.name: entry for entry in plug_ins()}
+    return [_load(name, others) for name in dict.fromkeys(names)]
 
 
 def select_backends(wanted: Sequence[str]) -> list[Backend]:
@@ -105,10 +105,10 @@ def full_catalogue() -> dict[str, Rule]:
     for package in _RULE_PACKAGES:
         for module in _modules(f"sysmlc.{package}"):
             import_module(module)
-    plug_ins = {entry.name: entry for entry in _plug_ins()}
-    for name in plug_ins:
+    others = {entry.name: entry for entry in plug_ins()}
+    for name in others:
         with suppress(BackendError):
-            _load(name, plug_ins)
+            _load(name, others)
     return catalogue()
 
 
@@ -119,7 +119,8 @@ def _known(names: Iterable[str]) -> frozenset[str]:
     return frozenset(names)
 
 
-def _plug_ins() -> "list[EntryPoint]":
+def plug_ins() -> "list[EntryPoint]":
+    """Entry points of back ends of other distributions, sorted by name. Raises BackendError."""
     from importlib.metadata import entry_points
 
     found = {entry.name: entry for entry in entry_points(group=GROUP) if not _is_ours(entry)}
@@ -134,12 +135,12 @@ def _is_ours(entry: "EntryPoint") -> bool:
     return entry.value.startswith("sysmlc.")
 
 
-def _load(name: str, plug_ins: "dict[str, EntryPoint]") -> Backend:
+def _load(name: str, others: "dict[str, EntryPoint]") -> Backend:
     _known([name])
     try:
         if name in _BACKENDS:
             return cast("Backend", import_module(_BACKENDS[name]).BACKEND)
-        return cast("Backend", plug_ins[name].load())
+        return cast("Backend", others[name].load())
     except Exception as problem:
         raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
 

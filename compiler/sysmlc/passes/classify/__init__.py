@@ -15,6 +15,7 @@ from sysmlc.passes.classify.lineage import (
     meanings,
 )
 from sysmlc.passes.classify.relations import add_relations
+from sysmlc.passes.classify.requirements import check_requirements, give_requirement
 from sysmlc.passes.classify.roles import by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, UNKNOWN_STEREOTYPE
 from sysmlc.passes.classify.vocabulary import LEVELS, Family
@@ -45,6 +46,7 @@ class Classify:
         _give_levels(graph, lineages)
         _give_values(graph)
         add_relations(graph, sink)
+        check_requirements(graph, sink)
 
 
 # -- stereotypes -------------------------------------------------------------------------------
@@ -151,15 +153,8 @@ def _levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
 def _give_values(graph: Graph) -> None:
     for element in graph:
         if element.role == "requirement":
-            _give_requirement(graph, element)
+            give_requirement(graph, element)
         elif element.role == "flow property":
             given = element.attrs.get("direction") or tag(graph, element, "direction")
             # SysML 1.6 clause 9.3.2.7: the default direction is inout.
             graph.set(element, direction=given or "inout")
-
-
-def _give_requirement(graph: Graph, requirement: Element) -> None:
-    for attribute, tag_name in (("req_id", "id"), ("text", "text")):
-        value = tag(graph, requirement, tag_name)
-        if value is not None:
-            graph.set(requirement, **{attribute: value})

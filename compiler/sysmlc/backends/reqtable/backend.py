@@ -1,0 +1,77 @@
+"""Two files for each root of the model that holds requirements, and what they leave open."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
+from sysmlc.backends.reqtable.table import Table, tables
+from sysmlc.backends.reqtable.text import csv_text, markdown, markdown_cell
+from sysmlc.backends.reqtable.unmet import report_open
+from sysmlc.backends.templates import environment
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.ir import Graph
+from sysmlc.naming import file_names
+from sysmlc.output import Output
+
+_TEMPLATE = "requirements.md.j2"
+_ALWAYS = ("id", "name")
+
+
+@dataclass(frozen=True, slots=True)
+class ReqTableBackend:
+    """Requirement tables for people (Markdown) and for other tools (CSV)."""
+
+    name: str = "reqtable"
+    summary: str = "requirement tables as CSV and Markdown"
+    is_default: bool = False
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""
+        found = {_free(table.name, number): table for number, table in _numbered(graph)}
+        names = file_names(found)
+        for key, table in found.items():
+            path = f"requirements/{names[key]}.requirements"
+            output.add(f"{path}.csv", csv_text(table), table.trace(), self.name)
+            text = _markdown(table, sink, options.templates)
+            if text:
+                output.add(f"{path}.md", text, table.trace(), self.name)
+        report_open(graph, [row.element for table in found.values() for row in table.rows], sink)
+
+
+def _numbered(graph: Graph) -> Iterator[tuple[int, Table]]:
+    seen: dict[str, int] = {}
+    for table in tables(graph):
+        seen[table.name] = seen.get(table.name, 0) + 1
+        yield seen[table.name], table
+
+
+def _free(name: str, number: int) -> str:
+    return name if number == 1 else f"{name}-{number}"
+
+
+def _markdown(table: Table, sink: Sink, templates: Path | None) -> str:
+    from jinja2 import TemplateError
+
+    # A column in which nothing stands only makes a page wide; a CSV file keeps its columns.
+    shown = [at for at, name in enumerate(table.columns) if name in _ALWAYS or _is_used(table, at)]
+    page = {
+        "title": markdown(table.name),
+        "columns": [markdown(table.columns[at]) for at in shown],
+        "rows": [[markdown_cell(row.cells[at]) for at in shown] for row in table.rows],
+    }
+    try:
+        template = environment("reqtable", templates).get_template(_TEMPLATE)
+        return template.render(page=page)
+    except TemplateError as error:
+        fault = f"{type(error).__name__}: {error}"
+        sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
+        return ""
+
+
+def _is_used(table: Table, at: int) -> bool:
+    return any(row.cells[at].values for row in table.rows)
+
+
+BACKEND = ReqTableBackend()

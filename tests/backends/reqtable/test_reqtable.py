@@ -1,0 +1,232 @@
+"""Requirement tables: what they say, in CSV that programs read and Markdown that people read."""
+
+import csv
+import io
+
+import pytest
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.reqtable import BACKEND, rules
+from sysmlc.backends.reqtable.table import Cell
+from sysmlc.backends.reqtable.text import markdown_cell
+from sysmlc.diagnostics import Sink
+from sysmlc.ir.text import parse_text
+from sysmlc.output import Output
+from sysmlc.passes import pipeline
+
+SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
+MAGICDRAW = "http://www.magicdraw.com/spec/Customization/180/SysML"
+PLANT = "http://example.org/plant"
+
+
+def requirement(name, tags, stereotype="Requirement", namespace=SYSML, inside="p"):
+    id = name.lower().replace(" ", "")
+    return (
+        f'  Class {id} "{name}"\n'
+        f'    Application {id}.a stereotype="{stereotype}" namespace="{namespace}" {tags}\n'
+        f"      -> subject {id}\n"
+    )
+
+
+def relation(stereotype, client, supplier):
+    id = f"{stereotype}.{client}.{supplier}"
+    return (
+        f'  Dependency {id} subkind="abstraction"\n    -> client {client}\n'
+        f'    -> supplier {supplier}\n    Application {id}.a stereotype="{stereotype}" '
+        f'namespace="{SYSML}"\n      -> subject {id}\n'
+    )
+
+
+def emitted(text, templates=None):
+    graph, sink, output = parse_text(text), Sink(), Output()
+    pipeline.run(graph, sink, verify_each=True)
+    before = len(sink)
+    BACKEND.emit(graph, output, sink, EmitOptions(templates))
+    return {one.path: one.text for one in output.artefacts()}, list(sink)[before:]
+
+
+def table(text, name="Plant"):
+    files, _ = emitted(text)
+    rows = list(csv.DictReader(io.StringIO(files[f"requirements/{name}.requirements.csv"])))
+    return {row["name"]: row for row in rows}
+
+
+PLANT_MODEL = (
+    'Package p "Plant"\n'
+    + requirement("No jam", 'tag.id="R2" tag.text="Pallets never jam."')
+    + requirement("Quiet", 'tag.Id="R10" tag.Text="At most 60 dB | \\"A\\".\\nBy night 50."')
+    + requirement("Gentle", 'tag.id="R1" tag.text="=1+2"', "performanceRequirement", MAGICDRAW)
+    + requirement("Copied", 'tag.id="R3" tag.risk="high" tag.DerivedFrom="nojam"')
+    + relation("DeriveReqt", "quiet", "nojam")
+    + relation("Satisfy", "gate", "nojam")
+    + relation("Verify", "test", "quiet")
+    + relation("Refine", "test", "quiet")
+    + relation("Trace", "quiet", "gate")
+    + relation("Copy", "copied", "nojam")
+    + '  Class gate "Gate"\n  Activity test "Test jams"\n'
+)
+
+
+def test_one_csv_and_one_markdown_for_each_root_with_requirements():
+    other = requirement("Else", 'tag.id="E1"').replace("  Class", "Class").replace("\n  ", "\n")
+    files, _ = emitted(PLANT_MODEL + other + 'Package q "Empty"\n')
+    assert list(files) == [
+        "requirements/Else.requirements.csv",
+        "requirements/Else.requirements.md",
+        "requirements/Plant.requirements.csv",
+        "requirements/Plant.requirements.md",
+    ]
+
+
+def test_rows_are_in_the_natural_order_of_their_ids():
+    assert [row["id"] for row in table(PLANT_MODEL).values()] == ["R1", "R2", "R3", "R10"]
+
+
+def test_relations_are_read_from_the_requirement():
+    found = table(PLANT_MODEL)
+    assert found["Quiet"]["derived from"] == "R2 No jam"
+    assert found["Quiet"]["verified by"] == found["Quiet"]["refined by"] == "Plant::Test jams"
+    assert found["Quiet"]["traced to"] == "Plant::Gate"
+    assert found["No jam"]["satisfied by"] == "Plant::Gate"
+    assert found["No jam"]["owner"] == "Plant"
+
+
+def test_a_copy_has_its_masters_text_and_is_no_trace():
+    row = table(PLANT_MODEL)["Copied"]
+    assert (row["text"], row["copy of"], row["traced to"]) == (
+        "Pallets never jam.",
+        "R2 No jam",
+        "",
+    )
+
+
+def test_custom_tags_are_columns_and_derived_tags_are_none():
+    found = table(PLANT_MODEL)
+    assert found["Copied"]["risk"] == "high"
+    assert found["Quiet"]["risk"] == ""
+    assert "DerivedFrom" not in found["Copied"]
+
+
+def test_tags_that_lead_to_elements_show_their_names():
+    text = 'Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1" tag.owners=["gate","late"]')
+    found = table(text + '  Class gate "Gate"\n')
+    assert found["Quiet"]["owners"] == "Plant::Gate\nlate"
+
+
+def test_a_custom_stereotype_names_the_kind_and_what_it_specialises():
+    profile = (
+        f'Profile pr "plant" uri="{PLANT}"\n'
+        '  Stereotype s "SafetyRequirement"\n    -> specializes f\n'
+        f'Profile md "SysML" uri="{MAGICDRAW}"\n'
+        '  Stereotype f "functionalRequirement"\n    -> specializes r\n'
+        '  Stereotype r "Requirement"\n'
+    )
+    text = 'Package p "Plant"\n' + requirement("Quiet", "", "SafetyRequirement", PLANT)
+    found = table(text + profile)
+    assert found["Quiet"]["kind"] == "SafetyRequirement (functionalRequirement)"
+    assert table(PLANT_MODEL)["Gentle"]["kind"] == "performanceRequirement"
+    assert table(PLANT_MODEL)["No jam"]["kind"] == ""
+
+
+def test_csv_lines_end_as_rfc_4180_says_and_quotes_are_doubled():
+    files, _ = emitted(PLANT_MODEL)
+    text = files["requirements/Plant.requirements.csv"]
+    assert text.endswith("\r\n")
+    assert '"At most 60 dB | ""A"".\nBy night 50."' in text
+
+
+@pytest.mark.parametrize("start", ["=", "+", "-", "@", "＝"])
+def test_no_cell_is_a_formula(start):
+    text = 'Package p "Plant"\n' + requirement("Quiet", f'tag.id="R1" tag.text="{start}1+2"')
+    assert table(text)["Quiet"]["text"] == f"'{start}1+2"
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("a | b", "a \\| b"),
+        ("<script>", "\\<script\\>"),
+        ("*a* `b` [c]", "\\*a\\* \\`b\\` \\[c\\]"),
+        ("a &lt; b & c", "a &amp;lt; b & c"),
+        ("one\n\n two ", "one<br>two"),
+        ("back\\slash", "back\\\\slash"),
+    ],
+)
+def test_markdown_shows_the_text_as_it_is(text, shown):
+    assert markdown_cell(Cell((text,))) == shown
+
+
+def test_markdown_has_no_column_without_values():
+    files, _ = emitted('Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1"'))
+    assert files["requirements/Plant.requirements.md"] == (
+        "# Requirements of Plant\n\n"
+        "1 requirement; made by sysmlc: change the model, not this file.\n\n"
+        "| id | name | owner |\n|---|---|---|\n| R1 | Quiet | Plant |\n"
+    )
+
+
+def test_html_text_of_magicdraw_is_shown_without_its_marks():
+    html = (
+        "<html><head><style>p {x}</style></head><body><p>Never &lt; 2 <b>bar</b>.</p><p>Ever.</p>"
+    )
+    text = 'Package p "Plant"\n' + requirement("Quiet", f'tag.Id="R1" tag.Text="{html}"')
+    assert table(text)["Quiet"]["text"] == "Never < 2 bar.\nEver."
+
+
+def test_the_same_name_twice_gives_two_files():
+    one = requirement("Quiet", 'tag.id="R1"')
+    other = one.replace("quiet", "quiet2")
+    files, _ = emitted(f'Package p "Plant"\n{one}Package q "Plant"\n{other}')
+    assert [path for path in files if path.endswith(".csv")] == [
+        "requirements/Plant-2.requirements.csv",
+        "requirements/Plant.requirements.csv",
+    ]
+
+
+# -- rules -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rule", [rules.UNSATISFIED, rules.UNVERIFIED], ids=lambda r: r.name)
+def test_open_requirements_are_reported(rule):
+    assert rule in [found.rule for found in emitted(rule.wrong)[1]]
+    assert [found.rule for found in emitted(rule.right)[1]] == []
+
+
+def open_ones(text):
+    return [(one.rule.name, one.subject.name) for one in emitted(text)[1]]
+
+
+def test_a_derived_requirement_answers_its_source_and_parts_their_whole():
+    text = (
+        'Package p "P"\n'
+        '  Class whole "Whole" role="requirement" req_id="1"\n'
+        '    Class a "A" role="requirement" req_id="1.1"\n'
+        '    Class b "B" role="requirement" req_id="1.2"\n'
+        '  Class c "C" role="requirement" req_id="2"\n    -> derives b\n'
+        '  Class gate "Gate" role="block"\n    -> satisfies a\n    -> satisfies c\n'
+        '  Activity t "T"\n    -> verifies a\n'
+    )
+    assert open_ones(text) == [
+        ("unverified-requirement", "P::Whole"),
+        ("unverified-requirement", "P::Whole::B"),
+        ("unverified-requirement", "P::C"),
+    ]
+
+
+def test_derivations_in_a_circle_do_not_hang():
+    text = (
+        'Class a "A" role="requirement" req_id="1"\n  -> derives b\n'
+        'Class b "B" role="requirement" req_id="2"\n  -> derives a\n'
+        'Class gate "Gate" role="block"\n  -> satisfies b\n'
+        'Activity t "T"\n  -> verifies a\n'
+    )
+    assert open_ones(text) == []
+
+
+def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
+    (tmp_path / "requirements.md.j2").write_text(rules.BAD_TEMPLATE.wrong, encoding="utf-8")
+    files, found = emitted(PLANT_MODEL, tmp_path)
+    assert [one.rule for one in found if one.is_error] == [rules.BAD_TEMPLATE]
+    assert list(files) == ["requirements/Plant.requirements.csv"]
+    (tmp_path / "requirements.md.j2").write_text(rules.BAD_TEMPLATE.right, encoding="utf-8")
+    assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant"
