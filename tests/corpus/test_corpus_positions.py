@@ -1,0 +1,65 @@
+"""Every finding about an XML file says where: file, line, column, XPath and a name."""
+
+import os
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from dialects.mutate import mutate
+from sysmlc.diagnostics.render import make_report
+from sysmlc.diagnostics.xpath import is_xml
+from sysmlc.driver import Request, compile_model
+
+pytestmark = pytest.mark.corpus
+
+SUFFIXES = {".uml", ".xmi", ".xml", ".mdxml", ".mdzip"}
+LARGE = 700_000
+MUTANTS = 3
+
+
+def models() -> list[Path]:
+    folder = Path(os.environ.get("SYSMLC_CORPUS", "nowhere")) / "xmi"
+    found = sorted(path for path in folder.rglob("*") if path.suffix in SUFFIXES)
+    return [path for path in found if path.stat().st_size < LARGE]
+
+
+def incomplete(path: Path) -> list[str]:
+    """Findings about XML that lack a part of their place or a name, and how many are whole."""
+    made = compile_model(Request(inputs=(path,)))
+    xml = {source.name for source in made.sources if is_xml(source.data)}
+    return [
+        f"{finding.where} {finding.xpath} {finding.diagnostic.subject} {finding.diagnostic.message}"
+        for finding in make_report(made.diagnostics, made.sources).findings
+        if not _is_whole(finding, xml)
+    ]
+
+
+def _is_whole(finding, xml) -> bool:
+    subject = finding.diagnostic.subject
+    if subject.place is None:
+        return False
+    if subject.place.file not in xml:
+        return True
+    return bool(subject.name and finding.line and finding.column and finding.xpath)
+
+
+@pytest.mark.parametrize("path", models(), ids=lambda path: path.name)
+def test_findings_of_models_have_a_whole_place(path):
+    assert incomplete(path) == []
+
+
+@pytest.mark.parametrize(
+    "path", [p for p in models() if p.suffix != ".mdzip"][::2], ids=lambda p: p.name
+)
+def test_findings_of_spoilt_models_have_a_whole_place(path, tmp_path):
+    random = Random(path.name)
+    for number in range(MUTANTS):
+        done, spoilt = mutate(path.read_bytes(), random)
+        target = tmp_path / f"{number}{path.suffix}"
+        target.write_bytes(spoilt)
+        assert incomplete(target) == [], done
+
+
+def test_the_models_are_there(corpus):
+    assert len(models()) > 35
