@@ -8,13 +8,13 @@ from driver_fakes import FAULTY, PLANT, Outlines, compiled
 from jsonschema import Draft202012Validator
 
 from sysmlc import resources
-from sysmlc.driver import OutputError, apply, plan
+from sysmlc.driver import OutputError, apply, outcome, plan
 
 
 def publish(folder, text=PLANT, **given):
     """Compile a text and bring ``folder/out`` up to date; what changed."""
     (folder / "plant.ir").write_text(text)
-    return apply(plan(compiled(folder / "plant.ir", **given), folder / "out"))
+    return apply(plan(outcome(compiled(folder / "plant.ir", **given)), folder / "out"))
 
 
 def files(folder):
@@ -126,7 +126,7 @@ def test_a_manifest_that_names_files_elsewhere_is_not_believed(tmp_path):
 def test_differences_are_what_apply_would_change(tmp_path):
     publish(tmp_path)
     (tmp_path / "plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-    planned = plan(compiled(tmp_path / "plant.ir"), tmp_path / "out")
+    planned = plan(outcome(compiled(tmp_path / "plant.ir")), tmp_path / "out")
     expected = planned.differences()
     assert "outlines/Arm.txt" in expected
     assert sorted(apply(planned)) == expected

@@ -10,7 +10,7 @@ from sysmlc.cli import options
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Unit
-    from sysmlc.driver import Compilation, Plan
+    from sysmlc.driver import Outcome, Plan
 
 
 @click.command(
@@ -28,6 +28,7 @@ Examples:
 @options.emitting
 @options.reporting
 @options.reading
+@options.caching
 @click.option(
     "--check",
     "check_only",
@@ -55,17 +56,17 @@ def command(
     settings = session.Settings(**given)
     config = session.load_config(models, settings.config)
     units = session.units(models, config, output, settings.emit)
-    made = [session.compile_unit(unit.files, config, settings, unit.emit) for unit in units]
+    made = [session.outcome_of(unit, config, settings) for unit in units]
     session.report(made, settings)
     code = session.exit_code(made, config, settings)
-    for unit, compilation in zip(units, made, strict=True):
-        if compilation.exit_code() == 2:
+    for unit, outcome in zip(units, made, strict=True):
+        if outcome.exit_code() == 2:
             continue
-        planned = plan(compilation, unit.output)
+        planned = plan(outcome, unit.output)
         if check_only:
             code = max(code, _compare(planned))
         else:
-            _write(planned, unit, compilation, session.says_more(settings), settings.verbose)
+            _write(planned, unit, outcome, session.says_more(settings), settings.verbose)
     ctx.exit(code)
 
 
@@ -89,9 +90,7 @@ def _compare(planned: "Plan") -> int:
     return 1 if stale else 0
 
 
-def _write(
-    planned: "Plan", unit: "Unit", compilation: "Compilation", talk: bool, verbose: bool
-) -> None:
+def _write(planned: "Plan", unit: "Unit", outcome: "Outcome", talk: bool, verbose: bool) -> None:
     from sysmlc.cli.session import fail
     from sysmlc.driver import OutputError, apply
 
@@ -103,11 +102,11 @@ def _write(
         for path in changed:
             click.echo(f"changed {unit.output / path}", err=True)
     if talk:
-        click.echo(_sentence(planned, len(changed), compilation, unit.output))
+        click.echo(_sentence(planned, len(changed), outcome, unit.output))
 
 
-def _sentence(planned: "Plan", changed: int, compilation: "Compilation", folder: Path) -> str:
-    withheld = len(compilation.withheld)
+def _sentence(planned: "Plan", changed: int, outcome: "Outcome", folder: Path) -> str:
+    withheld = len(outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
     shown = os.path.relpath(folder) if folder.is_relative_to(Path.cwd()) else str(folder)
-    return f"{shown}: {len(planned.files)} files, {changed} changed{held}"
+    return f"{shown}: {len(planned.digests)} files, {changed} changed{held}"

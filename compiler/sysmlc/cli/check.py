@@ -21,6 +21,7 @@ Examples:
 @options.emitting
 @options.reporting
 @options.reading
+@options.caching
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -34,8 +35,8 @@ def command(
     settings = session.Settings(**given)
     config = session.load_config(models, settings.config)
     units = session.units(models, config, None, settings.emit)
-    made = [session.compile_unit(unit.files, config, settings, unit.emit) for unit in units]
+    made = [session.outcome_of(unit, config, settings, has_files=False) for unit in units]
     session.report(made, settings)
-    if settings.form == "text" and not any(compilation.diagnostics for compilation in made):
+    if settings.form == "text" and not any(outcome.findings for outcome in made):
         click.echo("no findings", err=True)
     ctx.exit(session.exit_code(made, config, settings))

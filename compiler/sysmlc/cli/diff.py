@@ -57,7 +57,7 @@ def command(
     ]
     unread = [compilation for compilation in made if not compilation.is_complete]
     if unread:
-        session.report(unread, settings)
+        session.show([found for one in unread for found in session.findings(one)], settings)
         ctx.exit(2)
     changes = diff(made[0].graph, made[1].graph, ignore)
     click.echo(_FORMS[form](changes), nl=False)

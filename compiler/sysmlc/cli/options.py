@@ -103,3 +103,13 @@ def output_folder(function: _F) -> _F:
         metavar="DIR",
         help="Output folder.  [default: out, or what the configuration says]",
     )(function)
+
+
+def caching(function: _F) -> _F:
+    """The option ``--no-cache``."""
+    return click.option(
+        "--cache/--no-cache",
+        "has_cache",
+        default=True,
+        help="Reuse what an earlier run found about the same inputs (the default), or do not.",
+    )(function)

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
     from sysmlc.config import Config
     from sysmlc.diagnostics.render import Finding
-    from sysmlc.driver import Compilation
+    from sysmlc.driver import Compilation, Opened, Outcome, Request
 
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
@@ -31,6 +31,12 @@ class Settings:
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
+    has_cache: bool = True
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing was asked for that only a compilation that really runs can show."""
+        return self.has_cache and not (self.verify_each or self.print_after or self.verbose)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,24 +128,63 @@ def compile_unit(
     emit: tuple[str, ...] | None = None,
 ) -> "Compilation":
     """Compile files with the back ends of ``emit`` (None: with no back end)."""
-    from sysmlc.cli.progress import Progress
-    from sysmlc.config import ConfigError
-    from sysmlc.driver import Request, compile_model
+    request = _request(files, config, settings)
+    return _compile(_with_backends(request, emit), settings)
 
-    progress = Progress(settings.verbose, settings.print_after)
-    request = Request(
+
+def outcome_of(
+    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
+) -> "Outcome":
+    """What compiling the unit comes to, from the cache when nothing changed since.
+
+    Without ``has_files`` the findings are enough.
+    """
+    from sysmlc import cache
+    from sysmlc.driver import key_of, open_unit, outcome, recall, remember
+
+    request = _request(unit.files, config, settings)
+    store = cache.default() if settings.is_plain else None
+    if store is None:
+        return outcome(_compile(_with_backends(request, unit.emit), settings), has_files)
+    opened = open_unit(request)
+    key = key_of(opened, request, unit.emit, has_files)
+    found = recall(store, key, opened.root)
+    if found is None:
+        made = _compile(_with_backends(request, unit.emit), settings, opened)
+        found = outcome(made, has_files)
+        remember(store, key, found)
+    return found
+
+
+def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
+    from sysmlc.driver import Request
+
+    return Request(
         inputs=files,
         config=config,
-        backends=() if emit is None else _backends(emit),
         templates=_templates(config, settings),
         strict_input=settings.strict_input or config.strict_input,
         verify_each=settings.verify_each,
     )
+
+
+def _with_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request":
+    return request if emit is None else replace(request, backends=_backends(emit))
+
+
+def _compile(
+    request: "Request", settings: Settings, opened: "Opened | None" = None
+) -> "Compilation":
+    from sysmlc.cli.progress import Progress
+    from sysmlc.config import ConfigError
+    from sysmlc.driver import compile_model
+
+    progress = Progress(settings.verbose, settings.print_after)
     try:
         _check_pass_names([step.name for step in request.pipeline()], settings.print_after)
-        return compile_model(request, progress)
+        return compile_model(request, progress, opened)
     except ConfigError as problem:
-        fail(f"{config.file}: {problem}")
+        fail(f"{request.config.file}: {problem}")
     finally:
         progress.clear()
 
@@ -170,9 +215,9 @@ def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
             fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
 
 
-def report(compilations: "Iterable[Compilation]", settings: Settings) -> None:
-    """Show the findings of all compilations as one report."""
-    show([finding for made in compilations for finding in findings(made)], settings)
+def report(outcomes: "Iterable[Outcome]", settings: Settings) -> None:
+    """Show the findings of all outcomes as one report."""
+    show([finding for made in outcomes for finding in _shown(made.root, made.findings)], settings)
 
 
 def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
@@ -180,16 +225,29 @@ def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Fin
     from sysmlc.diagnostics.render import make_report
 
     chosen = [found for found in compilation.diagnostics if found.is_error or not only_errors]
-    shown = _Shown(compilation.root)
-    return list(make_report(chosen, compilation.sources, shown).findings)
+    return _shown(compilation.root, make_report(chosen, compilation.sources).findings)
+
+
+def _shown(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
+    found = list(found)
+    names = {one.file: _name(root, one.file) for one in found if one.file}
+    return [replace(one, file=names.get(one.file, "")) for one in found]
+
+
+def _name(root: Path, name: str) -> str:
+    """Name of an input as the reader knows it: relative to the working folder."""
+    path, here = root / name, Path.cwd()
+    return path.relative_to(here).as_posix() if path.is_relative_to(here) else name
 
 
 def show(found: "Iterable[Finding]", settings: Settings) -> None:
     """Print findings in the form that was asked for."""
-    from sysmlc.diagnostics.render import Report, render
+    from sysmlc.diagnostics.render import XPATH_FORMATS, Report, render
 
     on_stdout = settings.form in _ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
+    if settings.form not in XPATH_FORMATS and not settings.verbose:
+        found = (replace(one, xpath="") for one in found)
     text = render(Report(tuple(found)), settings.form, color=_has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
 
@@ -199,24 +257,14 @@ def says_more(settings: Settings) -> bool:
     return settings.form not in ("json", "sarif")
 
 
-def exit_code(compilations: "Iterable[Compilation]", config: "Config", settings: Settings) -> int:
-    """The highest exit code of the compilations."""
+def exit_code(
+    outcomes: "Iterable[Outcome | Compilation]", config: "Config", settings: Settings
+) -> int:
+    """The highest exit code of the outcomes."""
     strict = settings.strict or config.strict
-    return max(compilation.exit_code(strict) for compilation in compilations)
+    return max(outcome.exit_code(strict) for outcome in outcomes)
 
 
 def _has_color(stream: object) -> bool:
     is_terminal = getattr(stream, "isatty", lambda: False)()
     return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-
-
-@dataclass(frozen=True, slots=True)
-class _Shown:
-    """Names of inputs as the reader knows them: relative to the working folder."""
-
-    root: Path
-
-    def __call__(self, name: str) -> str:
-        path = self.root / name
-        here = Path.cwd()
-        return path.relative_to(here).as_posix() if path.is_relative_to(here) else name

@@ -24,6 +24,7 @@ Example:
 @options.emitting
 @options.reporting
 @options.reading
+@options.caching
 def command(
     models: tuple[Path, ...],
     output: Path | None,
@@ -53,7 +54,7 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
     config = session.load_config(models, settings.config)
     good = True
     for unit in session.units(models, config, output, settings.emit):
-        made = session.compile_unit(unit.files, config, settings, unit.emit)
+        made = session.outcome_of(unit, config, settings)
         session.report([made], settings)
         if made.exit_code():
             good = False

@@ -1,8 +1,18 @@
 """The driver: inputs -> graph -> passes -> back ends -> output folder. It prints nothing."""
 
-from sysmlc.driver.compilation import Compilation, Observer, Request, compile_model
-from sysmlc.driver.manifest import manifest_text, trace_text
+from sysmlc.driver.compilation import (
+    Compilation,
+    Observer,
+    Opened,
+    Request,
+    compile_model,
+    open_unit,
+)
+from sysmlc.driver.dependencies import key_of
+from sysmlc.driver.manifest import manifest_text
+from sysmlc.driver.outcome import Outcome, outcome
 from sysmlc.driver.publish import OutputError, Plan, apply, plan
+from sysmlc.driver.recall import recall, remember
 from sysmlc.driver.registry import (
     BackendError,
     backend_names,
@@ -10,11 +20,14 @@ from sysmlc.driver.registry import (
     load_backends,
     select_backends,
 )
+from sysmlc.driver.tracing import trace_text
 
 __all__ = [
     "BackendError",
     "Compilation",
     "Observer",
+    "Opened",
+    "Outcome",
     "OutputError",
     "Plan",
     "Request",
@@ -22,9 +35,14 @@ __all__ = [
     "backend_names",
     "compile_model",
     "full_catalogue",
+    "key_of",
     "load_backends",
     "manifest_text",
+    "open_unit",
+    "outcome",
     "plan",
+    "recall",
+    "remember",
     "select_backends",
     "trace_text",
 ]

@@ -80,38 +80,55 @@ class Compilation:
 
     def exit_code(self, strict: bool = False) -> int:
         """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
-        if any(found.rule.code in faults.STOPPING for found in self.diagnostics):
-            return 2
-        bad = {"error", "warning"} if strict else {"error"}
-        return 1 if any(found.severity.value in bad for found in self.diagnostics) else 0
+        return faults.exit_code(self.diagnostics, strict)
 
 
-def compile_model(request: Request, observer: Observer | None = None) -> Compilation:
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """The bytes of one unit's inputs, and what was found while they were collected."""
+
+    root: Path
+    reading: Reading
+    sink: Sink
+
+
+def open_unit(request: Request) -> Opened:
+    """Read the inputs of a request, and what they refer to; parse nothing."""
+    sink = Sink(request.config.rules)
+    frontends = request.frontends or tuple(registry.frontends())
+    root = unit_root(request.inputs, request.config.folder)
+    return Opened(root, read_unit(request.inputs, root, frontends, sink), sink)
+
+
+def compile_model(
+    request: Request, observer: Observer | None = None, opened: Opened | None = None
+) -> Compilation:
     """Compile one unit. Model faults are in the result; nothing is written.
 
     Raises ConfigError for options that a pass does not have.
     """
-    run = _Run(request, observer or Observer())
+    run = _Run(request, observer or Observer(), opened or open_unit(request))
     return run.compilation()
 
 
 class _Run:
     """The state of one compilation while it goes on."""
 
-    def __init__(self, request: Request, observer: Observer) -> None:
+    def __init__(self, request: Request, observer: Observer, opened: Opened) -> None:
         self._request = request
         self._observer = observer
-        self._sink = Sink(request.config.rules)
+        self._sink = opened.sink
         self._coverage = Coverage()
         self._graph = Graph()
         self._output = Output()
         self._frontends = request.frontends or tuple(registry.frontends())
         self._passes = request.pipeline()
-        self._root = unit_root(request.inputs, request.config.folder)
+        self._root = opened.root
+        self._reading = opened.reading
         self._done = 0
 
     def compilation(self) -> Compilation:
-        reading = read_unit(self._request.inputs, self._root, self._frontends, self._sink)
+        reading = self._reading
         inputs = tuple(
             InputFile(r.source.name, r.source.sha256, r.frontend.name) for r in reading.recognised
         )

@@ -1,6 +1,8 @@
 """Rules of the driver: what can go wrong around a compilation."""
 
-from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
+from collections.abc import Iterable
+
+from sysmlc.diagnostics import Diagnostic, Place, Severity, Sink, Subject, rule
 from sysmlc.sources import Fault, SourceError
 
 MISSING_FILE = rule(
@@ -164,6 +166,15 @@ STOPPING = frozenset(
     for found in (MISSING_FILE, UNOPENED, TOO_LARGE, CHANGING, INTERNAL_FAULT, INVALID_GRAPH)
 )
 """Rules after which we could not do our work: exit code 2."""
+
+
+def exit_code(found: Iterable[Diagnostic], strict: bool = False) -> int:
+    """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
+    known = {(one.rule.code, one.severity) for one in found}
+    if any(code in STOPPING for code, _ in known):
+        return 2
+    bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
+    return 1 if any(severity in bad for _, severity in known) else 0
 
 
 def about_file(name: str) -> Subject:

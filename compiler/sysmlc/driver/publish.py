@@ -1,19 +1,13 @@
 """From a compilation to the output folder: only what changed is written, stale files go."""
 
+import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from sysmlc.driver.compilation import Compilation
-from sysmlc.driver.manifest import (
-    COVERAGE,
-    MANIFEST,
-    TRACE,
-    coverage_text,
-    manifest_text,
-    trace_text,
-)
+from sysmlc.driver.manifest import MANIFEST, manifest_text
+from sysmlc.driver.outcome import Outcome, digest_of
 from sysmlc.output import write_if_changed
 
 
@@ -23,34 +17,42 @@ class OutputError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What the output folder should hold, and what in it is stale."""
+    """What the output folder should hold: SHA-256 of each path, texts, and what is stale."""
 
     folder: Path
-    files: Mapping[str, str]
+    digests: Mapping[str, str]
+    texts: Mapping[str, str]
+    manifest: str
     stale: tuple[str, ...]
+
+    def text(self, path: str) -> str:
+        """What the file at the path should hold."""
+        return self.manifest if path == MANIFEST else self.texts[path]
+
+    def missing(self) -> list[str]:
+        """Paths that the folder does not hold as they should be."""
+        return [path for path, digest in self.digests.items() if self._digest(path) != digest]
 
     def differences(self) -> list[str]:
         """Paths that ``apply`` would write or remove, sorted."""
-        changed = [path for path, text in self.files.items() if not self._holds(path, text)]
-        return sorted([*changed, *self.stale])
+        return sorted([*self.missing(), *self.stale])
 
-    def _holds(self, path: str, text: str) -> bool:
+    def _digest(self, path: str) -> str:
         target = self.folder / path
-        return target.is_file() and target.read_bytes() == text.encode("utf-8")
+        return hashlib.sha256(target.read_bytes()).hexdigest() if target.is_file() else ""
 
 
-def plan(compilation: Compilation, folder: Path) -> Plan:
+def plan(outcome: Outcome, folder: Path) -> Plan:
     """What the folder should hold. Files that other programs made are never stale.
 
     When an input could not be read, what an earlier run made of it is kept and listed as such.
     """
-    files = {artefact.path: artefact.text for artefact in compilation.written()}
-    files[COVERAGE] = coverage_text(compilation)
-    files[TRACE] = trace_text(compilation)
-    left = tuple(p for p in _previous(folder) if p not in files and (folder / p).is_file())
-    kept, stale = ((), left) if compilation.is_complete else (left, ())
-    files[MANIFEST] = manifest_text(compilation, kept)
-    return Plan(folder, files, stale)
+    digests = {file.path: file.sha256 for file in outcome.files}
+    left = tuple(p for p in _previous(folder) if p not in digests and (folder / p).is_file())
+    kept, stale = ((), left) if outcome.is_complete else (left, ())
+    manifest = manifest_text(outcome, kept)
+    digests[MANIFEST] = digest_of(manifest)
+    return Plan(folder, digests, outcome.texts, manifest, stale)
 
 
 def apply(plan: Plan) -> list[str]:
@@ -60,9 +62,10 @@ def apply(plan: Plan) -> list[str]:
     """
     try:
         removed = [_remove(plan.folder, path) for path in plan.stale]
-        return removed + [
-            path for path, text in plan.files.items() if write_if_changed(plan.folder / path, text)
-        ]
+        changed = plan.missing()
+        for path in changed:
+            write_if_changed(plan.folder / path, plan.text(path))
+        return removed + changed
     except OSError as problem:
         where = problem.filename or plan.folder
         raise OutputError(f"cannot write {where}: {problem.strerror or problem}") from problem

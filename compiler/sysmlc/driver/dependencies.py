@@ -1,0 +1,85 @@
+"""On what an outcome depends: the tool, the bytes of the inputs, and what was asked for."""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sysmlc import __version__, resources
+from sysmlc.driver import registry
+from sysmlc.driver.compilation import Opened, Request
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+_RESOURCES = ("grammars", "metamodels", "templates")
+
+
+def key_of(opened: Opened, request: Request, wanted: Sequence[str], has_files: bool) -> str:
+    """Digest of everything that the outcome depends on.
+
+    ``wanted`` is what ``--emit`` says, which is known before a back end is loaded; without
+    ``has_files`` the outcome holds the findings only.
+    """
+    digest = sha256()
+    for part in _parts(opened, request, wanted, has_files):
+        digest.update(f"{len(part)}:{part}".encode("utf-8", "surrogatepass"))
+    return digest.hexdigest()
+
+
+def _parts(
+    opened: Opened, request: Request, wanted: Sequence[str], has_files: bool
+) -> Iterator[str]:
+    config = request.config
+    yield f"{__version__} {sys.version} {sys.platform}"
+    yield from _stamps(_tool_files())
+    yield repr((has_files, tuple(wanted), request.strict_input, len(config.models)))
+    yield repr((sorted(config.rules.items()), config.suppress, _sorted(config.passes)))
+    for found in opened.reading.recognised:
+        yield repr((found.source.name, found.source.sha256, found.frontend.name))
+    for finding in opened.sink:
+        yield repr((finding.rule.code, finding.message, finding.subject, opened.root))
+    yield from _stamps(_in_folder(request.templates))
+
+
+def _sorted(value: object) -> object:
+    if isinstance(value, dict):
+        return sorted((key, _sorted(inner)) for key, inner in value.items())
+    return value
+
+
+def _tool_files() -> Iterator[str]:
+    """Our own files and those of plug-ins: who works on them must not see old outcomes."""
+    yield from _in_folder(Path(__file__).parents[1])
+    for name in _RESOURCES:
+        yield from _in_folder(resources.path(name))
+    for entry in registry.plug_ins():
+        yield from _in_package(entry)
+
+
+def _in_package(entry: "EntryPoint") -> Iterator[str]:
+    spec = find_spec(entry.module.partition(".")[0])
+    if spec is not None and spec.origin:
+        has_folder = spec.submodule_search_locations is not None
+        yield from _in_folder(Path(spec.origin).parent) if has_folder else [spec.origin]
+
+
+def _in_folder(folder: Path | None) -> Iterator[str]:
+    for path, folders, files in os.walk(folder) if folder else ():
+        folders[:] = [name for name in folders if name != "__pycache__"]
+        yield from (f"{path}/{name}" for name in files)
+
+
+def _stamps(files: Iterable[str]) -> list[str]:
+    return sorted(map(_stamp, files))
+
+
+def _stamp(path: str) -> str:
+    try:
+        stat = os.stat(path)  # noqa: PTH116 - hundreds of files at every start
+    except OSError:
+        return f"{path} gone"
+    return f"{path} {stat.st_size} {stat.st_mtime_ns}"
