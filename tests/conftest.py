@@ -14,7 +14,7 @@ import pytest
 import plantuml_jar
 
 os.environ["SYSMLC_CACHE"] = "off"
-"""Tests see what the code does, not what an earlier run found; those of the cache have their own."""
+"""Tests see what the code does, not what an earlier run found."""
 
 GOLDEN = Path(__file__).parent / "golden"
 _SHOWN = 80
