@@ -20,15 +20,20 @@ def _parameter(
     element.attrs["direction"] = "in"
 
 
-def _pin(_context: "Context", element: Element, _row: int, type_name: str, feature: str) -> None:
+def _pin(context: "Context", element: Element, _row: int, type_name: str, feature: str) -> None:
     element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
     element.attrs["subkind"] = metaclasses.hyphenated(feature)
+    owner = context.graph.owner(element)
+    if feature == "returnInformation" and owner is not None and owner.subkind == "reply":
+        # Where no type is written the default is that of an accepted call, an output pin.
+        element.attrs["direction"] = "in"
 
 
 def _pseudostate(
-    _context: "Context", element: Element, _row: int, _type_name: str, _feature: str
+    _context: "Context", element: Element, _row: int, type_name: str, _feature: str
 ) -> None:
-    element.attrs["subkind"] = "initial"
+    if type_name == "Pseudostate":
+        element.attrs["subkind"] = "initial"
 
 
 def _constraint(
@@ -37,7 +42,7 @@ def _constraint(
     owner = context.graph.owner(element)
     if feature in v.CONDITIONS:
         element.attrs["subkind"] = v.CONDITIONS[feature]
-    if feature == "guard" and owner is not None:
+    if feature in ("guard", "preCondition") and owner is not None:
         context.guards.append((owner, element.id, row))
 
 
@@ -66,10 +71,11 @@ def _trigger(context: "Context", element: Element, row: int, _type_name: str, fe
         context.graph.connect(Edge.TRIGGER, owner, element)
 
 
-def _message(
-    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+def _dependency(
+    _context: "Context", element: Element, _row: int, _type_name: str, feature: str
 ) -> None:
-    context.messages.append((element, row))
+    if feature == "roleBinding":
+        element.attrs["subkind"] = "role-binding"
 
 
 def _connector_end(
@@ -97,7 +103,7 @@ OF: dict[Kind, Detail] = {
     Kind.STATE_MACHINE: _behaviour,
     Kind.INTERACTION: _behaviour,
     Kind.TRIGGER: _trigger,
-    Kind.MESSAGE: _message,
+    Kind.DEPENDENCY: _dependency,
     Kind.CONNECTOR_END: _connector_end,
     Kind.ACTIVITY_PARAMETER: _activity_parameter,
 }
