@@ -171,30 +171,6 @@ def machine(start):
   </packagedElement>"""
 
 
-def test_messages_lead_from_lifeline_to_lifeline():
-    reading = read(
-        papyrus(
-            """
-  <packagedElement xmi:type="uml:Interaction" xmi:id="ia">
-    <lifeline xmi:id="l1" represents="x"/><lifeline xmi:id="l2"/>
-    <fragment xmi:type="uml:MessageOccurrenceSpecification" xmi:id="o1" covered="l1"/>
-    <fragment xmi:type="uml:CombinedFragment" xmi:id="cf"><operand xmi:type="uml:InteractionOperand"
-      xmi:id="op"><fragment xmi:type="uml:MessageOccurrenceSpecification" xmi:id="o2"
-      covered="l2"/></operand></fragment>
-    <message xmi:id="msg" name="go" sendEvent="o1" receiveEvent="o2" signature="ia"/>
-  </packagedElement>"""
-        )
-    )
-    assert "Message msg" in reading.text
-    edges = [(str(r.edge), r.target) for r in reading.graph.pending if r.source == "msg"]
-    assert sorted(edges) == [("calls", "ia"), ("flow-source", "l1"), ("flow-target", "l2")]
-    assert reading.findings == [
-        "unsupported-element: 1 element of type 'uml:CombinedFragment' not read (3 with all "
-        "that they contain)"
-    ]
-    assert reading.totals == {"elements": 10, "mapped": 7, "unsupported": 3}
-
-
 def test_pre_and_postconditions():
     reading = read(
         papyrus(

@@ -17,8 +17,8 @@ def test_the_five_verdicts():
     <ownedAttribute xmi:id="a"><type href="x.uml#_1"/></ownedAttribute>
     <ownedAttribute xmi:id="r"><upperValue xmi:type="uml:OpaqueExpression" xmi:id="s">
       <body>a</body><body>b</body></upperValue></ownedAttribute></packagedElement>
-  <packagedElement xmi:type="uml:DurationObservation" xmi:id="o"/>
-  <packagedElement xmi:type="uml:DurationObservation" xmi:id="o2"/>"""
+  <packagedElement xmi:type="uml:State" xmi:id="o"/>
+  <packagedElement xmi:type="uml:State" xmi:id="o2"/>"""
         )
     )
     assert reading.totals == {
@@ -30,18 +30,18 @@ def test_the_five_verdicts():
         "external": 1,
     }
     (file,) = reading.coverage.as_json()["files"]
-    assert file["by_type"]["uml:DurationObservation"] == {"unsupported": 2}
+    assert file["by_type"]["uml:State"] == {"unsupported": 2}
     assert file["by_type"]["uml:Property"] == {"mapped": 2}
     assert reading.findings == [
-        "unsupported-element: 2 elements of type 'uml:DurationObservation' not read (2 with all "
-        "that they contain)",
+        "unsupported-element: 2 elements of type 'uml:State' not read (2 with all that they "
+        "contain)",
         "approximated-element: 1 element of type 'uml:OpaqueExpression' read without its "
         "alternative bodies",
     ]
 
 
 def test_a_finding_is_about_the_first_place():
-    model = papyrus('<packagedElement xmi:type="uml:DurationObservation" xmi:id="o"/>')
+    model = papyrus('<packagedElement xmi:type="uml:State" xmi:id="o"/>')
     (finding,) = read(model).sink
     (location,) = locate([model], [finding.subject.place]).values()
     assert location.text[location.column - 1 :].startswith("<packagedElement")

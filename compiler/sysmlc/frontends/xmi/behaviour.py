@@ -48,7 +48,7 @@ def _collected(name: str) -> _Reader:
 
 
 def _part_of_others(context: Context, row: int) -> None:
-    """Events and occurrences are read by the triggers and messages that name them."""
+    """Events are read by the triggers that name them."""
     context.subtree(row, Verdict.MAPPED)
 
 
@@ -62,7 +62,6 @@ FEATURES: dict[str, _Reader] = {
 
 TYPES: dict[str, _Reader] = {
     **dict.fromkeys(metaclasses.EVENT_TYPES, _part_of_others),
-    "MessageOccurrenceSpecification": _part_of_others,
 }
 
 _COLUMNS = {
@@ -82,8 +81,8 @@ def finish(context: Context) -> None:
             _add_record(context, name, element, row)
     for element, row in context.triggers:
         _trigger(context, element, row)
-    for element, row in context.messages:
-        _message(context, element, row)
+    for complete, element, row in context.deferred:
+        complete(context, element, row)
     for element, target, row in context.guards:
         _transition_guard(context, element, target, row)
     _parameter_directions(context)
@@ -175,15 +174,6 @@ def _target(unit: Unit, lowered: Lowered, row: int, feature: str) -> tuple[Lower
     for target, _, is_href in references(lowered.document, row, feature):
         return unit.find(lowered, target, is_href)
     return None
-
-
-def _message(context: Context, element: Element, row: int) -> None:
-    for feature, edge in (("sendEvent", Edge.FLOW_SOURCE), ("receiveEvent", Edge.FLOW_TARGET)):
-        occurrence = _target(context.unit, context.lowered, row, feature)
-        if occurrence is not None:
-            holder, at = occurrence
-            for target, place, is_href in references(holder.document, at, "covered"):
-                context.link_from(holder, edge, element.id, target, place, "covered", is_href)
 
 
 def _transition_guard(context: Context, element: Element, target: str, row: int) -> None:

@@ -270,7 +270,10 @@ def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
     return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
 
 
-_HANDLED = frozenset({"partWithPort", "guard", "event", "sendEvent", "receiveEvent", "value"})
+_HANDLED = frozenset(
+    {"partWithPort", "guard", "event", "value"}
+    | {"firstEvent", "interactionOperator", "messageKind", "messageSort"}
+)
 """Attributes that the readers of single kinds take themselves."""
 
 _PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}

@@ -3,14 +3,33 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Sink, Verdict
-from sysmlc.frontends.xmi import behaviour, metaclasses, namespaces, structure, vocabulary
+from sysmlc.frontends.xmi import (
+    behaviour,
+    expressions,
+    interactions,
+    metaclasses,
+    namespaces,
+    structure,
+    templates,
+    usecases,
+    vocabulary,
+)
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 
 _Reader = Callable[[Context, int], None]
 
-_FEATURES: dict[str, _Reader] = structure.FEATURES | behaviour.FEATURES
-_TYPES: dict[str, _Reader] = structure.TYPES | behaviour.TYPES
+_FEATURES: dict[str, _Reader] = (
+    structure.FEATURES | behaviour.FEATURES | interactions.FEATURES | templates.FEATURES
+)
+_TYPES: dict[str, _Reader] = (
+    expressions.TYPES
+    | structure.TYPES
+    | behaviour.TYPES
+    | interactions.TYPES
+    | templates.TYPES
+    | usecases.TYPES
+)
 
 
 def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:

@@ -29,9 +29,10 @@ UNSUPPORTED = rule(
     "unsupported-element",
     Severity.WARNING,
     "{count} of type '{type}' not read ({number} with all that they contain)",
-    why="The element has a meaning that the graph cannot hold yet, so outputs do not reflect it. "
+    why="Its type is none of UML 2.5.1, or it stands where UML allows no such element; outputs do "
+    "not reflect it. "
     "coverage.json counts such elements; --strict-input makes them errors.",
-    wrong="<packagedElement xmi:type='uml:DurationObservation'/>",
+    wrong="<packagedElement xmi:type='uml:State'/>",
     right="<packagedElement xmi:type='uml:Class'/>",
 )
 REPEATED_ID = rule(

@@ -24,6 +24,10 @@ _LEGIBLE = (
 """Languages by how well the expression grammar reads them, lower case; programs come last."""
 
 
+_OF_TIME = ("TimeExpression", "Duration")
+_INTERVALS = ("Interval", "TimeInterval", "DurationInterval")
+
+
 class ValueText(NamedTuple):
     """A value: a JSON literal or text; ``language`` is set when it is an expression."""
 
@@ -47,11 +51,10 @@ def value_of(document: Document, row: int) -> ValueText:
         return _instance(document, row)
     if type_name in ("Expression", "StringExpression"):
         return ValueText(_expression(document, row), language="UML")
-    if type_name in ("TimeExpression", "Duration"):
-        inner = next(document.children(row, "expr"), None)
-        return value_of(document, inner) if inner is not None else ValueText("")
-    if type_name in ("Interval", "TimeInterval", "DurationInterval"):
-        return ValueText(f"{document.get(row, 'min')}..{document.get(row, 'max')}")
+    if type_name in _OF_TIME:
+        return _time(document, row)
+    if type_name in _INTERVALS:
+        return ValueText(_interval(document, row))
     return opaque(document, row)
 
 
@@ -118,6 +121,40 @@ def _number(type_name: str, text: str) -> AttrValue:
     return int(text or "0")
 
 
+def _time(document: Document, row: int) -> ValueText:
+    """A time or duration: what it is, else the observations that it is said of."""
+    inner = next(document.children(row, "expr"), None)
+    if inner is not None:
+        return value_of(document, inner)
+    found = (document.ids.get(target) for target in document.targets(row, "observation"))
+    return ValueText(", ".join(name_of_instance(document, at) for at in found if at is not None))
+
+
+def _interval(document: Document, row: int) -> str:
+    """``min..max``; the bounds stand inside (MagicDraw), or elsewhere in the file (Papyrus)."""
+    bounds = [_bound(document, row, feature) for feature in ("min", "max")]
+    return bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
+
+
+def _bound(document: Document, row: int, feature: str) -> str:
+    for child in document.children(row, feature):
+        if document.types[child]:
+            return str(value_of(document, child).value)
+    for target in document.targets(row, feature):
+        at = document.ids.get(target)
+        return str(_elsewhere(document, at).value) if at is not None else target
+    return ""
+
+
+def _elsewhere(document: Document, row: int) -> ValueText:
+    """A value that an id leads to: only a leaf is read, for the way could lead in a circle."""
+    inner = next(document.children(row, "expr"), None)
+    if inner is None and document.types[row] in _OF_TIME:
+        return _time(document, row)
+    leaf = row if inner is None else inner
+    return value_of(document, leaf) if document.types[leaf] in _LITERALS else opaque(document, leaf)
+
+
 def _instance(document: Document, row: int) -> ValueText:
     targets = document.targets(row, "instance")
     hrefs = [document.attributes[c].get("href", "") for c in document.children(row, "instance")]
@@ -129,7 +166,8 @@ def _instance(document: Document, row: int) -> ValueText:
 
 def _expression(document: Document, row: int) -> str:
     """``symbol(operand, ...)``; without a symbol the operands joined (StringExpression)."""
-    operands = [str(value_of(document, child).value) for child in document.children(row, "operand")]
+    inside = [*document.children(row, "operand"), *document.children(row, "subExpression")]
+    operands = [str(value_of(document, child).value) for child in inside]
     symbol = document.attributes[row].get("symbol", "")
     if not symbol:
         return "".join(operands)

@@ -187,6 +187,7 @@ REDUNDANT = frozenset(
         "subExpression",
         "bodyPin",
         "message",
+        "useCase",
         "toBefore",
         "toAfter",
         "execution",
