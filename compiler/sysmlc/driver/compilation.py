@@ -236,7 +236,13 @@ class _Run:
             late.report(
                 faults.UNKNOWN_LEVEL_ELEMENT, Subject(), help="{advice}", name=name, advice=advice
             )
-        return tuple(sorted([*left, *late], key=_by_place))
+        own = (found for found in left if not self._is_about_library(found))
+        return tuple(sorted([*own, *late], key=_by_place))
+
+    def _is_about_library(self, found: Diagnostic) -> bool:
+        """Whether it is about what a library is like, which who only uses it cannot mend."""
+        element = self._graph.get(found.subject.id or None)
+        return element is not None and element.attrs.get("library") is True
 
     def _unknown_level_elements(self) -> Iterator[tuple[str, str]]:
         """Names in ``[recipe.levels]``; with several units an element may be in another one."""

@@ -16,6 +16,11 @@ _MODEL_ENTRY = re.compile(
 )
 
 
+_LIBRARY_ENTRY = re.compile(
+    r"(^|/)proxy\..*_resource_com\$dnomagic\$dmagicdraw\$duml_umodel\$d(shared_u)?model\$dsnapshot$"
+)
+
+
 def is_model_entry(name: str) -> bool:
     """Whether an entry of an archive holds model content.
 
@@ -25,10 +30,20 @@ def is_model_entry(name: str) -> bool:
     return _MODEL_ENTRY.search(name) is not None
 
 
+def is_library_entry(name: str) -> bool:
+    """Whether an entry of an archive is a snapshot of what its model takes from elsewhere."""
+    return _LIBRARY_ENTRY.search(name) is not None
+
+
+def is_wanted_entry(name: str) -> bool:
+    """Whether an entry of an archive is read: a model, or what one takes from elsewhere."""
+    return is_model_entry(name) or is_library_entry(name)
+
+
 def load(
     path: Path,
     name: str,
-    wanted: Callable[[str], bool] = is_model_entry,
+    wanted: Callable[[str], bool] = is_wanted_entry,
     limits: Limits = DEFAULT_LIMITS,
 ) -> list[Source]:
     """The file as a source, or the wanted entries when it is an archive (told by content).
@@ -39,6 +54,6 @@ def load(
     if not is_archive(source.data):
         return [source]
     found = entries(source, wanted, limits)
-    if not found:
+    if all(is_library_entry(source.name) for source in found):
         raise SourceError("the archive holds no model", name)
     return found

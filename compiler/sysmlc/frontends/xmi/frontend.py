@@ -5,8 +5,19 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.xmi import account, applications, behaviour, detect, links, lowering, rules
+from sysmlc.frontends.xmi import (
+    account,
+    applications,
+    behaviour,
+    detect,
+    links,
+    lowering,
+    rules,
+    snapshot_use,
+)
+from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document, read
+from sysmlc.frontends.xmi.snapshot import Snapshots, is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
@@ -19,11 +30,13 @@ class XmiFrontend:
 
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1, that the source is UML in XMI."""
+        if is_snapshot(source):
+            return 1.0
         return detect.score(source)
 
     def links(self, source: Source) -> Sequence[str]:
-        """The files that its hrefs name."""
-        return links.links(source)
+        """The files that its hrefs name; those of a snapshot are in the same archive."""
+        return [] if is_snapshot(source) else links.links(source)
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph; references are left for the pass ``resolve``.
@@ -32,14 +45,29 @@ class XmiFrontend:
         limits. The graph does not depend on the order of the files.
         """
         ordered = sorted(sources, key=lambda source: source.name)
+        models = [source for source in ordered if not is_snapshot(source)]
+        beside = [source for source in ordered if is_snapshot(source)]
         with _no_collection():
-            documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-            _lower(documents, graph, sink, coverage)
+            documents = [d for source in models if (d := _read(source, sink)) is not None]
+            unit = Unit(documents, graph)
+            contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
+            if beside:
+                _add_library(unit, contexts, models, snapshot_use.read(beside, sink), coverage)
+            _finish(unit, contexts, sink, coverage)
 
 
-def _lower(documents: list[Document], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-    unit = Unit(documents, graph)
-    contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
+def _add_library(
+    unit: Unit,
+    contexts: list[Context],
+    models: list[Source],
+    snapshots: Snapshots,
+    coverage: Coverage,
+) -> None:
+    snapshot_use.add(unit, contexts, models, snapshots)
+    snapshot_use.account(snapshots, unit, coverage)
+
+
+def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:
     for context in contexts:
         applications.note_namespaces(context)
         context.finish()

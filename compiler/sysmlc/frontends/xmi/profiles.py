@@ -42,6 +42,11 @@ def mangled(name: str) -> str:
     return re.sub(r"\W", "_", name)
 
 
+def last_segment(namespace: str) -> str:
+    """What names the profile in its namespace: ``Arrowhead`` in ``.../schemas/Arrowhead.xmi``."""
+    return namespace.rpartition("/")[2].removesuffix(".xmi")
+
+
 def _conventional(package: Element) -> list[str]:
     if package.kind is not Kind.PROFILE:
         return []

@@ -48,6 +48,7 @@ class Unit:
         self.files = [Lowered(document) for document in documents]
         self.links: list[Link] = []
         self.profiles = Profiles()
+        self.library: dict[str, str] = {}
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
         self._holders: dict[str, list[Lowered]] = {}
         for file in self.files if len(self.files) > 1 else ():
@@ -74,6 +75,10 @@ class Unit:
             exact = [h for h in holders if hrefs.base_name(h.document.name) == name]
         return (exact[0], exact[0].document.ids[fragment]) if len(exact) == 1 else None
 
+    def has(self, id: str) -> bool:
+        """Whether a file of the unit has an element with this id."""
+        return bool(self._having(id))
+
     def _having(self, id: str) -> list[Lowered]:
         if len(self.files) == 1:
             return self.files if id in self.files[0].document.ids else []
@@ -92,8 +97,12 @@ class Unit:
         What no file of the unit has is returned as written (an href normalised).
         """
         found = self.find(lowered, target, is_href)
+        if found is None and is_href:
+            return self.library.get(target.rpartition("#")[2]) or hrefs.normalised(
+                target, lowered.document.name
+            )
         if found is None:
-            return hrefs.normalised(target, lowered.document.name) if is_href else target
+            return target
         holder, row = found
         if not holder.own[row] and holder.verdicts[row] in _NOT_KEPT:
             return None

@@ -24,6 +24,14 @@ _FAMILIES = {
 }
 """Whose a profile is that does not say its namespace, by its name."""
 
+_LIBRARY_FAMILIES = _FAMILIES | {
+    **dict.fromkeys(
+        ("StandardProfile", "StandardProfileL2", "StandardProfileL3", "Standard"), Family.STANDARD
+    ),
+    **dict.fromkeys(("MagicDraw_Profile", "UML_Standard_Profile"), Family.TOOL),
+}
+"""The same for library content, which says no namespace and is nobody's own."""
+
 
 @dataclass(slots=True)
 class Profiles:
@@ -36,7 +44,7 @@ class Profiles:
 
     def __post_init__(self) -> None:
         for stereotype in self.graph.of_kind(Kind.STEREOTYPE):
-            if not stereotype.attrs.get("external"):
+            if stereotype.attrs.get("library") or not stereotype.attrs.get("external"):
                 self._named.setdefault(mangled(stereotype.name), []).append(stereotype)
 
     def lineage(self, application: Element) -> tuple[Ancestor, ...]:
@@ -92,13 +100,19 @@ class Profiles:
 
     def _find_family(self, stereotype: Element) -> Family:
         if stereotype.attrs.get("external"):
-            return family(str(stereotype.attrs.get("href", "")))
+            found = family(str(stereotype.attrs.get("href", "")))
+            return self._library_family(stereotype) if found is Family.CUSTOM else found
         for profile in self._profiles(stereotype):
             found = family(self._uri(profile))
             if found is not Family.CUSTOM:
                 return found
         names = (mangled(profile.name) for profile in self._profiles(stereotype))
         return next((_FAMILIES[name] for name in names if name in _FAMILIES), Family.CUSTOM)
+
+    def _library_family(self, stereotype: Element) -> Family:
+        names = (mangled(profile.name) for profile in self._profiles(stereotype))
+        known = (_LIBRARY_FAMILIES[name] for name in names if name in _LIBRARY_FAMILIES)
+        return next(known, Family.CUSTOM)
 
     def _profiles(self, stereotype: Element) -> list[Element]:
         above = self.graph.ancestors(stereotype)

@@ -1,0 +1,186 @@
+"""Snapshots of used projects inside a MagicDraw archive: parts of libraries, by id.
+
+The fourth dialect: XMI 2.0 with ``xsi:type``, an ``ID`` for each element, and applications of
+stereotypes inside the elements they are applied to.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
+from sysmlc.sources.xml import parse, parser, too_deep
+
+_HEAD = 4096
+_NAMESPACE = re.compile(rb"""["']https?://www\.nomagic\.com/magicdraw/UML/""")
+_ENTRY = re.compile(r"[!/][^!/]*snapshot$")
+_TYPE = "http://www.w3.org/2001/XMLSchema-instance}type"
+_OWNER = "owningPackage"
+
+
+class Entry:
+    """One element of a snapshot.
+
+    ``references`` are ids by feature; ``values`` the attributes as written. ``size`` counts
+    the elements inside it: a library's own snapshot has more of it than those of others.
+    """
+
+    __slots__ = (
+        "feature",
+        "id",
+        "ordinal",
+        "owner",
+        "references",
+        "size",
+        "source",
+        "type",
+        "values",
+    )
+
+    def __init__(self, id: str, feature: str, type_name: str, ordinal: int, source: str) -> None:
+        self.id = id
+        self.feature = feature
+        self.type = type_name
+        self.ordinal = ordinal
+        self.source = source
+        self.owner = ""
+        self.size = 0
+        self.references: dict[str, list[str]] = {}
+        self.values: dict[str, str] = {}
+
+    @property
+    def name(self) -> str:
+        """Its name, or the empty string."""
+        return self.values.get("name", "")
+
+    def targets(self, feature: str) -> list[str]:
+        """Ids that the feature refers to, as attribute or as children."""
+        return self.references.get(feature) or self.values.get(feature, "").split()
+
+
+def is_snapshot(source: Source) -> bool:
+    """Whether the source is a snapshot: told by the namespace that only they have."""
+    is_entry = _ENTRY.search(source.name) is not None
+    return is_entry and _NAMESPACE.search(source.data, 0, _HEAD) is not None
+
+
+class Snapshots:
+    """The elements of all snapshots of a unit, each once.
+
+    Snapshots overlap: each holds what one used project needs of the others. Of several copies
+    the one with most inside counts, with the references that only the others have. What
+    cannot be read is left out and added to ``problems``; what exceeds the limits raises
+    SourceError.
+    """
+
+    def __init__(self, sources: Iterable[Source], problems: list[SourceError]) -> None:
+        self.entries: dict[str, Entry] = {}
+        self.counts: dict[str, Counter[str]] = {}
+        self._owned: dict[str, list[Entry]] = {}
+        for source in sorted(sources, key=lambda one: one.name):
+            self._read(source, problems)
+        for entry in sorted(self.entries.values(), key=place):
+            if entry.owner:
+                self._owned.setdefault(entry.owner, []).append(entry)
+
+    def owned(self, id: str) -> list[Entry]:
+        """What the element owns, in document order."""
+        return self._owned.get(id, [])
+
+    def path(self, entry: Entry) -> Iterator[Entry]:
+        """The element and its owners, nearest first."""
+        seen: set[str] = set()
+        at: Entry | None = entry
+        while at is not None and at.id not in seen:
+            seen.add(at.id)
+            yield at
+            at = self.entries.get(at.owner)
+
+    def _read(self, source: Source, problems: list[SourceError]) -> None:
+        try:
+            found, self.counts[source.name] = _entries(source)
+        except SourceError as problem:
+            if problem.fault is Fault.LIMIT:
+                raise
+            problems.append(problem)
+            return
+        for entry in found:
+            self._add(entry)
+
+    def _add(self, entry: Entry) -> None:
+        known = self.entries.get(entry.id)
+        if known is None:
+            self.entries[entry.id] = entry
+            return
+        best, other = (entry, known) if entry.size > known.size else (known, entry)
+        best.references = other.references | best.references
+        best.values = other.values | best.values
+        best.owner = best.owner or other.owner
+        self.entries[entry.id] = best
+
+
+def place(entry: Entry) -> tuple[str, int]:
+    """Where the element stands, for ordering."""
+    return entry.source, entry.ordinal
+
+
+def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
+    """The elements with an ID, owned before owner, and the number of all by type.
+
+    Raises SourceError.
+    """
+    made = parser()
+    found: list[Entry] = []
+    counts: Counter[str] = Counter()
+    stack: list[Entry | None] = []
+    number = 0
+
+    def start(tag: str, values: dict[str, str]) -> None:
+        nonlocal number
+        feature = tag.rpartition("}")[2]
+        written = values.get(_TYPE, "")
+        type_name = written.rpartition(":")[2]
+        counts[written or feature] += 1
+        above = stack[-1] if stack else None
+        id = values.get("ID")
+        if id:
+            entry = Entry(id, feature, type_name or _root_type(above, feature), number, source.name)
+            entry.values = values
+            entry.owner = above.id if above is not None else ""
+            stack.append(entry)
+        else:
+            _refer(above, feature, values)
+            stack.append(above)
+        number += 1
+        if len(stack) > DEFAULT_LIMITS.depth:
+            too_deep(source, made)
+
+    def end(_tag: str) -> None:
+        entry = stack.pop()
+        above = stack[-1] if stack else None
+        if entry is not None and entry is not above:
+            if above is not None:
+                above.size += entry.size + 1
+            found.append(entry)
+
+    made.StartElementHandler = start
+    made.EndElementHandler = end
+    parse(source, made)
+    return found, counts
+
+
+def _root_type(above: Entry | None, feature: str) -> str:
+    return feature if above is None else ""
+
+
+def _refer(above: Entry | None, feature: str, values: dict[str, str]) -> None:
+    href = values.get("href")
+    if above is None or href is None:
+        return
+    fragment = href.rpartition("#")[2]
+    if feature == _OWNER:
+        above.owner = above.owner or fragment
+    elif feature == "packagedElement":
+        return
+    else:
+        above.references.setdefault(feature, []).append(fragment)

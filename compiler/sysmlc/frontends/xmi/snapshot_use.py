@@ -1,0 +1,92 @@
+"""What the models of a unit take from the snapshots beside them."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.profiles import last_segment, mangled
+from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
+from sysmlc.frontends.xmi.snapshot_closure import needed
+from sysmlc.frontends.xmi.snapshot_elements import LibraryElements
+from sysmlc.frontends.xmi.snapshot_rules import BROKEN_SNAPSHOT
+from sysmlc.frontends.xmi.unit import Unit
+from sysmlc.sources import Source, SourceError
+
+_HREF = re.compile(rb"""\bhref\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
+
+
+def read(sources: Sequence[Source], sink: Sink) -> Snapshots:
+    """The snapshots; one that is damaged is reported and left out. Raises SourceError."""
+    problems: list[SourceError] = []
+    snapshots = Snapshots(sources, problems)
+    for problem in problems:
+        subject = Subject(problem.file, place=Place(problem.file, offset=problem.offset))
+        sink.report(BROKEN_SNAPSHOT, subject, file=problem.file, problem=problem.message)
+    return snapshots
+
+
+def add(
+    unit: Unit, contexts: Sequence[Context], models: Sequence[Source], snapshots: Snapshots
+) -> None:
+    """Add what the models refer to in the snapshots to the graph, and tell the unit its ids."""
+    hrefs = [found for model in models for found in _hrefs(model)]
+    wanted = dict.fromkeys(id for _, id in hrefs if not unit.has(id))
+    wanted.update(dict.fromkeys(_stereotypes(contexts, snapshots)))
+    made = LibraryElements(snapshots, unit.graph, _files(hrefs, snapshots), unit.has)
+    made.add(needed(snapshots, wanted))
+    unit.library.update(made.ids)
+
+
+def _hrefs(model: Source) -> Iterator[tuple[str, str]]:
+    for one in _HREF.findall(model.data):
+        path, id = one[:2] if one[1] else one[2:]
+        yield path.decode("utf-8", "replace"), id.decode("utf-8", "replace")
+
+
+def _stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[str]:
+    """Ids of the stereotypes that the models apply: applications name them, not refer to them."""
+    applied = {
+        (mangled(c.document.features[row]), last_segment(c.document.namespace(row)))
+        for c in contexts
+        for row in c.applications
+    }
+    for entry in snapshots.entries.values():
+        if entry.type == "Stereotype":
+            name = mangled(entry.name)
+            if any((name, mangled(one.name)) in applied for one in snapshots.path(entry)):
+                yield entry.id
+
+
+def _files(hrefs: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
+    """Names of the libraries by snapshot: what most hrefs that lead there write."""
+    written: dict[str, Counter[str]] = {}
+    for path, id in hrefs:
+        entry = snapshots.entries.get(id)
+        if entry is not None and path and "?" not in path:
+            written.setdefault(entry.source, Counter())[path] += 1
+    return {
+        source: max(paths, key=lambda path: (paths[path], path))
+        for source, paths in written.items()
+    }
+
+
+def account(snapshots: Snapshots, unit: Unit, coverage: Coverage) -> None:
+    """Count every element of the snapshots once: what no model needs stays outside."""
+    used = {name: Counter[str]() for name in snapshots.counts}
+    for id in unit.library:
+        entry = snapshots.entries[id]
+        used[entry.source][_written(entry)] += 1
+    for name, counts in snapshots.counts.items():
+        for type_name, number in counts.items():
+            mapped = min(used[name][type_name], number)
+            if mapped:
+                coverage.file(name).count(type_name, Verdict.MAPPED, mapped)
+            if number > mapped:
+                coverage.file(name).count(type_name, Verdict.EXTERNAL, number - mapped)
+
+
+def _written(entry: Entry) -> str:
+    is_default = not entry.type or (not entry.owner and entry.type == entry.feature)
+    return entry.feature if is_default else f"uml:{entry.type}"
