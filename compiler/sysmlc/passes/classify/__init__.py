@@ -7,6 +7,7 @@ from typing import ClassVar
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
+from sysmlc.passes.classify.bindings import add_bindings
 from sysmlc.passes.classify.lineage import (
     Ancestor,
     Profiles,
@@ -17,7 +18,8 @@ from sysmlc.passes.classify.lineage import (
 from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, give_requirement
 from sysmlc.passes.classify.roles import by_stereotype, by_structure
-from sysmlc.passes.classify.rules import LOOK_ALIKE, UNKNOWN_STEREOTYPE
+from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
+from sysmlc.passes.classify.tags import give_tags, optional_with_value
 from sysmlc.passes.classify.vocabulary import LEVELS, Family
 
 _Meanings = dict[str, tuple[str, ...]]
@@ -29,10 +31,11 @@ class Classify:
 
     Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of``
     when the stereotype is in the unit; ``role`` as docs/ir.md lists them (one that a front end
-    gave stays unless a stereotype says otherwise); ``req_id`` and ``text`` of requirements;
-    ``direction`` of flow properties; ``level`` on what a stereotype of the shipped profile, or
-    a general classifier with a level, puts there; the edges that dependencies mean. The kind
-    of an element never changes.
+    gave stays unless a stereotype says otherwise); what the tags of SysML's stereotypes say, as
+    attributes and edges; ``req_id`` and ``text`` of requirements; ``direction`` of flow
+    properties; ``level`` on what a stereotype of the shipped profile, or a general classifier
+    with a level, puts there; the edges that dependencies and bindings mean. The kind of an
+    element never changes.
     """
 
     name: ClassVar[str] = "classify"
@@ -42,9 +45,12 @@ class Classify:
         """Classify in place; see the class."""
         lineages = _lineages(graph)
         known = _meanings(graph, sink, lineages)
-        _give_roles(graph, known)
+        _give_roles(graph, _by_subject(graph, known))
+        give_tags(graph, known)
+        _check_optional(graph, sink, known)
         _give_levels(graph, lineages)
         _give_values(graph)
+        add_bindings(graph)
         add_relations(graph, sink)
         check_requirements(graph, sink)
 
@@ -66,20 +72,32 @@ def _lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
 
 
 def _meanings(graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]) -> _Meanings:
-    """Names of SysML stereotypes on each element, look-alikes included."""
+    """Names of SysML stereotypes that each application stands for, look-alikes included."""
     found: _Meanings = {}
     doubtful: dict[tuple[str, str], list[Element]] = {}
     for id, lineage in lineages.items():
         application = graph[id]
         alike = look_alike(lineage)
-        names = known_meanings(alike) if alike else meanings(lineage)
-        for subject in graph.targets(application, Edge.SUBJECT):
-            found[subject.id] = (*found.get(subject.id, ()), *names)
+        found[id] = known_meanings(alike) if alike else meanings(lineage)
         if alike or _is_unknown(graph, application, lineage):
             doubtful.setdefault((_full_name(application), alike), []).append(application)
     for (name, alike), applications in doubtful.items():
         _report(graph, sink, name, alike, applications)
     return found
+
+
+def _by_subject(graph: Graph, known: _Meanings) -> _Meanings:
+    found: _Meanings = {}
+    for id, names in known.items():
+        for subject in graph.targets(graph[id], Edge.SUBJECT):
+            found[subject.id] = (*found.get(subject.id, ()), *names)
+    return found
+
+
+def _check_optional(graph: Graph, sink: Sink, known: _Meanings) -> None:
+    for parameter in optional_with_value(graph, known):
+        name = graph.qualified_name(parameter)
+        sink.report(OPTIONAL_WITH_VALUE, graph.subject(parameter), parameter=name)
 
 
 def _is_unknown(graph: Graph, application: Element, lineage: tuple[Ancestor, ...]) -> bool:

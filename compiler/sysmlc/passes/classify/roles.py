@@ -6,11 +6,14 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import type_of
 from sysmlc.passes.classify.vocabulary import (
     CLASSIFIER_ROLES,
+    COMMENT_ROLES,
     CONNECTOR_ROLES,
     DEPENDENCY_ROLES,
     FLOW_ROLES,
+    PARTITION_ROLES,
     PORT_ROLES,
     PROPERTY_ROLES,
+    UNIT_ROLES,
 )
 
 _BY_STEREOTYPE: dict[Kind, Mapping[str, str]] = {
@@ -19,9 +22,10 @@ _BY_STEREOTYPE: dict[Kind, Mapping[str, str]] = {
             Kind.CLASS,
             Kind.COMPONENT,
             Kind.INTERFACE,
-            Kind.DATA_TYPE,
             Kind.ENUMERATION,
             Kind.SIGNAL,
+            Kind.ACTOR,
+            Kind.USE_CASE,
             Kind.PACKAGE,
             Kind.ACTIVITY,
             Kind.STATE_MACHINE,
@@ -31,6 +35,10 @@ _BY_STEREOTYPE: dict[Kind, Mapping[str, str]] = {
         ),
         CLASSIFIER_ROLES,
     ),
+    Kind.DATA_TYPE: UNIT_ROLES | CLASSIFIER_ROLES,
+    Kind.INSTANCE: UNIT_ROLES,
+    Kind.COMMENT: COMMENT_ROLES,
+    Kind.PARTITION: PARTITION_ROLES,
     Kind.PORT: PORT_ROLES,
     Kind.PROPERTY: PROPERTY_ROLES,
     Kind.CONNECTOR: CONNECTOR_ROLES,

@@ -78,3 +78,21 @@ Dependency d subkind="abstraction"
     -> subject d
 """,
 )
+
+_PARAMETER = """\
+Activity weigh "Weigh"
+  Parameter p "tare" direction="in"{multiplicity}
+    Application o stereotype="Optional" namespace="http://www.omg.org/spec/SysML/20150709/SysML"
+      -> subject p
+"""
+OPTIONAL_WITH_VALUE = rule(
+    "SM216",
+    "optional-with-value",
+    Severity.WARNING,
+    "parameter '{parameter}' is «optional», but its multiplicity asks for a value",
+    why="An optional parameter has lower multiplicity zero (SysML 1.6 clause 11.3.2.6); by the "
+    "multiplicity, which counts here, the activity waits for a value.",
+    help="give the parameter the multiplicity 0..1, or remove «optional»",
+    wrong=_PARAMETER.format(multiplicity=""),
+    right=_PARAMETER.format(multiplicity=' multiplicity="0..1"'),
+)

@@ -102,7 +102,20 @@ _PARENTS = {
         ("extendedRequirement",),
     ),
     **dict.fromkeys(("Copy", "DeriveReqt", "Satisfy", "Verify"), ("Trace",)),
-    "NestedConnectorEnd": ("ElementPropertyPath",),
+    **dict.fromkeys(("Allocate", "Refine", "Trace"), ("DirectedRelationshipPropertyPath",)),
+    **dict.fromkeys(
+        (
+            "AddFlowPropertyValueOnNestedPortAction",
+            "InvocationOnNestedPortAction",
+            "NestedConnectorEnd",
+            "TriggerOnNestedPort",
+        ),
+        ("ElementPropertyPath",),
+    ),
+    "BasicInterval": ("DistributedProperty",),
+    "Interval": ("BasicInterval",),
+    "Normal": ("DistributedProperty",),
+    "Uniform": ("BasicInterval",),
     "BoundReference": ("EndPathMultiplicity",),
     "Continuous": ("Rate",),
     "Discrete": ("Rate",),
@@ -120,6 +133,8 @@ CLASSIFIER_ROLES = {
     "ValueType": "value type",
     "View": "view",
     "Viewpoint": "viewpoint",
+    "Stakeholder": "stakeholder",
+    "ControlOperator": "control operator",
 }
 """Role of a classifier or package, by stereotype; the first that is in the lineage counts."""
 
@@ -135,6 +150,15 @@ PROPERTY_ROLES = {
 PORT_ROLES = {"FullPort": "full port", "ProxyPort": "proxy port", "FlowPort": "flow port"}
 CONNECTOR_ROLES = {"BindingConnector": "binding connector"}
 FLOW_ROLES = {"ItemFlow": "item flow"}
+COMMENT_ROLES = {"ElementGroup": "element group", "Problem": "problem", "Rationale": "rationale"}
+PARTITION_ROLES = {"AllocateActivityPartition": "allocate partition"}
+UNIT_ROLES = {
+    "Unit": "unit",
+    "QuantityKind": "quantity kind",
+    "Dimension": "quantity kind",
+}
+"""SysML 1.2's stereotypes of instance specifications, 1.0's of value types; since SysML 1.3 units
+are instances of library blocks with these names (annex E.5)."""
 
 DEPENDENCY_ROLES: dict[str, tuple[str, Edge]] = {
     "Satisfy": ("satisfy", Edge.SATISFIES),
@@ -144,6 +168,8 @@ DEPENDENCY_ROLES: dict[str, tuple[str, Edge]] = {
     "Refine": ("refine", Edge.REFINES),
     "Trace": ("trace", Edge.TRACES),
     "Allocate": ("allocate", Edge.ALLOCATED_TO),
+    "Conform": ("conform", Edge.REALIZES),
+    "Expose": ("expose", Edge.DEPENDS),
 }
 """Role of a dependency and the edge that it means, by stereotype."""
 
@@ -171,6 +197,22 @@ MEANINGFUL = frozenset(
     ]
 )
 """SysML stereotypes that give a role; a custom stereotype of such a name is taken for it."""
+
+KEPT = frozenset(
+    [
+        "AcceptChangeStructuralFeatureEventAction",
+        "AddFlowPropertyValueOnNestedPortAction",
+        "ClassifierBehaviorProperty",
+        "InvocationOnNestedPortAction",
+        "NestedConnectorEnd",
+        "Optional",
+        "RequirementRelated",
+        "TriggerOnNestedPort",
+    ]
+)
+"""SysML stereotypes whose meaning something else says already: their type, their multiplicity,
+the stereotype that they specialise, or the front end that reads their path. Their applications
+are kept."""
 
 
 def family(namespace: str) -> Family:
