@@ -7,7 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from sysmlc import resources
-from sysmlc.cli.session import _has_color
+from sysmlc.cli.session import has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.diagnostics.render import FORMATS, Report, make_report, render
 from sysmlc.sources import Source
@@ -271,7 +271,7 @@ def test_colour_is_for_terminals_and_no_color_is_respected(monkeypatch):
 
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert _has_color(Terminal())
-    assert not _has_color(object())
+    assert has_color(Terminal())
+    assert not has_color(object())
     monkeypatch.setenv("NO_COLOR", "1")
-    assert not _has_color(Terminal())
+    assert not has_color(Terminal())

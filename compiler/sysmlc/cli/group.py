@@ -9,7 +9,17 @@ import click
 
 from sysmlc import __version__
 
-COMMANDS = ("build", "check", "explain", "backends", "show", "diff", "simulate", "watch")
+COMMANDS = (
+    "build",
+    "check",
+    "coverage",
+    "explain",
+    "backends",
+    "show",
+    "diff",
+    "simulate",
+    "watch",
+)
 """Command words; each is a module of this package with a click command ``command``."""
 
 _OWN_OPTIONS = frozenset({"--help", "-h", "--version"})

@@ -217,7 +217,7 @@ def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
 
 def report(outcomes: "Iterable[Outcome]", settings: Settings) -> None:
     """Show the findings of all outcomes as one report."""
-    show([finding for made in outcomes for finding in _shown(made.root, made.findings)], settings)
+    show([finding for made in outcomes for finding in named(made.root, made.findings)], settings)
 
 
 def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
@@ -225,16 +225,16 @@ def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Fin
     from sysmlc.diagnostics.render import make_report
 
     chosen = [found for found in compilation.diagnostics if found.is_error or not only_errors]
-    return _shown(compilation.root, make_report(chosen, compilation.sources).findings)
+    return named(compilation.root, make_report(chosen, compilation.sources).findings)
 
 
-def _shown(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
+def named(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
     found = list(found)
-    names = {one.file: _name(root, one.file) for one in found if one.file}
+    names = {one.file: name_of(root, one.file) for one in found if one.file}
     return [replace(one, file=names.get(one.file, "")) for one in found]
 
 
-def _name(root: Path, name: str) -> str:
+def name_of(root: Path, name: str) -> str:
     """Name of an input as the reader knows it: relative to the working folder."""
     path, here = root / name, Path.cwd()
     return path.relative_to(here).as_posix() if path.is_relative_to(here) else name
@@ -248,7 +248,7 @@ def show(found: "Iterable[Finding]", settings: Settings) -> None:
     stream = sys.stdout if on_stdout else sys.stderr
     if settings.form not in XPATH_FORMATS and not settings.verbose:
         found = (replace(one, xpath="") for one in found)
-    text = render(Report(tuple(found)), settings.form, color=_has_color(stream))
+    text = render(Report(tuple(found)), settings.form, color=has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
 
 
@@ -265,6 +265,6 @@ def exit_code(
     return max(outcome.exit_code(strict) for outcome in outcomes)
 
 
-def _has_color(stream: object) -> bool:
+def has_color(stream: object) -> bool:
     is_terminal = getattr(stream, "isatty", lambda: False)()
     return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

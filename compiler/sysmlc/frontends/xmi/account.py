@@ -5,18 +5,22 @@ from collections import Counter
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.losses import losses
 
 
 def account(context: Context, sink: Sink, coverage: Coverage) -> None:
     """Count every element of the file once, and report what is not or not wholly read."""
     document = context.document
     counts = coverage.file(document.name)
+    types = _types(context)
     verdicts = (verdict or Verdict.UNSUPPORTED for verdict in context.verdicts)
-    table = Counter(zip(_types(context), verdicts, strict=True))
+    table = Counter(zip(types, verdicts, strict=True))
     for (type_name, verdict), number in table.items():
         counts.count(type_name, verdict, number)
     for feature, number in document.drawn.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
+    if coverage.is_detailed:
+        counts.losses.extend(losses(context, types))
     _report_unsupported(context, sink)
     _report_approximated(context, sink)
     _report_baseless(context, sink)

@@ -1,0 +1,123 @@
+"""``sysmlc coverage``: what became of every element of the models."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from sysmlc.config import Config
+    from sysmlc.diagnostics.coverage_report import FileReport
+    from sysmlc.driver.covering import Covered
+
+
+@click.command(
+    "coverage",
+    short_help="Show what of the models is read, and what is not.",
+    epilog="""\b
+Examples:
+  sysmlc coverage plant.mdzip
+  sysmlc coverage models/ --elements          every element that is not wholly read
+  sysmlc coverage models/ --fail-under 99.5   for continuous integration""",
+)
+@options.models()
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "sarif"]),
+    default="text",
+    show_default=True,
+    help="Form of the report; json lists every element that is not mapped.",
+)
+@click.option("--elements", "every", is_flag=True, help="List all places, not three of each kind.")
+@click.option(
+    "--fail-under",
+    type=click.FloatRange(0, 100),
+    metavar="PERCENT",
+    help="Exit with 1 when less of what means something is covered.",
+)
+@click.option(
+    "--config",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Configuration, instead of the nearest sysmlc.toml.",
+)
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    form: str,
+    every: bool,
+    fail_under: float | None,
+    config: Path | None,
+) -> None:
+    """Count what became of every element of MODEL..., by type, the worst first.
+
+    Covered is what is in the graph with its whole meaning, or stands for something in another
+    file. What only says how the model is drawn does not count.
+    """
+    from sysmlc.cli import session
+
+    loaded = session.load_config(models, config)
+    units = session.units(models, loaded, None, ())
+    made = [_cover(unit.files, loaded) for unit in units]
+    code = max(_report_errors(one) for one in made)
+    files = [file for one in made for file in _shown(one)]
+    if code < 2:
+        _print(files, form, every)
+    ctx.exit(max(code, int(_is_below(files, fail_under))))
+
+
+def _cover(files: tuple[Path, ...], config: "Config") -> "Covered":
+    from sysmlc.driver import Request
+    from sysmlc.driver.covering import cover
+
+    return cover(Request(inputs=files, config=config))
+
+
+def _report_errors(made: "Covered") -> int:
+    """Show what could not be read, and say the exit code that this means."""
+    from sysmlc.cli import session
+    from sysmlc.diagnostics.render import make_report
+    from sysmlc.driver import faults
+
+    errors = [found for found in made.diagnostics if found.is_error]
+    if errors:
+        shown = session.named(made.root, make_report(errors, made.sources).findings)
+        session.show(shown, session.Settings())
+    return faults.exit_code(errors)
+
+
+def _shown(made: "Covered") -> "Iterable[FileReport]":
+    """The reports with file names as the reader knows them."""
+    from sysmlc.cli.session import name_of
+
+    for file in made.files:
+        name = name_of(made.root, file.file)
+        yield replace(file, file=name, losses=tuple(replace(x, file=name) for x in file.losses))
+
+
+def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
+    import sys
+
+    from sysmlc.cli.session import has_color
+    from sysmlc.diagnostics.render import coverage
+
+    if form == "text":
+        made = coverage.text(files, color=has_color(sys.stdout), every=every)
+    else:
+        made = coverage.FORMATS[form](files)
+    click.echo(made, nl=False, color=True)
+
+
+def _is_below(files: "Sequence[FileReport]", limit: float | None) -> bool:
+    from sysmlc.diagnostics.coverage import added, covered, with_meaning
+
+    total = added(file.totals for file in files)
+    return limit is not None and 100 * covered(total) < limit * with_meaning(total)

@@ -1,0 +1,46 @@
+"""What becomes of every element of a unit's inputs, for ``sysmlc coverage``: no pass, no output."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from sysmlc.diagnostics import Coverage, Diagnostic
+from sysmlc.diagnostics.coverage_report import FileReport, file_reports
+from sysmlc.driver import faults, registry
+from sysmlc.driver.compilation import Request, open_unit
+from sysmlc.ir import Graph
+from sysmlc.sources import Source, SourceError
+
+
+@dataclass(frozen=True, slots=True)
+class Covered:
+    """The coverage of one unit, and what was found wrong while its files were read."""
+
+    root: Path
+    files: tuple[FileReport, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    sources: tuple[Source, ...]
+
+
+def cover(request: Request) -> Covered:
+    """Read the inputs of a request, and say what became of their elements."""
+    opened = open_unit(request)
+    coverage, graph = Coverage(is_detailed=True), Graph()
+    sources = opened.reading.sources()
+    for frontend in request.frontends or registry.frontends():
+        ours = [r.source for r in opened.reading.recognised if r.frontend is frontend]
+        try:
+            if ours:
+                frontend.read(ours, graph, opened.sink, coverage)
+        except SourceError as problem:
+            faults.report_unreadable(problem, opened.sink)
+    return Covered(
+        opened.root,
+        tuple(file_reports(coverage, sources, lambda id: _name(graph, id))),
+        tuple(opened.sink),
+        sources,
+    )
+
+
+def _name(graph: Graph, id: str) -> str:
+    element = graph.get(id)
+    return graph.qualified_name(element) if element is not None else ""

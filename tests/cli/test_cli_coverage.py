@@ -1,0 +1,179 @@
+"""``sysmlc coverage``: what became of every element, with places, reasons and shares."""
+
+import json
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from sysmlc import resources
+from sysmlc.diagnostics.coverage import covered_tenths, tenths
+
+PLANT = """\
+<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+    xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmlns:B="http://blocks">
+  <uml:Model xmi:id="m" name="Plant">
+    <eAnnotations source="settings"/>
+    <packagedElement xmi:type="uml:Class" xmi:id="gate" name="Gate">
+      <ownedAttribute xmi:type="uml:Property" xmi:id="p" name="item">
+        <type xmi:type="uml:Class" href="pallets.uml#pallet"/>
+      </ownedAttribute>
+    </packagedElement>
+    <packagedElement xmi:type="uml:Nonsense" xmi:id="n" name="settling">
+      <part xmi:id="n2"/>
+    </packagedElement>
+    <packagedElement xmi:type="uml:Nonsense" xmi:id="n3" name="opening"/>
+  </uml:Model>
+  <B:Block xmi:id="b" base_Class="gone"/>
+</xmi:XMI>
+"""
+TEXT = """\
+55.5 % covered: 5 of 9 elements that mean something
+
+type           covered  unsupported  approximated  external  mapped  notation  elements
+uml:Nonsense     0.0 %            2             -         -       -         -         2
+Block            0.0 %            1             -         -       -         -         1
+part             0.0 %            1             -         -       -         -         1
+uml:Class      100.0 %            -             -         1       1         -         2
+Model          100.0 %            -             -         -       1         -         1
+XMI            100.0 %            -             -         -       1         -         1
+uml:Property   100.0 %            -             -         -       1         -         1
+eAnnotations         -            -             -         -       -         1         1
+total           55.5 %            4             -         1       4         1        10
+per cent                       40.0           0.0      10.0    40.0      10.0     100.0
+
+uml:Nonsense: 2 unsupported, not read [SM111 unsupported-element]
+  plant.uml:10:5  Plant::settling, 2 with all that it contains
+  plant.uml:13:5  Plant::opening
+
+Block: 1 unsupported, applied to nothing that is in the model [SM113 stereotype-without-element]
+  plant.uml:15:3  plant.uml
+
+uml:Class: 1 external, stands for what is in no file of the unit [SM160 external-element]
+  plant.uml:7:9  Plant::Gate::item
+"""
+
+
+def squeezed(text):
+    return [" ".join(line.split()) for line in text.splitlines()]
+
+
+@pytest.fixture
+def plant(here):
+    here.write("plant.uml", PLANT)
+    return here
+
+
+def test_types_come_worst_first_with_places_and_rules(plant):
+    done = plant.sysmlc("coverage", "plant.uml")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert squeezed(done.stdout) == squeezed(TEXT)
+
+
+def test_columns_stand_below_each_other(plant):
+    lines = plant.sysmlc("coverage", "plant.uml").stdout.splitlines()
+    table = lines[2 : lines.index("", 3)]
+    assert {len(line) for line in table} == {len(table[0])}
+
+
+def test_three_examples_are_shown_unless_all_are_asked_for(here):
+    many = "".join(f'<packagedElement xmi:type="uml:Nonsense" name="n{n}"/>' for n in range(5))
+    here.write("plant.uml", PLANT.replace("</uml:Model>", f"{many}</uml:Model>"))
+    few = here.sysmlc("coverage", "plant.uml").stdout
+    assert "  and 4 more\n" in few
+    assert "Plant::n4" not in few
+    every = here.sysmlc("coverage", "plant.uml", "--elements").stdout
+    assert "Plant::n4" in every
+    assert "more\n" not in every
+
+
+def test_json_follows_the_schema_of_coverage_json_and_adds_up(plant):
+    content = json.loads(plant.sysmlc("coverage", "plant.uml", "--format", "json").stdout)
+    schema = json.loads(resources.text("metamodels", "sysmlc-coverage.schema.json"))
+    Draft202012Validator.check_schema(schema)
+    assert list(Draft202012Validator(schema).iter_errors(content)) == []
+    (file,) = content["files"]
+    for verdict in ("approximated", "ignored_notation", "unsupported", "external"):
+        lost = [loss for loss in file["losses"] if loss["verdict"] == verdict]
+        assert sum(loss["elements"] for loss in lost) == file[verdict] == content["total"][verdict]
+    assert sum(content["shares"].values()) == 100
+    assert file["losses"][2] == {
+        "type": "uml:Nonsense",
+        "verdict": "unsupported",
+        "elements": 2,
+        "element": "Plant::settling",
+        "line": 10,
+        "column": 5,
+        "xpath": "/xmi:XMI/uml:Model[1]/packagedElement[2]",
+        "code": "SM111",
+        "reason": "not read",
+    }
+
+
+def test_coverage_json_of_a_build_has_the_same_counts(plant):
+    plant.sysmlc("plant.uml", "--emit", "graph")
+    built = json.loads(plant.read("out/coverage.json"))
+    shown = json.loads(plant.sysmlc("coverage", "plant.uml", "--format", "json").stdout)
+    for file in shown["files"]:
+        del file["losses"], file["covered"]
+    del shown["total"]["covered"], shown["types"], shown["shares"]
+    assert built == shown
+
+
+def test_sarif_has_one_result_for_each_element_that_is_lost(plant):
+    log = json.loads(plant.sysmlc("coverage", "plant.uml", "--format", "sarif").stdout)
+    results = log["runs"][0]["results"]
+    lines = [r["locations"][0]["physicalLocation"]["region"]["startLine"] for r in results]
+    assert lines == [7, 10, 13, 15]
+    assert [r["ruleId"] for r in results] == ["SM160", "SM111", "SM111", "SM113"]
+    assert results[0]["message"]["text"] == (
+        "uml:Class stands for 'pallets.uml#pallet', which is in no file of the unit"
+    )
+    assert len({r["partialFingerprints"]["sysmlc/v1"] for r in results}) == 4
+
+
+@pytest.mark.parametrize(("limit", "code"), [("55.5", 0), ("55.6", 1), ("0", 0), ("100", 1)])
+def test_too_little_coverage_is_exit_code_1(plant, limit, code):
+    assert plant.sysmlc("coverage", "plant.uml", "--fail-under", limit).exit_code == code
+
+
+def test_an_impossible_limit_is_refused(plant):
+    assert plant.sysmlc("coverage", "plant.uml", "--fail-under", "101").exit_code == 2
+
+
+def test_several_files_have_a_table_of_their_own_and_none_counts_twice(plant):
+    plant.write("good.uml", '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>')
+    lines = plant.sysmlc("coverage", "plant.uml", "good.uml").stdout.splitlines()
+    assert lines[0] == "60.0 % covered: 6 of 10 elements that mean something"
+    assert [line.split()[0] for line in lines[2:6]] == ["file", "plant.uml", "good.uml", "total"]
+
+
+def test_a_damaged_file_is_reported_and_exit_code_1(plant):
+    plant.write("bad.uml", PLANT[:400])
+    done = plant.sysmlc("coverage", "plant.uml", "bad.uml", "--format", "json")
+    assert done.exit_code == 1
+    assert [file["file"] for file in json.loads(done.stdout)["files"]] == ["plant.uml"]
+    assert "error[SM100 malformed-file]" in done.stderr
+
+
+def test_a_missing_file_is_exit_code_2(here):
+    done = here.sysmlc("coverage", "nix.uml")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "SM170" in done.stderr
+
+
+def test_a_name_cannot_steer_the_terminal(here):
+    here.write("plant.uml", PLANT.replace('name="settling"', 'name="&#x9b;2J"'))
+    assert "\x9b" not in here.sysmlc("coverage", "plant.uml").stdout
+
+
+@pytest.mark.parametrize(
+    "counts", [{"a": 1, "b": 1, "c": 1}, {"a": 0, "b": 0}, {"a": 999, "b": 1, "c": 1000}]
+)
+def test_shares_add_up(counts):
+    assert sum(tenths(counts).values()) == (1000 if sum(counts.values()) else 0)
+
+
+def test_a_loss_is_never_rounded_away():
+    counts = {"mapped": 999_999, "approximated": 0, "unsupported": 1, "external": 0}
+    assert covered_tenths(counts) == 999
+    assert covered_tenths({"ignored_notation": 7}) == 1000
