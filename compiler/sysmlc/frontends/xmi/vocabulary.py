@@ -203,6 +203,8 @@ REDUNDANT = frozenset(
         "templateParameter",
         "owningTemplateParameter",
         "ownedRule",
+        "packageImport",
+        "elementImport",
         "contract",
         "specific",
         "redefinitionContext",
