@@ -5,7 +5,7 @@ from html import unescape
 
 from sysmlc.sources import Source
 
-_HREF = re.compile(rb"""\bhref\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+_HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
 
 
 def links(source: Source) -> list[str]:

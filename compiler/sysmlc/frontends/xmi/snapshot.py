@@ -15,7 +15,6 @@ _HEAD = 4096
 _NAMESPACE = re.compile(rb"""["']https?://www\.nomagic\.com/magicdraw/UML/""")
 _ENTRY = re.compile(r"[!/][^!/]*snapshot$")
 _TYPE = "http://www.w3.org/2001/XMLSchema-instance}type"
-_OWNER = "owningPackage"
 
 
 class Entry:
@@ -25,37 +24,50 @@ class Entry:
     the elements inside it: a library's own snapshot has more of it than those of others.
     """
 
-    __slots__ = (
-        "feature",
-        "id",
-        "ordinal",
-        "owner",
-        "references",
-        "size",
-        "source",
-        "type",
-        "values",
-    )
+    __slots__ = ("feature", "id", "ordinal", "owner", "references", "size", "source", "values")
 
-    def __init__(self, id: str, feature: str, type_name: str, ordinal: int, source: str) -> None:
+    def __init__(
+        self, id: str, feature: str, ordinal: int, source: str, owner: str, values: dict[str, str]
+    ) -> None:
         self.id = id
         self.feature = feature
-        self.type = type_name
         self.ordinal = ordinal
         self.source = source
-        self.owner = ""
+        self.owner = owner
+        self.values = values
         self.size = 0
-        self.references: dict[str, list[str]] = {}
-        self.values: dict[str, str] = {}
+        self.references = _NO_REFERENCES
 
     @property
     def name(self) -> str:
         """Its name, or the empty string."""
         return self.values.get("name", "")
 
+    @property
+    def type(self) -> str:
+        """Its metaclass as written (a root's is its tag), or the empty string."""
+        written = self.values.get(_TYPE)
+        if written is None:
+            return "" if self.feature[0].islower() else self.feature
+        return written.rpartition(":")[2]
+
     def targets(self, feature: str) -> list[str]:
         """Ids that the feature refers to, as attribute or as children."""
         return self.references.get(feature) or self.values.get(feature, "").split()
+
+    def refer(self, feature: str, href: str) -> None:
+        """Note what a child without ID refers to; the owner of a root is written so too."""
+        target = href.rpartition("#")[2]
+        if feature == "owningPackage":
+            self.owner = self.owner or target
+        elif feature != "packagedElement":
+            if self.references is _NO_REFERENCES:
+                self.references = {}
+            self.references.setdefault(feature, []).append(target)
+
+
+_NO_REFERENCES: dict[str, list[str]] = {}
+"""Shared by the many elements that refer to nothing; never changed."""
 
 
 def is_snapshot(source: Source) -> bool:
@@ -130,34 +142,29 @@ def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
     Raises SourceError.
     """
     made = parser()
+    name, limit = source.name, DEFAULT_LIMITS.depth
     found: list[Entry] = []
-    counts: Counter[str] = Counter()
-    stack: list[Entry | None] = []
-    number = 0
+    written: list[tuple[str, str | None]] = []
+    stack: list[Entry | None] = [None]
 
     def start(tag: str, values: dict[str, str]) -> None:
-        nonlocal number
+        above = stack[-1]
         feature = tag.rpartition("}")[2]
-        written = values.get(_TYPE, "")
-        type_name = written.rpartition(":")[2]
-        counts[written or feature] += 1
-        above = stack[-1] if stack else None
         id = values.get("ID")
         if id:
-            entry = Entry(id, feature, type_name or _root_type(above, feature), number, source.name)
-            entry.values = values
-            entry.owner = above.id if above is not None else ""
-            stack.append(entry)
+            owner = above.id if above is not None else ""
+            stack.append(Entry(id, feature, len(written), name, owner, values))
         else:
-            _refer(above, feature, values)
+            if above is not None and "href" in values:
+                above.refer(feature, values["href"])
             stack.append(above)
-        number += 1
-        if len(stack) > DEFAULT_LIMITS.depth:
+        written.append((feature, values.get(_TYPE)))
+        if len(stack) > limit:
             too_deep(source, made)
 
     def end(_tag: str) -> None:
         entry = stack.pop()
-        above = stack[-1] if stack else None
+        above = stack[-1]
         if entry is not None and entry is not above:
             if above is not None:
                 above.size += entry.size + 1
@@ -166,21 +173,4 @@ def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
     made.StartElementHandler = start
     made.EndElementHandler = end
     parse(source, made)
-    return found, counts
-
-
-def _root_type(above: Entry | None, feature: str) -> str:
-    return feature if above is None else ""
-
-
-def _refer(above: Entry | None, feature: str, values: dict[str, str]) -> None:
-    href = values.get("href")
-    if above is None or href is None:
-        return
-    fragment = href.rpartition("#")[2]
-    if feature == _OWNER:
-        above.owner = above.owner or fragment
-    elif feature == "packagedElement":
-        return
-    else:
-        above.references.setdefault(feature, []).append(fragment)
+    return found, Counter(type_name or feature for feature, type_name in written)

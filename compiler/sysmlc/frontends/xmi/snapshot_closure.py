@@ -25,9 +25,11 @@ _OWNED = frozenset(
 """Features whose content is needed to know an element: what else it owns (members of a package,
 connectors, behaviour) is read only when something refers to it."""
 
-_NEEDED = (
-    *("type", "general", "contract", "classifier", "definingFeature", "instance", "element"),
-    *("subsettedProperty", "redefinedProperty", "redefinedPort", "memberEnd", "role"),
+_NEEDED = frozenset(
+    {
+        *("type", "general", "contract", "classifier", "definingFeature", "instance", "element"),
+        *("subsettedProperty", "redefinedProperty", "redefinedPort", "memberEnd", "role"),
+    }
 )
 """References whose targets are needed too."""
 
@@ -71,8 +73,11 @@ def needed(snapshots: Snapshots, ids: Iterable[str]) -> list[Entry]:
 def _needs(snapshots: Snapshots, entry: Entry) -> Iterator[str]:
     if entry.owner:
         yield entry.owner
-    for feature in _NEEDED:
-        yield from entry.targets(feature)
+    for feature, targets in entry.references.items():
+        if feature in _NEEDED:
+            yield from targets
+    for feature in _NEEDED & entry.values.keys():
+        yield from entry.values[feature].split()
     for inside in snapshots.owned(entry.id):
         if inside.feature in _OWNED:
             yield inside.id

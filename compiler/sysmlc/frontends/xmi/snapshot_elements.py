@@ -51,12 +51,16 @@ class LibraryElements:
     # -- elements ------------------------------------------------------------------------------
 
     def _add(self, entry: Entry) -> None:
+        if entry.owner in self._graph:
+            self._element(entry)
+            return
         path = self._snapshots.path(entry)
         for one in reversed([one for one in path if one.id in self.ids]):
-            if one.id not in self._graph and self.ids[one.id] == one.id:
-                self._element(one)
+            self._element(one)
 
     def _element(self, entry: Entry) -> None:
+        if self.ids[entry.id] != entry.id or entry.id in self._graph:
+            return
         owner = self._owner(entry)
         kind, subkind = _kind(entry)
         if kind is None or _is_root_model(entry) or _is_base(entry, owner):

@@ -14,7 +14,7 @@ from sysmlc.frontends.xmi.snapshot_rules import BROKEN_SNAPSHOT
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.sources import Source, SourceError
 
-_HREF = re.compile(rb"""\bhref\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
+_HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
 
 
 def read(sources: Sequence[Source], sink: Sink) -> Snapshots:
@@ -88,5 +88,4 @@ def account(snapshots: Snapshots, unit: Unit, coverage: Coverage) -> None:
 
 
 def _written(entry: Entry) -> str:
-    is_default = not entry.type or (not entry.owner and entry.type == entry.feature)
-    return entry.feature if is_default else f"uml:{entry.type}"
+    return entry.feature if entry.type in ("", entry.feature) else f"uml:{entry.type}"
