@@ -63,7 +63,8 @@ def applied(graph: Graph, element: Element) -> tuple[str, ...]:
 
 def _is_telling(item: Element) -> bool:
     namespace = str(item.attrs.get("namespace", ""))
-    return item.kind is Kind.APPLICATION and not _TOOL_NAMESPACE.match(namespace)
+    is_own = item.kind is Kind.APPLICATION and "on" not in item.attrs
+    return is_own and not _TOOL_NAMESPACE.match(namespace)
 
 
 _ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])

@@ -1,13 +1,17 @@
 """Applications of stereotypes: siblings of the model that name their base elements."""
 
 from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.unit import Lowered
+from sysmlc.frontends.xmi.values import value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 
 _BASE = "base_"
+_MEASURES = ("unit", "quantityKind", "dimension")
+"""Tags of ``ValueType`` that lead to libraries (SysML 1.6 clause 8.3.2.16)."""
 _Target = tuple[str, int, bool]
 
 
@@ -36,12 +40,16 @@ def _application(context: Context, row: int) -> None:
         context.subtree(row, Verdict.IGNORED_NOTATION)
         return
     kept = _kept(context, bases)
+    folded = [] if kept else _folded(context, bases)
+    if folded:
+        _on_folded(context, row, folded)
+        return
     if not kept and not any(is_href for _, _, is_href in bases):
         context.subtree(row, Verdict.UNSUPPORTED)
         context.baseless.append(row)
         return
     context.subtree(row, Verdict.MAPPED if kept else Verdict.EXTERNAL)
-    element = _element(context, row, kept)
+    element = _element(context, row, kept[0][0].gids[kept[0][1]] if kept else None)
     for target, at, is_href in bases:
         context.link(Edge.SUBJECT, element.id, target, at, "subject", is_href)
     _tags(context, element, row)
@@ -74,9 +82,38 @@ def _kept(context: Context, bases: list[_Target]) -> list[tuple[Lowered, int]]:
     return [place for place in found if place is not None and place[0].own[place[1]]]
 
 
-def _element(context: Context, row: int, kept: list[tuple[Lowered, int]]) -> Element:
+def _folded(context: Context, bases: list[_Target]) -> list[tuple[str, str]]:
+    """Bases that another element tells of: its id, and what they are in the model."""
+    found = [context.unit.find(context.lowered, t, is_href) for t, _, is_href in bases]
+    return [
+        (gid, metaclasses.hyphenated(lowered.document.types[row]))
+        for lowered, row in (place for place in found if place is not None)
+        if lowered.verdicts[row] is Verdict.MAPPED and lowered.document.types[row]
+        for gid in _holders(context, lowered, row)
+    ]
+
+
+def _holders(context: Context, lowered: Lowered, row: int) -> list[str]:
+    """The triggers that name an event; else the element that the row is part of."""
+    if lowered.document.types[row] not in metaclasses.EVENT_TYPES:
+        return [lowered.gids[row]] if lowered.gids[row] else []
+    id = lowered.document.id(row)
+    named = (one for one, at in context.triggers if id in context.document.targets(at, "event"))
+    return [trigger.id for trigger in named] if lowered is context.lowered else []
+
+
+def _on_folded(context: Context, row: int, folded: list[tuple[str, str]]) -> None:
+    """An application on what is no element of its own: a generalization, an event."""
+    context.subtree(row, Verdict.MAPPED)
+    element = _element(context, row, folded[0][0])
+    element.attrs["on"] = folded[0][1]
+    for holder, _ in folded:
+        context.graph.connect(Edge.REFERENCES, element, holder)
+    _tags(context, element, row)
+
+
+def _element(context: Context, row: int, owner: str | None) -> Element:
     document = context.document
-    owner = kept[0][0].gids[kept[0][1]] if kept else None
     name = document.features[row]
     id = document.id(row)
     known = context.unit.graph_id(document.name, id) if id else ""
@@ -112,8 +149,16 @@ def _tag(context: Context, value: str) -> AttrValue:
     ids = context.document.ids
     if not tokens or not all(token in ids for token in tokens):
         return value
-    found = [context.unit.target_id(context.lowered, token, False) or token for token in tokens]
+    found = [_meant(context, token) for token in tokens]
     return found[0] if len(found) == 1 else tuple(found)
+
+
+def _meant(context: Context, token: str) -> AttrValue:
+    """Id of the element that a local id means; what a value specification says is its value."""
+    row = context.document.ids[token]
+    if not context.lowered.own[row] and context.document.types[row] in metaclasses.VALUE_TYPES:
+        return value_of(context.document, row).value
+    return context.unit.target_id(context.lowered, token, False) or token
 
 
 def _child_tag(context: Context, child: int) -> AttrValue:
@@ -121,6 +166,8 @@ def _child_tag(context: Context, child: int) -> AttrValue:
     href = document.attributes[child].get("href", "")
     target = href or document.idref(child)
     if target:
+        if not href and target in document.ids:
+            return _meant(context, target)
         if href and context.unit.find(context.lowered, href, True) is None:
             context.verdicts[child] = Verdict.EXTERNAL
         return context.unit.target_id(context.lowered, target, bool(href)) or target
@@ -137,9 +184,18 @@ def _specialities(
         item = element.attrs.get("tag.itemProperty")
         if isinstance(item, str) and flow.kind is Kind.ITEM_FLOW:
             context.graph.set(flow, item_property=item)
+    for feature in _MEASURES if kept else ():
+        _measure(context, row, feature, context.graph[kept[0][0].gids[kept[0][1]]])
     path = references(document, row, "propertyPath")
     for holder, at in kept if path else ():
         context.unit.paths[holder.gids[at]] = (context.lowered, path)
+
+
+def _measure(context: Context, row: int, feature: str, base: Element) -> None:
+    """A unit in a library that is not there leaves a stub: its value type refers to it."""
+    for target, at, is_href in references(context.document, row, feature):
+        if is_href and context.unit.find(context.lowered, target, True) is None:
+            context.link(Edge.REFERENCES, base.id, target, at, feature, True)
 
 
 def _path(context: Context, end: Element, row: int) -> None:

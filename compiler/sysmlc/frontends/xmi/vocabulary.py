@@ -321,6 +321,9 @@ HINTS: dict[str, Kind] = {
     "refersTo": Kind.INTERACTION,
     "covered": Kind.LIFELINE,
     "formal": Kind.TEMPLATE_PARAMETER,
+    "unit": Kind.UNIT,
+    "quantityKind": Kind.QUANTITY_KIND,
+    "dimension": Kind.QUANTITY_KIND,
 }
 """What an external target is when only the feature that refers to it is known."""
 

@@ -20,6 +20,7 @@ from sysmlc.passes.classify.requirements import check_requirements, give_require
 from sysmlc.passes.classify.roles import by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
 from sysmlc.passes.classify.tags import give_tags, optional_with_value
+from sysmlc.passes.classify.units import give_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family
 
 _Meanings = dict[str, tuple[str, ...]]
@@ -47,6 +48,7 @@ class Classify:
         known = _meanings(graph, sink, lineages)
         _give_roles(graph, _by_subject(graph, known))
         give_tags(graph, known)
+        give_units(graph, known)
         _check_optional(graph, sink, known)
         _give_levels(graph, lineages)
         _give_values(graph)

@@ -16,9 +16,15 @@ def give_tags(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> None:
     """Set attributes and edges; ``known`` maps ids of applications to SysML stereotypes."""
     for id, names in known.items():
         handlers = [one for name in names for one in HANDLERS.get(name, ())]
-        for subject in graph.targets(graph[id], Edge.SUBJECT) if handlers else ():
+        for subject in _subjects(graph, graph[id]) if handlers else ():
             for handler in handlers:
                 handler(graph, graph[id], subject)
+
+
+def _subjects(graph: Graph, application: Element) -> list[Element]:
+    """What it is applied to; an event's application speaks of the triggers that name it."""
+    folded = application.attrs.get("on") in ("change-event", "generalization")
+    return graph.targets(application, Edge.REFERENCES if folded else Edge.SUBJECT)
 
 
 # -- reading tags ------------------------------------------------------------------------------
@@ -124,6 +130,17 @@ def _bound(graph: Graph, application: Element, subject: Element) -> None:
         graph.connect(Edge.BINDS, subject, path[-1])
 
 
+def _conform(graph: Graph, application: Element, subject: Element) -> None:
+    """A view that conforms by generalization (clause 7.3.2.1) realises what it specialises.
+
+    It is the role of its generals that tells which of several generalizations is meant.
+    """
+    if application.attrs.get("on") == "generalization":
+        for general in graph.targets(subject, Edge.SPECIALIZES):
+            if general.role == "viewpoint" or general.attrs.get("external"):
+                graph.connect(Edge.REALIZES, subject, general)
+
+
 def _path_multiplicity(graph: Graph, application: Element, subject: Element) -> None:
     # Clause 8.3.2.10: without bounds none is given for the path.
     lower, upper = value(application, "lower"), value(application, "upper")
@@ -156,6 +173,7 @@ HANDLERS: dict[str, tuple[_Handler, ...]] = {
     "BoundReference": (_bound,),
     "ChangeStructuralFeatureEvent": (_edge(Edge.REFERENCES, "structuralFeature"),),
     "ConnectorProperty": (_edge(Edge.REFERENCES, "connector"),),
+    "Conform": (_conform,),
     "Continuous": (_constant("rate", "continuous"),),
     "DirectedFeature": (_attribute("feature_direction", "featureDirection"),),
     "DirectedRelationshipPropertyPath": (
