@@ -152,9 +152,7 @@ def _machine(kind: str, chance: Random) -> Node:
         "Comment",
         f"{kind}.comment",
         refs=(("annotatedElement", (kind,)),),
-        texts=(
-            ("body", f"{kind} of line <n>: it can {chance.choice(_VERBS)} one pallet at a time."),
-        ),
+        texts=(("body", body),),
     )
     children = (
         comment,
