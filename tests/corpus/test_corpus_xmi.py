@@ -1,5 +1,7 @@
 """Real models of every tool: read without a traceback, every element counted, numbers right."""
 
+import re
+import zipfile
 from collections import Counter
 
 import pytest
@@ -156,3 +158,45 @@ def activities(graph):
         graph.qualified_name(e).partition("::")[2]: Counter(c.kind for c in graph.subtree(e))
         for e in graph.of_kind(Kind.ACTIVITY)
     }
+
+
+RESOLVED = {
+    "Tank_control_2": (1183, 524, 649),
+    "Smart_street_light_2": (1334, 918, 395),
+    "Wired_Camera_Example": (136, 127, 6),
+    "App_test_JD_v2": (274, 129, 123),
+}
+"""Hrefs of each archive: all, those into its models, those into its snapshots."""
+
+
+@pytest.mark.parametrize("name", RESOLVED)
+def test_what_an_archive_refers_to_is_found_in_it(corpus, name):
+    path = corpus / f"xmi/magicdraw/{name}.mdzip"
+    models, snapshots, hrefs = {}, {}, []
+    with zipfile.ZipFile(path) as opened:
+        for entry in opened.namelist():
+            if entry.endswith("snapshot"):
+                snapshots |= {e.get("ID"): e for e in etree.fromstring(opened.read(entry)).iter()}
+            elif re.fullmatch(r"com\.nomagic\.magicdraw\.uml_model\.(shared_)?model", entry):
+                tree = etree.fromstring(opened.read(entry))
+                models |= {attribute(e, "id"): e for e in elements(tree)}
+                hrefs += [e.get("href") for e in elements(tree) if e.get("href")]
+    inside = [href.rpartition("#")[2] for href in hrefs]
+    into_models = [id for id in inside if id in models]
+    into_snapshots = [id for id in inside if id not in models and id in snapshots]
+    assert (len(hrefs), len(into_models), len(into_snapshots)) == RESOLVED[name]
+    graph, *_ = read(corpus, f"magicdraw/{name}.mdzip")
+    folded = {attribute(models[id], "type") for id in into_models if id not in graph}
+    assert folded <= {"uml:Generalization", "uml:Diagram"}
+    primitives = {id for id in into_snapshots if id not in graph}
+    assert {snapshots[id].get("name") for id in primitives} <= {"Real"}
+    for id in set(into_snapshots) - primitives:
+        above = snapshots[id].getparent()
+        assert graph[id].attrs["library"]
+        assert graph[id].name == snapshots[id].get("name", "")
+        if above.get("ID") and etree.QName(above).localname != "Model":
+            assert graph[id].owner == above.get("ID")
+
+
+def attribute(element, name):
+    return next((v for k, v in element.attrib.items() if k.endswith("}" + name)), None)

@@ -54,6 +54,6 @@ def load(
     if not is_archive(source.data):
         return [source]
     found = entries(source, wanted, limits)
-    if all(is_library_entry(source.name) for source in found):
+    if all(is_library_entry(source.name.partition("!")[2]) for source in found):
         raise SourceError("the archive holds no model", name)
     return found

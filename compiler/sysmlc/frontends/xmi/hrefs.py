@@ -16,6 +16,9 @@ _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
 _UNMISTAKABLE = 20
 """Ids that tools make are at least this long; such an id means the same element everywhere."""
+_ROOT = "eee_1045467100313_"
+"""Start of the ids of MagicDraw's roots, the same in every project."""
+_PROJECT = re.compile(r"(local:/)?PROJECT-[^/]*\?resource=")
 
 
 @lru_cache(4096)
@@ -32,7 +35,12 @@ def normalised(href: str, file: str) -> str:
 
 def is_unmistakable(fragment: str) -> bool:
     """Whether an id is of the kind that tools make, the same in no two models."""
-    return len(fragment) >= _UNMISTAKABLE
+    return len(fragment) >= _UNMISTAKABLE and not fragment.startswith(_ROOT)
+
+
+def is_project(href: str) -> bool:
+    """Whether it leads into a project as MagicDraw names them: this one, or one that it uses."""
+    return _PROJECT.match(href) is not None
 
 
 def base_name(path: str) -> str:

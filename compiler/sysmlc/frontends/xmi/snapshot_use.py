@@ -16,6 +16,8 @@ from sysmlc.sources import Source, SourceError
 
 _HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
 
+_PROJECT = re.compile(r"(PROJECT\$h.+?)_resource_")
+
 
 def read(sources: Sequence[Source], sink: Sink) -> Snapshots:
     """The snapshots; one that is damaged is reported and left out. Raises SourceError."""
@@ -60,16 +62,21 @@ def _stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[
 
 
 def _files(hrefs: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
-    """Names of the libraries by snapshot: what most hrefs that lead there write."""
+    """Names of the libraries by snapshot."""
     written: dict[str, Counter[str]] = {}
     for path, id in hrefs:
         entry = snapshots.entries.get(id)
         if entry is not None and path and "?" not in path:
             written.setdefault(entry.source, Counter())[path] += 1
-    return {
-        source: max(paths, key=lambda path: (paths[path], path))
-        for source, paths in written.items()
-    }
+    return {source: _name(source, written.get(source, Counter())) for source in snapshots.counts}
+
+
+def _name(source: str, paths: Counter[str]) -> str:
+    """The path that most hrefs write, else the project as the entry's name has it."""
+    if paths:
+        return max(paths, key=lambda path: (paths[path], path))
+    project = _PROJECT.search(source)
+    return project[1].replace("$h", "-") if project else source
 
 
 def account(snapshots: Snapshots, unit: Unit, coverage: Coverage) -> None:

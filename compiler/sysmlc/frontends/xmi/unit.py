@@ -70,6 +70,9 @@ class Unit:
         exact = [h for h in holders if _archive(h.document.name) == path or h.document.name == path]
         if not exact and hrefs.is_unmistakable(fragment):
             exact = holders
+        if hrefs.is_project(target):
+            here = _archive(lowered.document.name)
+            exact = [h for h in holders if _archive(h.document.name) == here] or exact
         if not exact:
             name = hrefs.base_name(path)
             exact = [h for h in holders if hrefs.base_name(h.document.name) == name]
