@@ -77,7 +77,7 @@ def test_a_wrong_template_is_reported(tmp_path, text):
 def test_what_no_diagram_shows_is_reported():
     _, sink = emitted(parse_text(NOT_DRAWN.wrong))
     assert [found.message for found in sink] == [
-        "1 UseCase of 'Plant' in no diagram: Start the line"
+        "1 Unit of 'Plant' in no diagram: second"
     ]
 
 

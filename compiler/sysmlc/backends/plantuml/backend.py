@@ -6,7 +6,7 @@ from itertools import groupby
 
 from sysmlc import naming
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.plantuml import act, bdd, ibd, missing, req, stm
+from sysmlc.backends.plantuml import act, bdd, ibd, missing, req, sd, stm, uc
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
@@ -31,6 +31,8 @@ KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
     act.diagrams,
     stm.diagrams,
     req.diagrams,
+    sd.diagrams,
+    uc.diagrams,
 )
 
 
@@ -39,7 +41,7 @@ class PlantUml:
     """Diagrams as PlantUML text."""
 
     name: str = "plantuml"
-    summary: str = "block, internal block, activity, state machine, requirement diagrams"
+    summary: str = "block, internal block, activity, state machine, requirement, sequence, use case"
     is_default: bool = True
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:

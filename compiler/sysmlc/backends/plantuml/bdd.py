@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml import labels, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
@@ -75,9 +75,10 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:
     """The classifiers that each package shows: its own and those inside its classifiers."""
     homes: dict[str | None, list[Element]] = {}
+    of_use_cases = uc.actors(graph)
     for root in graph.roots():
         for element in graph.subtree(root):
-            if _is_shown(graph, element):
+            if _is_shown(graph, element) and element.id not in of_use_cases:
                 homes.setdefault(_package(graph, element), []).append(element)
     return homes
 
@@ -138,6 +139,8 @@ def _of_package(
 def _is_ours(graph: Graph, relation: Relation, own: set[str], drawn: set[str]) -> bool:
     """A line belongs to the package of its source; if that is in no diagram, of its target."""
     if not (_is_boxable(graph, relation.source) and _is_boxable(graph, relation.target)):
+        return False
+    if {graph[relation.source].kind, graph[relation.target].kind} == set(uc.FIGURES):
         return False
     if relation.source in own:
         return True

@@ -11,10 +11,10 @@ NOT_DRAWN = rule(
     "in-no-diagram",
     Severity.INFO,
     "{count} {kind} of '{owner}' in no diagram: {names}",
-    why="The diagrams show structure, behaviour and requirements; some kinds have no place in "
-    "them, and a connection without both ends has none either.",
+    why="Some kinds have no place in the diagrams, and neither has a connection without both "
+    "ends, a message without lifelines or an interaction without lifelines.",
     help="The element is still in the graph (--emit graph) and in the other outputs.",
-    wrong='Package p "Plant"\n  UseCase u "Start the line"',
+    wrong='Package p "Plant"\n  Unit u "second"',
     right='Package p "Plant"\n  Class b "Line" role="block"',
 )
 
@@ -62,15 +62,23 @@ DRAWN_KINDS = (
     Kind.FINAL_STATE,
     Kind.TRANSITION,
     Kind.TRIGGER,
+    Kind.INTERACTION,
+    Kind.LIFELINE,
+    Kind.MESSAGE,
+    Kind.FRAGMENT,
+    Kind.OPERAND,
+    Kind.OBSERVATION,
+    Kind.USE_CASE,
+    Kind.EXTEND,
+    Kind.EXTENSION_POINT,
 )
 """Kinds that have a place in the diagrams."""
 
 OTHER_KINDS = (
     Kind.UNIT,
     Kind.QUANTITY_KIND,
-    Kind.USE_CASE,
     Kind.VIEW,
-    Kind.INTERACTION,
+    Kind.GENERAL_ORDERING,
     Kind.STEREOTYPE,
     Kind.DOCUMENT,
 )

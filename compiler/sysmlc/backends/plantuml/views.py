@@ -118,16 +118,84 @@ class InternalView:
     guides: tuple[Line, ...] = ()
 
 
-View = BoxView | GraphView | InternalView
+@dataclass(frozen=True, slots=True)
+class Participant:
+    """A lifeline; ``form`` is the word of PlantUML for it (``participant``, ``actor``)."""
+
+    alias: str
+    label: str
+    form: str
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One line of a sequence diagram.
+
+    ``word`` is ``message`` (``source arrow target : text``), a word of PlantUML about the
+    lifeline ``source`` (``activate``, ``deactivate``, ``create``, ``destroy``), ``open`` (a
+    frame ``arrow`` with ``text``), ``else``, ``end``, or a box over the lifelines ``over``
+    (``note``, ``hnote``, ``ref``), over all of them when it names none.
+    """
+
+    word: str
+    text: str = ""
+    source: str = ""
+    arrow: str = ""
+    target: str = ""
+    over: tuple[str, ...] = ()
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceView:
+    """Lifelines and what happens on them: sequence diagrams."""
+
+    participants: tuple[Participant, ...]
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """An actor or a use case; ``form`` is the word of PlantUML, ``style`` that of a stub."""
+
+    alias: str
+    label: str
+    form: str
+    style: str = ""
+    shows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SubjectView:
+    """A subject as a rectangle with its use cases."""
+
+    alias: str
+    label: str
+    cases: tuple[Figure, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class UseCaseView:
+    """Actors, subjects with use cases, use cases without subject, and lines."""
+
+    actors: tuple[Figure, ...]
+    subjects: tuple[SubjectView, ...]
+    cases: tuple[Figure, ...]
+    lines: tuple[Line, ...]
+    notes: tuple[Note, ...] = ()
+
+
+View = BoxView | GraphView | InternalView | SequenceView | UseCaseView
 
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
     """One diagram: what it is called, what it shows, and the element that it is about.
 
-    ``kind`` is the word of its file name and template (bdd, ibd, act, stm, req), ``name`` the
-    qualified name that makes its file name, ``about`` the id of the element, ``details`` those
-    of what the frame says of it.
+    ``kind`` is the word of its file name and template (bdd, ibd, act, stm, req, sd, uc),
+    ``name`` the qualified name that makes its file name, ``about`` the id of the element,
+    ``details`` those of what the frame says of it.
     """
 
     kind: str
@@ -146,9 +214,17 @@ class Diagram:
 
 
 def _shown(view: View) -> Iterator[str]:
+    if isinstance(view, SequenceView):
+        for participant in view.participants:
+            yield from participant.shows
+        for step in view.steps:
+            yield from step.shows
+        return
     for line in view.lines:
         yield from line.shows
-    if isinstance(view, BoxView):
+    if isinstance(view, UseCaseView):
+        yield from _shown_by_use_cases(view)
+    elif isinstance(view, BoxView):
         for box in view.boxes:
             yield from box.shows
     elif isinstance(view, GraphView):
@@ -158,6 +234,14 @@ def _shown(view: View) -> Iterator[str]:
             yield from note.shows
     else:
         yield from _shown_by_part(view.frame)
+
+
+def _shown_by_use_cases(view: UseCaseView) -> Iterator[str]:
+    inside = (case for subject in view.subjects for case in subject.cases)
+    for figure in (*view.actors, *inside, *view.cases):
+        yield from figure.shows
+    for note in view.notes:
+        yield from note.shows
 
 
 def _shown_by_node(node: Node) -> Iterator[str]:

@@ -6,6 +6,7 @@ from sysmlc.passes.classify.rules import NO_REQUIREMENT
 from sysmlc.passes.classify.vocabulary import DEPENDENCY_ROLES
 
 _EDGES = dict(DEPENDENCY_ROLES.values())
+_EDGES_OF_SUBKINDS = {"realization": Edge.REALIZES, "role-binding": Edge.BINDS}
 _OF_REQUIREMENTS = frozenset({"satisfy", "derive", "verify", "copy"})
 
 
@@ -22,7 +23,7 @@ def add_relations(graph: Graph, sink: Sink) -> None:
 def _edge(dependency: Element) -> Edge:
     if dependency.role in _EDGES:
         return _EDGES[dependency.role]
-    return Edge.REALIZES if dependency.subkind == "realization" else Edge.DEPENDS
+    return _EDGES_OF_SUBKINDS.get(dependency.subkind, Edge.DEPENDS)
 
 
 def _check(graph: Graph, sink: Sink, dependency: Element) -> None:
