@@ -116,7 +116,9 @@ def _lost(graph: Graph, found: list[Written]) -> Iterator[Written]:
     tied = _ties(graph)
     for one in found:
         holder = next((id for id in one.holders if id in graph), "")
-        is_applied = (one.source, one.target) in tied
+        # Enterprise Architect writes Profile__Some_name for Some name of another profile.
+        whole = one.source.rpartition("__")[2].replace("_", " ")
+        is_applied = not tied.isdisjoint({(one.source, one.target), (whole, one.target)})
         if one.target_type and not is_applied and not _same(holder, one.target, tied):
             yield one
 

@@ -4,6 +4,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.enterprise_architect_profiles import stereotype_of
 from sysmlc.frontends.xmi.unit import Lowered
 from sysmlc.frontends.xmi.values import value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -114,17 +115,18 @@ def _on_folded(context: Context, row: int, folded: list[tuple[str, str]]) -> Non
 
 def _element(context: Context, row: int, owner: str | None) -> Element:
     document = context.document
-    name = document.features[row]
+    name, namespace = stereotype_of(context, row)
     id = document.id(row)
     known = context.unit.graph_id(document.name, id) if id else ""
     if not known or known in context.graph:
         known = derived_id(owner or document.name, f"{name}[{document.ordinals[row]}]")
     element = Element(known, Kind.APPLICATION, name, owner, document.ordinals[row], document.name)
     element.attrs["stereotype"] = name
-    element.attrs["namespace"] = document.namespace(row)
+    element.attrs["namespace"] = namespace
     context.graph.add(element)
     context.gids[row] = element.id
-    stereotype = context.unit.profiles.find(context.graph, document.namespace(row), name)
+    written = document.namespace(row), document.features[row]
+    stereotype = context.unit.profiles.find(context.graph, *written)
     if stereotype is not None:
         context.graph.connect(Edge.INSTANCE_OF, element, stereotype)
     return element
@@ -133,7 +135,7 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
 def _tags(context: Context, element: Element, row: int) -> None:
     document = context.document
     for name, value in document.attributes[row].items():
-        if "}" not in name and not name.startswith(_BASE):
+        if "}" not in name and not name.startswith((_BASE, "__EA")):
             element.attrs[f"tag.{name}"] = _tag(context, value)
     collected: dict[str, list[AttrValue]] = {}
     for child in document.children(row):

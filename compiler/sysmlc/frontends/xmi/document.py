@@ -16,11 +16,13 @@ class Document:
 
     ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
     the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
-    ``xmi:type`` (or empty); ``ends[row]`` is the first row after the row's content.
+    ``xmi:type`` (or empty); ``ends[row]`` is the first row after the row's content;
+    ``declared`` are the namespaces that the file declares.
     """
 
     __slots__ = (
         "attributes",
+        "declared",
         "drawn",
         "ends",
         "features",
@@ -50,6 +52,7 @@ class Document:
         self.types: list[str] = []
         self.ids: dict[str, int] = {}
         self.repeated: dict[str, list[int]] = {}
+        self.declared: tuple[str, ...] = ()
         self.id_key = self.type_key = self.idref_key = ""
 
     def __len__(self) -> int:
@@ -106,6 +109,7 @@ def read(source: Source) -> Document:
     made.StartNamespaceDeclHandler = lambda _prefix, uri: declared.setdefault(uri or "")
     _fill(document, made, source)
     parse(source, made)
+    document.declared = tuple(declared)
     _index(document, [uri for uri in declared if namespaces.is_xmi(uri)])
     return document
 

@@ -10,6 +10,9 @@ from sysmlc.frontends.xmi import (
     applications,
     behaviour,
     detect,
+    drawings,
+    enterprise_architect,
+    enterprise_architect_profiles,
     links,
     lowering,
     rules,
@@ -20,6 +23,7 @@ from sysmlc.frontends.xmi.document import Document, read
 from sysmlc.frontends.xmi.snapshot import Snapshots, is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
+from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Fault, Source, SourceError
 
 
@@ -55,6 +59,18 @@ class XmiFrontend:
                 _add_library(unit, contexts, models, snapshot_use.read(beside, sink), coverage)
             _finish(unit, contexts, sink, coverage)
 
+    def companions(self, name: str) -> Sequence[str]:
+        """Papyrus' notation file, MagicDraw's entries with shapes."""
+        return drawings.companions(name)
+
+    def drawings(
+        self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
+    ) -> None:
+        """Keep the diagrams of authors for the pass ``views``."""
+        ordered = sorted(sources, key=lambda source: source.name)
+        models = [source for source in ordered if not is_snapshot(source)]
+        graph.store(Drawing, [*graph.derived(Drawing), *drawings.read(models, beside, sink)])
+
 
 def _add_library(
     unit: Unit,
@@ -70,9 +86,11 @@ def _add_library(
 def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:
     for context in contexts:
         applications.note_namespaces(context)
+        enterprise_architect_profiles.localise(context)
         context.finish()
     for context in contexts:
         applications.lower(context)
+        enterprise_architect.finish(context)
         behaviour.finish(context)
     unit.flush()
     for context in contexts:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Sink, Verdict
 from sysmlc.frontends.xmi import (
     behaviour,
+    enterprise_architect,
     expressions,
     interactions,
     metaclasses,
@@ -101,6 +102,8 @@ def _row(context: Context, row: int) -> int:
 def _notation(context: Context, row: int) -> int:
     end = structure.notation(context, row)
     if context.document.parents[row] == 0:
+        if enterprise_architect.is_extension(context.document, row):
+            context.extensions.append(row)
         _content_of_extension(context, row)
     return end
 

@@ -1,0 +1,201 @@
+"""Enterprise Architect: what it keeps in its extension, mangled stereotypes, windows-1252."""
+
+import pytest
+from reading_xmi import below_model, read, source
+
+FILE = """<?xml version='1.0' encoding='windows-1252'?>
+<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+ xmlns:uml="http://www.omg.org/spec/UML/20161101"
+ xmlns:thecustomprofile="http://www.sparxsystems.com/profiles/thecustomprofile/1.0"
+ xmlns:Plant="http://www.sparxsystems.com/profiles/Plant/1.0"
+ xmlns:SysML1.4="http://www.sparxsystems.com/profiles/SysML1.4/1.4">
+<xmi:Documentation exporter="Enterprise Architect" exporterVersion="6.5" exporterID="1704"/>
+<uml:Model xmi:type="uml:Model" xmi:id="m" name="EA_Model">{model}</uml:Model>
+<xmi:Extension extender="Enterprise Architect" extenderID="6.5">{extension}</xmi:Extension>
+{applications}</xmi:XMI>"""
+GATE = '<packagedElement xmi:type="uml:Class" xmi:id="EAID_G" name="Gate">{}</packagedElement>'
+XREFS = "$XREFPROP=$NAM=Stereotypes$NAM;$DES={}$DES;$ENDXREF;"
+
+
+def ea(model=GATE, extension="", applications=""):
+    text = FILE.format(
+        model=model.replace("{}", ""), extension=extension, applications=applications
+    )
+    return read(source(text.encode("cp1252"), "m.xmi"))
+
+
+def about(id, content, kind="element"):
+    return f'<{kind}s><{kind} xmi:idref="{id}">{content}</{kind}></{kind}s>'
+
+
+def lines(reading):
+    return [line.strip() for line in below_model(reading).splitlines()]
+
+
+def test_windows_1252_is_read_as_the_file_says():
+    reading = ea(GATE.replace("Gate", "T\xfcr \u2013 5 \u20ac"))
+    assert reading.graph["EAID_G"].name == "Tür – 5 €"
+
+
+def test_notes_are_comments():
+    reading = ea(extension=about("EAID_G", '<properties documentation="Opens &#xA;slowly"/>'))
+    (comment,) = [e for e in reading.graph if e.kind == "Comment"]
+    assert comment.attrs["body"] == "Opens \nslowly"
+    assert [e.id for e in reading.graph.owned(reading.graph["EAID_G"])] == [comment.id]
+    assert reading.findings == []
+
+
+def test_a_note_that_the_model_has_too_is_one_comment():
+    said = '<ownedComment xmi:type="uml:Comment" xmi:id="n" body="Opens"/>'
+    note = about("EAID_G", '<properties documentation="Opens"/>')
+    reading = ea(GATE.replace("{}", said), note)
+    assert [e.id for e in reading.graph if e.kind == "Comment"] == ["n"]
+
+
+def test_notes_of_features_parameters_connectors_and_ends():
+    model = GATE.replace(
+        "{}",
+        '<ownedAttribute xmi:type="uml:Property" xmi:id="EAID_A" name="a"/>'
+        '<ownedAttribute xmi:type="uml:Property" xmi:id="EAID_src345_6" name="end"/>'
+        '<ownedOperation xmi:id="EAID_O"><ownedParameter xmi:id="EAID_P"/></ownedOperation>',
+    )
+    model += '<packagedElement xmi:type="uml:Association" xmi:id="EAID_12345_6"/>'
+    elements = about(
+        "EAID_G",
+        '<attributes><attribute xmi:idref="EAID_A"><documentation value="attribute"/></attribute>'
+        '</attributes><operations><operation xmi:idref="EAID_O"><documentation value="operation"/>'
+        '<parameters><parameter xmi:idref="EAID_P"><documentation value="parameter"/></parameter>'
+        "</parameters></operation></operations>",
+    )
+    connectors = about(
+        "EAID_12345_6",
+        '<source xmi:idref="EAID_G"><documentation value="end"/></source>'
+        '<target xmi:idref="EAID_G"/><documentation value="connector"/>',
+        "connector",
+    )
+    graph = ea(model, elements + connectors).graph
+    said = {e.attrs["body"]: e.owner for e in graph if e.kind == "Comment"}
+    assert said == {
+        "attribute": "EAID_A",
+        "operation": "EAID_O",
+        "parameter": "EAID_P",
+        "connector": "EAID_12345_6",
+        "end": "EAID_src345_6",
+    }
+
+
+def test_tagged_values_without_a_stereotype_belong_to_the_element():
+    tags = '<tags><tag xmi:id="t" name="Mass" value="12 kg"/><tag xmi:id="u" name="Empty"/></tags>'
+    assert ea(extension=about("EAID_G", tags)).graph["EAID_G"].attrs == {"tag.Mass": "12 kg"}
+
+
+def test_tagged_values_of_a_stereotype_are_not_told_twice():
+    tags = '<tags><tag xmi:id="t" name="Plant::maker" value="ACME"/></tags>'
+    applied = '<Plant:Robot base_Class="EAID_G" maker="ACME"/>'
+    graph = ea(extension=about("EAID_G", tags), applications=applied).graph
+    assert graph["EAID_G"].attrs == {}
+    (application,) = [e for e in graph if e.kind == "Application"]
+    assert application.attrs["tag.maker"] == "ACME"
+
+
+def test_a_mangled_stereotype_has_its_own_name_and_profile():
+    graph = ea(
+        applications='<thecustomprofile:Plant__Robot_arm base_Class="EAID_G"'
+        ' __EAStereoName="Plant::Robot arm" axes="6"/>'
+    ).graph
+    (application,) = [e for e in graph if e.kind == "Application"]
+    assert application.name == "Robot arm"
+    assert application.attrs == {
+        "stereotype": "Robot arm",
+        "namespace": "http://www.sparxsystems.com/profiles/Plant/1.0",
+        "tag.axes": "6",
+    }
+
+
+def test_a_stereotype_that_only_the_extension_tells_of():
+    xrefs = XREFS.format("@STEREO;Name=Robot;FQName=Plant::Robot;@ENDSTEREO;")
+    graph = ea(extension=about("EAID_G", f'<xrefs value="{xrefs}"/>')).graph
+    (application,) = [e for e in graph if e.kind == "Application"]
+    assert application.owner == "EAID_G"
+    assert application.attrs == {
+        "stereotype": "Robot",
+        "namespace": "http://www.sparxsystems.com/profiles/Plant/1.0",
+    }
+
+
+def test_a_stereotype_that_the_extension_repeats_is_applied_once():
+    xrefs = XREFS.format(
+        "@STEREO;Name=Robot;GUID={1};FQName=Plant::Robot;@ENDSTEREO;"
+        "@STEREO;Name=Robot arm;FQName=Plant::Robot arm;@ENDSTEREO;"
+    )
+    applied = (
+        '<Plant:Robot base_Class="EAID_G"/>'
+        '<Plant:Robot_arm base_Class="EAID_G" __EAStereoName="Robot arm"/>'
+    )
+    graph = ea(extension=about("EAID_G", f'<xrefs value="{xrefs}"/>'), applications=applied).graph
+    assert sorted(e.name for e in graph if e.kind == "Application") == ["Robot", "Robot arm"]
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("block", "Block"),
+        ("proxyPort", "ProxyPort"),
+        ("flowProperty", "FlowProperty"),
+        ("Block", "Block"),
+        ("extendedRequirement", "extendedRequirement"),
+    ],
+)
+def test_names_of_sysml_begin_as_the_standard_writes_them(name, told):
+    """Untested with a real file: none was there."""
+    graph = ea(applications=f'<SysML1.4:{name} base_Class="EAID_G"/>').graph
+    (application,) = [e for e in graph if e.kind == "Application"]
+    assert application.attrs == {
+        "stereotype": told,
+        "namespace": "http://www.sparxsystems.com/profiles/SysML1.4/1.4",
+    }
+
+
+PROFILE = """<profiles><uml:Profile xmi:id="P1" nsPrefix="Plant" name="Plant">
+  <packagedElement xmi:type="uml:Stereotype" xmi:id="Robot" name="Robot"/></uml:Profile>
+</profiles>"""
+APPLIED = """<profileApplication xmi:type="uml:ProfileApplication" xmi:id="a">
+  <appliedProfile xmi:type="uml:Profile"
+    href="http://www.sparxsystems.com/profiles/Plant/1.0#P1"/></profileApplication>"""
+
+
+def test_an_applied_profile_is_the_one_in_the_extension():
+    reading = ea(GATE + APPLIED, PROFILE, '<Plant:Robot base_Class="EAID_G"/>')
+    graph = reading.graph
+    assert [(r.source, r.target) for r in graph.pending if r.edge == "applies"] == [("m", "P1")]
+    (application,) = [e for e in graph if e.kind == "Application"]
+    assert [e.id for e in graph.targets(application, "instance-of")] == ["Robot"]
+
+
+def test_primitive_types_of_a_language_are_those_of_uml():
+    types = """<primitivetypes><packagedElement xmi:type="uml:Package" xmi:id="EAJavaTypesPackage">
+      <packagedElement xmi:type="uml:PrimitiveType" xmi:id="EAJava_int" name="int"/>
+      </packagedElement></primitivetypes>"""
+    attribute = (
+        '<ownedAttribute xmi:type="uml:Property" xmi:id="EAID_A" name="a">'
+        '<type xmi:idref="EAJava_int"/></ownedAttribute>'
+    )
+    graph = ea(GATE.replace("{}", attribute), types).graph
+    (reference,) = [r for r in graph.pending if r.edge == "typed-by"]
+    assert reference.target == "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#int"
+
+
+def test_the_rest_of_the_extension_is_counted_as_notation():
+    style = '<project author="me"/><style appearance="BackColor=-1"/><code gentype="Java"/>'
+    reading = ea(extension=about("EAID_G", style))
+    assert reading.totals == {"elements": 10, "mapped": 3, "ignored_notation": 7}
+    assert lines(reading) == ['Class EAID_G "Gate"']
+
+
+def test_another_tools_extension_is_not_read_so():
+    text = FILE.format(
+        model=GATE.replace("{}", ""),
+        extension=about("EAID_G", '<properties documentation="not for us"/>'),
+        applications="",
+    ).replace('extender="Enterprise Architect"', 'extender="Another"')
+    assert [e.kind for e in read(source(text.encode("cp1252"))).graph] == ["Package", "Class"]
