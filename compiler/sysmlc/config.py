@@ -41,6 +41,7 @@ class Config:
     emit: tuple[str, ...] = ()
     strict: bool = False
     strict_input: bool = False
+    diagrams: str = "derived"
     templates: str = ""
     rules: Mapping[str, Severity | None] = field(default_factory=dict)
     suppress: tuple[Suppression, ...] = ()
@@ -147,6 +148,7 @@ def _config(file: Path, table: dict[str, Any]) -> Config:
         emit=tuple(table.get("emit", ())),
         strict=table.get("strict", False),
         strict_input=table.get("strict-input", False),
+        diagrams=table.get("diagrams", "derived"),
         templates=table.get("templates", ""),
         rules={key: _severity(word) for key, word in table.get("rules", {}).items()},
         suppress=tuple(Suppression(**entry) for entry in table.get("suppress", ())),

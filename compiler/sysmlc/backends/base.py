@@ -27,6 +27,11 @@ def _as_they_are(places: Iterable[Place]) -> Mapping[Place, Place]:
     return {place: place for place in places}
 
 
+DIAGRAMS = ("derived", "author", "both")
+"""Which diagrams are wanted: those that are derived from the model, those of its authors."""
+DERIVED, AUTHOR, BOTH = DIAGRAMS
+
+
 @dataclass(frozen=True, slots=True)
 class EmitOptions:
     """What the user asked of the back ends, and what they may ask of the driver."""
@@ -34,6 +39,7 @@ class EmitOptions:
     templates: Path | None = None
     inputs: tuple[InputFile, ...] = ()
     locate: Locate = _as_they_are
+    diagrams: str = DERIVED
 
 
 class Backend(Protocol):

@@ -89,6 +89,12 @@ def emitting(function: _F) -> _F:
                 metavar="DIR",
                 help="Folder whose templates come before the shipped ones.",
             ),
+            click.option(
+                "--diagrams",
+                type=click.Choice(["derived", "author", "both"]),
+                help="Diagrams derived from the model, those of its authors, or both."
+                "  [default: derived]",
+            ),
         ],
         function,
     )

@@ -31,6 +31,7 @@ class Settings:
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
+    diagrams: str | None = None
     has_cache: bool = True
 
     @property
@@ -164,6 +165,7 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         config=config,
         templates=_templates(config, settings),
         strict_input=settings.strict_input or config.strict_input,
+        diagrams=settings.diagrams or config.diagrams,
         verify_each=settings.verify_each,
     )
 

@@ -5,16 +5,17 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sysmlc.backends.base import Backend, EmitOptions, InputFile
+from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.suppress import suppress
 from sysmlc.driver import faults, registry
+from sysmlc.driver.drawings import beside
 from sysmlc.driver.inputs import unit_root
 from sysmlc.driver.places import Locator
 from sysmlc.driver.reading import Reading, read_unit
 from sysmlc.driver.withhold import withheld_artefacts
-from sysmlc.frontends.base import Frontend
+from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
 from sysmlc.passes.base import Pass
@@ -48,6 +49,7 @@ class Request:
     backends: tuple[Backend, ...] = ()
     templates: Path | None = None
     strict_input: bool = False
+    diagrams: str = DERIVED
     verify_each: bool = False
     frontends: tuple[Frontend, ...] | None = None
     passes: tuple[Pass, ...] | None = None
@@ -90,6 +92,8 @@ class Opened:
     root: Path
     reading: Reading
     sink: Sink
+    drawings: tuple[Source, ...] = ()
+    """What lies beside the inputs and holds the diagrams of authors, when they are wanted."""
 
 
 def open_unit(request: Request) -> Opened:
@@ -97,7 +101,9 @@ def open_unit(request: Request) -> Opened:
     sink = Sink(request.config.rules)
     frontends = request.frontends or tuple(registry.frontends())
     root = unit_root(request.inputs, request.config.folder)
-    return Opened(root, read_unit(request.inputs, root, frontends, sink), sink)
+    reading = read_unit(request.inputs, root, frontends, sink)
+    drawings = () if request.diagrams == DERIVED else beside(reading, root, sink)
+    return Opened(root, reading, sink, drawings)
 
 
 def compile_model(
@@ -125,6 +131,7 @@ class _Run:
         self._passes = request.pipeline()
         self._root = opened.root
         self._reading = opened.reading
+        self._drawings = opened.drawings
         self._done = 0
 
     def compilation(self) -> Compilation:
@@ -132,6 +139,7 @@ class _Run:
         inputs = tuple(
             InputFile(r.source.name, r.source.sha256, r.frontend.name) for r in reading.recognised
         )
+        inputs += tuple(InputFile(d.name, d.sha256, "diagrams") for d in self._drawings)
         broken = not self._read(reading)
         broken = not all(self._refine(step) for step in self._passes) or broken
         emitted = [] if broken else self._emit(inputs, reading)
@@ -146,7 +154,7 @@ class _Run:
             inputs=inputs,
             artefacts=tuple(emitted),
             withheld=withheld_artefacts(emitted, self._graph, diagnostics),
-            sources=reading.sources(),
+            sources=(*reading.sources(), *self._drawings),
             is_complete=reading.is_complete
             and not broken
             and not any(map(_cuts_short, diagnostics)),
@@ -164,7 +172,14 @@ class _Run:
                         s, self._graph, self._sink, self._coverage
                     ),
                 )
+                done &= self._request.diagrams == DERIVED or self._draw(frontend, sources)
         return self._settled("read") and done
+
+    def _draw(self, frontend: Frontend, sources: list[Source]) -> bool:
+        return not isinstance(frontend, DiagramReader) or self._guarded(
+            f"diagrams of {frontend.name}",
+            lambda: frontend.drawings(sources, self._drawings, self._graph, self._sink),
+        )
 
     def _refine(self, step: Pass) -> bool:
         self._step(f"pass {step.name}")
@@ -183,7 +198,9 @@ class _Run:
         return not problems
 
     def _emit(self, inputs: tuple[InputFile, ...], reading: Reading) -> list[Artefact]:
-        options = EmitOptions(self._request.templates, inputs, Locator(reading.sources()))
+        locate = Locator((*reading.sources(), *self._drawings))
+        request = self._request
+        options = EmitOptions(request.templates, inputs, locate, request.diagrams)
         failed: set[str] = set()
         for backend in self._request.backends:
             self._step(f"emit {backend.name}")
@@ -220,7 +237,7 @@ class _Run:
         for file in self._coverage.files():
             number = file.totals()["unsupported"]
             if number:
-                subject = faults.about_file(file.file)
+                subject = Subject(file.file, place=Place(file.file, ordinal=0))
                 self._sink.report(
                     faults.UNSUPPORTED, subject, number=number, file=file.file, all=file.elements
                 )

@@ -36,10 +36,14 @@ def _parts(
     config = request.config
     yield f"{__version__} {sys.version} {sys.platform}"
     yield from _stamps(_tool_files())
-    yield repr((has_files, tuple(wanted), request.strict_input, len(config.models)))
+    yield repr(
+        (has_files, tuple(wanted), request.strict_input, request.diagrams, len(config.models))
+    )
     yield repr((sorted(config.rules.items()), config.suppress, _sorted(config.passes)))
     for found in opened.reading.recognised:
         yield repr((found.source.name, found.source.sha256, found.frontend.name))
+    for beside in opened.drawings:
+        yield repr((beside.name, beside.sha256))
     for finding in opened.sink:
         yield repr((finding.rule.code, finding.message, finding.subject, opened.root))
     yield from _stamps(_in_folder(request.templates))

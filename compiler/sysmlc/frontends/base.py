@@ -1,7 +1,7 @@
 """What a front end is: it recognises its files and reads them into the graph."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.ir import Graph
@@ -28,3 +28,19 @@ class Frontend(Protocol):
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph and account for every element of them."""
+
+
+@runtime_checkable
+class DiagramReader(Protocol):
+    """A front end that can also read the diagrams of authors."""
+
+    def companions(self, name: str) -> Sequence[str]:
+        """What may lie beside a source of this name and hold the diagrams of its authors.
+
+        Names of files, or ``archive!pattern`` for entries of an archive (``BINARY-*``).
+        """
+
+    def drawings(
+        self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
+    ) -> None:
+        """Keep the diagrams of authors (``ir.drawing.Drawing``) for the pass ``views``."""

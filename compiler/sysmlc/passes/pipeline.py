@@ -20,6 +20,7 @@ NAMES = (
     "behaviours",
     "recipe",
     "contracts",
+    "views",
 )
 """Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""
 

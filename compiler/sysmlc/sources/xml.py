@@ -29,6 +29,14 @@ def parser() -> Parser:
     return made
 
 
+def plain_parser() -> Parser:
+    """An expat parser that takes names as they are written: for XML with unbound prefixes."""
+    made = expat.ParserCreate()
+    made.buffer_text = True
+    made.StartDoctypeDeclHandler = _refuse_doctype
+    return made
+
+
 def parse(source: Source, made: Parser) -> None:
     """Run ``made`` over the whole source.
 

@@ -1,0 +1,169 @@
+"""Diagrams of MagicDraw and Cameo: ``ownedDiagram`` in the model, shapes in entries beside it."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from sysmlc.frontends.xmi.drawing_shapes import Shapes, target_of
+from sysmlc.frontends.xmi.drawing_types import diagram_word
+from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES
+from sysmlc.ir import Edge
+from sysmlc.ir.drawing import Drawing
+from sysmlc.sources import Source
+from sysmlc.sources.xml import parse, plain_parser
+
+ENTRY = "BINARY-"
+"""How the names of entries with shapes begin."""
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A diagram while it is read."""
+
+    ordinal: int
+    attributes: Mapping[str, str]
+    type: str = ""
+    base_type: str = ""
+    shapes: str = ""
+    used: dict[str, None] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class _Found:
+    """What one model file says of diagrams."""
+
+    drafts: list[_Draft] = field(default_factory=list)
+    shapes: dict[str, Shapes] = field(default_factory=dict)
+    relations: dict[str, tuple[Edge, str, str]] = field(default_factory=dict)
+
+
+def drawings(model: Source, shapes_of: Callable[[str], Shapes]) -> Iterator[Drawing]:
+    """The diagrams of a model; ``shapes_of`` reads an entry of its archive.
+
+    Raises SourceError.
+    """
+    if b"ownedDiagram" not in model.data:
+        return
+    found = _read(model)
+    for draft in found.drafts:
+        drawn = found.shapes.get(draft.shapes) or shapes_of(draft.shapes)
+        yield _drawing(model.name, draft, drawn, found.relations)
+
+
+def _drawing(
+    file: str, draft: _Draft, shapes: Shapes, relations: Mapping[str, tuple[Edge, str, str]]
+) -> Drawing:
+    id = _id(draft.attributes)
+    drawn = (path[-1] for path in shapes.paths)
+    shown = [one for one in dict.fromkeys((*drawn, *draft.used)) if one != id]
+    return Drawing(
+        id,
+        draft.attributes.get("name", ""),
+        draft.type,
+        diagram_word(draft.type, draft.base_type),
+        file,
+        file,
+        draft.ordinal,
+        draft.attributes.get("ownerOfDiagram", ""),
+        draft.attributes.get("context", ""),
+        tuple(shown),
+        tuple(path for path in shapes.paths if len(path) > 1),
+        tuple(relations[one] for one in shown if one in relations),
+    )
+
+
+def _id(attributes: Mapping[str, str]) -> str:
+    return attributes.get("xmi:id", "")
+
+
+def shapes(entry: Source) -> Shapes:
+    """The shapes in an entry of an archive; none in one that is no XML. Raises SourceError."""
+    found = Shapes()
+    made = plain_parser()
+    made.StartElementHandler = found.start
+    made.EndElementHandler = found.end
+    if entry.data.lstrip().startswith(b"<"):
+        parse(entry, made)
+    return found
+
+
+def _read(model: Source) -> _Found:
+    reader = _Reader()
+    made = plain_parser()
+    made.StartElementHandler = reader.start
+    made.EndElementHandler = reader.end
+    made.CharacterDataHandler = reader.text
+    parse(model, made)
+    return reader.found
+
+
+class _Reader:
+    """Told of everything in a model file, it keeps what concerns diagrams."""
+
+    def __init__(self) -> None:
+        self.found = _Found()
+        self._ordinal = -1
+        self._open: list[tuple[str, str]] = []
+        self._draft: _Draft | None = None
+        self._shapes: Shapes | None = None
+        self._used = ""
+        self._folded: tuple[str, str] = ("", "")
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        self._ordinal += 1
+        if self._shapes is not None:
+            self._shapes.start(name, attributes)
+            return
+        if name == "filePart":
+            self._begin_shapes(attributes)
+        elif name == "ownedDiagram":
+            self._draft = _Draft(self._ordinal, attributes)
+            self.found.drafts.append(self._draft)
+        elif self._draft is not None:
+            _fill(self._draft, name, attributes)
+        self._relate(name, attributes)
+        self._open.append((name, _id(attributes)))
+
+    def end(self, name: str) -> None:
+        if name == "filePart":
+            self._shapes = None
+        if self._shapes is not None:
+            self._shapes.end(name)
+            return
+        self._open.pop()
+        if name == "ownedDiagram":
+            self._draft = None
+        elif name == "usedElements" and self._draft is not None:
+            self._draft.used[self._used.strip()] = None
+            self._used = ""
+
+    def text(self, data: str) -> None:
+        if self._open and self._open[-1][0] == "usedElements":
+            self._used += data
+
+    def _begin_shapes(self, attributes: Mapping[str, str]) -> None:
+        entry = attributes.get("name", "")
+        if entry.startswith(ENTRY):
+            self._shapes = self.found.shapes[entry] = Shapes()
+
+    def _relate(self, name: str, attributes: Mapping[str, str]) -> None:
+        """A line that is an edge of the graph: ``generalization`` with ``general``."""
+        edge = FOLDED_REFERENCES.get(name)
+        if edge is not None and len(self._open) > 1:
+            target = target_of(attributes)
+            self._note(edge, self._open[-2][1], self._open[-1][1], target)
+        for feature in FOLDED_REFERENCES.keys() & attributes.keys() if self._open else ():
+            target = attributes[feature]
+            owner = self._open[-1][1]
+            self._note(FOLDED_REFERENCES[feature], owner, _id(attributes), target)
+
+    def _note(self, edge: Edge, owner: str, id: str, target: str) -> None:
+        if owner and id and target:
+            self.found.relations[id] = (edge, owner, target)
+
+
+def _fill(draft: _Draft, name: str, attributes: Mapping[str, str]) -> None:
+    if name.endswith("DiagramRepresentationObject"):
+        draft.type = attributes.get("type", "")
+        draft.base_type = attributes.get("umlType", "")
+    elif name == "binaryObject":
+        draft.shapes = attributes.get("streamContentID", "")

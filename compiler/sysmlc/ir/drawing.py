@@ -1,0 +1,28 @@
+"""Diagrams as their authors drew them, before the pass ``views`` makes them part of the graph."""
+
+from dataclasses import dataclass
+
+from sysmlc.ir.kinds import Edge
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """One diagram; every reference is an id of ``file`` or an ``href``, as its tool wrote it.
+
+    ``type`` is what the tool calls it, ``diagram`` our word (docs/ir.md). ``source`` and
+    ``ordinal`` say where it is written. ``paths`` are the elements that are drawn inside
+    others, outermost first; ``relations`` those lines that are no elements of the graph.
+    """
+
+    id: str
+    name: str
+    type: str
+    diagram: str
+    file: str
+    source: str
+    ordinal: int
+    owner: str = ""
+    context: str = ""
+    shown: tuple[str, ...] = ()
+    paths: tuple[tuple[str, ...], ...] = ()
+    relations: tuple[tuple[Edge, str, str], ...] = ()
