@@ -14,6 +14,8 @@ from sysmlc.passes import pipeline
 
 MODELS = (
     "papyrus/Arrowhead-5.0.uml",
+    "papyrus/AllDiagrams.uml",
+    "papyrus/CraneModel.uml",
     "papyrus/TankBarrelExample.uml",
     "papyrus/fUML-Tests.uml",
     "magicdraw/Tank_control_2.mdzip",

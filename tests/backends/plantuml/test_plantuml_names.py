@@ -62,6 +62,45 @@ Package p {name}
           -> flow-target s2
           -> trigger tt
           Trigger tt subkind="change" condition={name}
+  Interaction i {name}
+    Lifeline l1 {name}
+    Lifeline l2 {name} selector={name}
+    Comment i.c body={name}
+    Constraint i.k {name} body={name}
+    Occurrence o1
+      -> covers l1
+    Occurrence o2
+      -> covers l2
+    Fragment i.f subkind="alt"
+      Operand i.f1 guard={name}
+      Operand i.f2 guard={name}
+        Fragment i.u subkind="ref" arguments={name} return_value={name}
+          -> calls i
+        Fragment i.v {name} subkind="state-invariant"
+          -> covers l1
+    Fragment i.g subkind="neg"
+      Operand i.g1 guard={name}
+    Message m1 {name} arguments={name}
+      -> send-event o1
+      -> receive-event o2
+      -> flow-source l1
+      -> flow-target l2
+    Observation i.o {name} subkind="time"
+      -> references o2
+  Actor ac {name}
+    -> specializes ac2
+  Actor ac2 {name}
+  UseCase u {name}
+    -> subject b
+    Extend u.e
+      -> extends u2
+      -> references u2.p
+      Constraint u.c {name} body={name}
+    Constraint u.k {name} body={name}
+  UseCase u2 {name}
+    ExtensionPoint u2.p {name}
+  Comment u.n body={name}
+    -> references u
   Class c {name} role="block"
     Port c.p {name} direction="out"
   Enumeration en {name}
@@ -95,7 +134,7 @@ def test_any_name_renders_and_reads_as_written(plantuml, names):
     pictures = plantuml.render(files)
     for number, name in enumerate(names):
         mine = [path for path in pictures if path.startswith(f"{number} ")]
-        assert len(mine) == 5
+        assert len(mine) == 7
         for path in mine:
             assert _letters(name) in _letters(_shown(pictures[path])), (path, name)
 

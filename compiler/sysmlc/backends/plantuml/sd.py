@@ -66,9 +66,9 @@ def _name(graph: Graph, lifeline: Element) -> str:
     """The name of what it represents; tools number the lifelines themselves."""
     represented = sequence.participant(graph, lifeline)
     if represented is None:
-        return lifeline.name
-    is_told = represented.name or sequence.type_of(graph, lifeline) is not None
-    return represented.name if is_told else lifeline.name
+        return lifeline.name.strip()
+    is_told = represented.name.strip() or sequence.type_of(graph, lifeline) is not None
+    return (represented.name if is_told else lifeline.name).strip()
 
 
 def _is_actor(graph: Graph, lifeline: Element) -> bool:
