@@ -1,0 +1,132 @@
+"""What the readers of nodes share: the graph, ids, and findings about what leads nowhere."""
+
+from collections import Counter
+
+from sysmlc.diagnostics import Rule, Sink, Subject, Verdict
+from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.paths import plain
+from sysmlc.frontends.caex.types import Missing, Type, Types
+from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
+from sysmlc.ir import AttrValue, Element, Graph, Kind
+
+_ROOTS = frozenset({*LIBRARIES, "InstanceHierarchy"})
+
+
+class Context:
+    """The lowering of the files of one unit."""
+
+    def __init__(
+        self, documents: list[Document], built_in: Document, graph: Graph, sink: Sink
+    ) -> None:
+        self.documents = documents
+        self.graph = graph
+        self.sink = sink
+        self.types = Types(documents, built_in)
+        self.nodes: dict[str, tuple[Document, Node]] = {}
+        self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
+        self._plain: dict[str, tuple[Document, Node]] = {}
+        self._repeated: set[str] = set()
+        self._shared: set[tuple[str, str]] = set()
+        self._know_ids()
+        self._know_roots()
+
+    def _know_ids(self) -> None:
+        for document in self.documents:
+            for node in document.root.walk():
+                id = node.attributes.get("ID")
+                if id:
+                    if id in self.nodes:
+                        self._repeated.add(id)
+                    else:
+                        self.nodes[id] = (document, node)
+                    self._plain.setdefault(plain(id), (document, node))
+
+    def _know_roots(self) -> None:
+        names = Counter(
+            (node.tag, node.name) for one in self.documents for node in one.root.of(*_ROOTS)
+        )
+        self._shared = {key for key, number in names.items() if number > 1}
+
+    # -- elements ------------------------------------------------------------------------------
+
+    def add(
+        self,
+        kind: Kind,
+        node: Node,
+        document: Document,
+        owner: str | None,
+        id: str = "",
+        **attrs: AttrValue,
+    ) -> Element:
+        """Add the node's element; attributes that are None or empty stay away."""
+        given: dict[str, AttrValue] = {
+            key: value for key, value in attrs.items() if value not in (None, "", ())
+        }
+        name = node.attributes.get("Name", "")
+        id = id or self.id_of(node, document, owner)
+        element = Element(id, kind, name, owner, node.ordinal, document.name, given)
+        if document.is_built_in:
+            element.attrs["external"] = True
+        self.graph.add(element)
+        node.element = id
+        node.verdict = Verdict.MAPPED
+        return element
+
+    def id_of(self, node: Node, document: Document, owner: str | None) -> str:
+        """The node's own id, or one made of its owner's and its name."""
+        id = node.attributes.get("ID")
+        if id and id not in self._repeated:
+            return id if id not in self.graph else self.free(id, node)
+        if id:
+            return self.free(f"{document.name}#{id}", node)
+        if owner:
+            return self.free(f"{owner}/{node.name or node.tag}", node)
+        is_shared = (node.tag, node.name) in self._shared
+        return self.free(f"{document.name if is_shared else node.tag}#{node.name}", node)
+
+    def free(self, id: str, node: Node) -> str:
+        """The id, made different when the graph has it."""
+        return f"{id}~{node.ordinal}" if id in self.graph else id
+
+    def find(self, id: str) -> tuple[Document, Node] | None:
+        """The node with the id: literally, else without regard to braces and case."""
+        return self.nodes.get(id) or self._plain.get(plain(id))
+
+    # -- classes -------------------------------------------------------------------------------
+
+    def type(self, text: str, family: Family, document: Document, node: Node) -> Type | None:
+        """The class that a path means; what leads nowhere is kept for one report."""
+        found = self.types.find(text, family, document)
+        return self.known(found, document, node)
+
+    def known(self, found: Type | Missing | None, document: Document, node: Node) -> Type | None:
+        """The class that was found, or None; a path that leads nowhere is noted."""
+        if isinstance(found, Missing):
+            self.missing.setdefault(found, []).append((document, node))
+            return None
+        return found
+
+    # -- findings ------------------------------------------------------------------------------
+
+    def report(self, rule: Rule, document: Document, node: Node, **facts: str) -> None:
+        """Report a rule about the node, at its place."""
+        self.sink.report(rule, self.subject(document, node), notes=(), help="", **facts)
+
+    def subject(self, document: Document, node: Node) -> Subject:
+        """The node as the subject of a finding: its path, its element, its place."""
+        return Subject(path_of(node), node.element, document.place(node))
+
+    def report_repeated(self) -> None:
+        """Ids that several elements have."""
+        for document in self.documents:
+            for node in document.root.walk():
+                id = node.attributes.get("ID")
+                if id in self._repeated and self.nodes[id][1] is not node:
+                    self.report(rules.REPEATED_ID, document, node, id=id, element=node.name)
+
+
+def path_of(node: Node) -> str:
+    """Names from the library or hierarchy down, joined by ``::``."""
+    names = [part.name or part.tag for part in (node, *node.above()) if part.tag != "CAEXFile"]
+    return "::".join(reversed(names))

@@ -1,0 +1,187 @@
+"""Attributes and external interfaces: value properties and ports of classes."""
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex import measures
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.libraries import mark
+from sysmlc.frontends.caex.types import Member, Type
+from sysmlc.frontends.caex.vocabulary import DIRECTIONS, Family, value_of
+from sysmlc.ir import Edge, Element, Kind
+
+_CARDINALITY = ("MinOccur", "MaxOccur")
+
+
+def lower_own(context: Context, type: Type) -> None:
+    """Add the attributes and interfaces that stand directly below a class."""
+    for child in type.node.children:
+        if child.tag == "Attribute":
+            attribute(context, type, child, type.document)
+        elif child.tag == "ExternalInterface":
+            interface(context, type, child, type.document)
+
+
+# -- attributes --------------------------------------------------------------------------------
+
+
+def attribute(context: Context, owner: Type, top: Node, document: Document) -> None:
+    """Add an attribute of a class, with those below it as features of a type of its own."""
+    waiting = [(owner, top)]
+    while waiting:
+        holder, node = waiting.pop()
+        structure = _attribute(context, holder, node, document)
+        if structure is not None:
+            waiting += [(structure, child) for child in reversed(list(node.of("Attribute")))]
+
+
+def _attribute(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
+    data_type = node.attributes.get("AttributeDataType", "")
+    value, default = node.text("Value"), node.text("DefaultValue")
+    given = default if value is None else value
+    element = context.add(
+        Kind.PROPERTY,
+        node,
+        document,
+        owner.id,
+        role="value",
+        data_type=data_type,
+        default=None if given is None else value_of(given, data_type),
+        default_value=default if value is not None and default != value else None,
+        semantics=_semantics(node),
+    )
+    declared = _attribute_type(context, node, document)
+    _redefine(context, owner, node, element)
+    structure = _structure(context, owner, node, document, element, declared)
+    measures.type_value(context, element, node, structure or declared)
+    owner.members["Attribute", node.name] = Member(element.id, structure or declared, node)
+    return structure
+
+
+def _attribute_type(context: Context, node: Node, document: Document) -> Type | None:
+    path = node.attributes.get("RefAttributeType", "").strip()
+    return context.type(path, Family.ATTRIBUTE, document, node) if path else None
+
+
+def _redefine(context: Context, owner: Type, node: Node, element: Element) -> None:
+    """Overriding is by name and replaces the whole feature (AML.Engine does the same)."""
+    inherited = owner.base.find(node.tag, node.name) if owner.base else None
+    if inherited is not None:
+        context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
+
+
+def _structure(
+    context: Context,
+    owner: Type,
+    node: Node,
+    document: Document,
+    element: Element,
+    declared: Type | None,
+) -> Type | None:
+    """The data type made for an attribute that has attributes of its own."""
+    if not any(True for _ in node.of("Attribute")):
+        return None
+    id = context.free(f"{element.id}#type", node)
+    data_type = Element(id, Kind.DATA_TYPE, node.name, owner.id, node.ordinal, document.name)
+    data_type.attrs.update(role="value type", subkind="attribute")
+    context.graph.add(data_type)
+    made = Type(id, node, document, Family.ATTRIBUTE)
+    made.base = declared
+    if declared is not None:
+        context.graph.connect(Edge.SPECIALIZES, id, declared.id)
+    return made
+
+
+def _semantics(node: Node) -> tuple[str, ...]:
+    found = list(node.of("RefSemantic"))
+    for one in found:
+        one.verdict = Verdict.MAPPED
+    paths = (one.attributes.get("CorrespondingAttributePath", "") for one in found)
+    return tuple(path for path in paths if path)
+
+
+# -- interfaces --------------------------------------------------------------------------------
+
+
+def interface(context: Context, owner: Type, top: Node, document: Document) -> None:
+    """Add an external interface of a class; nested ones are ports of a class of its own."""
+    waiting = [(owner, top)]
+    while waiting:
+        holder, node = waiting.pop()
+        made = _interface(context, holder, node, document)
+        waiting += [(made, child) for child in node.of("ExternalInterface") if made is not None]
+
+
+def _interface(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
+    element = context.add(Kind.PORT, node, document, owner.id)
+    declared = interface_class(context, node, document)
+    _redefine(context, owner, node, element)
+    for child in node.of("Attribute"):
+        _tell(context, element, child)
+    own = _own_interface(context, owner, node, document, element, declared)
+    type = own or declared
+    if type is not None:
+        context.graph.connect(Edge.TYPED_BY, element.id, type.id)
+    owner.members["ExternalInterface", node.name] = Member(element.id, type, node)
+    return own
+
+
+def interface_class(context: Context, node: Node, document: Document) -> Type | None:
+    """The interface class that an external interface names."""
+    path = node.attributes.get("RefBaseClassPath", "").strip()
+    if not path or context.find(path) is not None:
+        return None
+    return context.type(path, Family.INTERFACE, document, node)
+
+
+def _own_interface(
+    context: Context,
+    owner: Type,
+    node: Node,
+    document: Document,
+    element: Element,
+    declared: Type | None,
+) -> Type | None:
+    if not any(True for _ in node.of("ExternalInterface")):
+        return None
+    id = context.free(f"{element.id}#type", node)
+    block = Element(id, Kind.CLASS, node.name, owner.id, node.ordinal, document.name)
+    block.attrs.update(role="interface block", subkind="external-interface")
+    context.graph.add(block)
+    made = Type(id, node, document, Family.INTERFACE)
+    made.base = declared
+    if declared is not None:
+        context.graph.connect(Edge.SPECIALIZES, id, declared.id)
+    return made
+
+
+def _tell(context: Context, port: Element, node: Node) -> None:
+    """An attribute of an interface says how the port is: direction, cardinality, or a value."""
+    value = node.text("Value") or node.text("DefaultValue") or ""
+    if node.name == "Direction" and value.strip().lower() in DIRECTIONS:
+        port.attrs["direction"] = DIRECTIONS[value.strip().lower()]
+    elif node.name == "Cardinality":
+        _cardinality(port, node)
+    elif node.name == "Category" and value:
+        port.attrs["category"] = value
+    else:
+        _values(port, node)
+    mark(node)
+
+
+def _cardinality(port: Element, node: Node) -> None:
+    found = {child.name: (child.text("Value") or "").strip() for child in node.of("Attribute")}
+    lower, upper = (found.get(name) or "" for name in _CARDINALITY)
+    if lower or upper:
+        bounds = (lower or "0", upper or "*")
+        port.attrs["multiplicity"] = bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
+
+
+def _values(port: Element, top: Node) -> None:
+    waiting = [(top, f"value.{top.name}")]
+    while waiting:
+        node, key = waiting.pop()
+        value = node.text("Value")
+        value = node.text("DefaultValue") if value is None else value
+        if value is not None:
+            port.attrs[key] = value_of(value, node.attributes.get("AttributeDataType", ""))
+        waiting += [(child, f"{key}.{child.name}") for child in node.of("Attribute")]

@@ -1,0 +1,97 @@
+"""The front end for AutomationML."""
+
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+
+from sysmlc import resources
+from sysmlc.diagnostics import Coverage, Place, Sink, Subject
+from sysmlc.frontends.caex import account, detect, features, libraries, roles, rules
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, read
+from sysmlc.frontends.caex.links import Links
+from sysmlc.frontends.caex.sites import Sites
+from sysmlc.frontends.caex.vocabulary import Family
+from sysmlc.ir import Graph
+from sysmlc.sources import Fault, Source, SourceError
+
+_LIBRARIES = "automationml-libraries.aml"
+
+
+class CaexFrontend:
+    """Reads AutomationML: CAEX 2.15 and 3.0, and files that mix them."""
+
+    name = "caex"
+
+    def detect(self, source: Source) -> float:
+        """How sure it is, from 0 to 1, that the source is AutomationML."""
+        return detect.score(source)
+
+    def links(self, source: Source) -> Sequence[str]:
+        """The files that its external references name."""
+        return account.links(source)
+
+    def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+        """Read the files into the graph; see docs/automationml.md.
+
+        A damaged file is reported and left out. Raises SourceError for what exceeds the
+        limits. The graph does not depend on the order of the files.
+        """
+        ordered = sorted(sources, key=lambda source: source.name)
+        with _no_collection():
+            documents = [d for source in ordered if (d := _read(source, sink)) is not None]
+            context = Context(documents, _built_in(), graph, sink)
+            _lower(context)
+            account.account(context, coverage)
+
+
+def _lower(context: Context) -> None:
+    types = []
+    for document in context.documents:
+        libraries.header(context, document)
+        types += libraries.lower(context, document)
+    libraries.specialise(context, types)
+    for type in libraries.in_order(types):
+        features.lower_own(context, type)
+    sites = Sites(context)
+    for type in types:
+        if type.family in (Family.SYSTEM_UNIT, Family.ROLE):
+            sites.lower_class(type)
+    for document in context.documents:
+        for node in document.root.of("InstanceHierarchy"):
+            sites.lower_hierarchy(node, document)
+    sites.finish()
+    roles.lower(context, sites)
+    drawn = Links(context, sites)
+    for document in context.documents:
+        drawn.lower(document)
+
+
+@cache
+def _built_in() -> Document:
+    path = resources.path("metamodels", _LIBRARIES)
+    return read(Source(_LIBRARIES, path.read_bytes()), is_built_in=True)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Hold the cyclic garbage collector: nothing that is made here dies before the end."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _read(source: Source, sink: Sink) -> Document | None:
+    try:
+        return read(source)
+    except SourceError as problem:
+        if problem.fault is Fault.LIMIT:
+            raise
+        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+        sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
+        return None

@@ -1,0 +1,144 @@
+"""Libraries and their classes: packages, blocks, interface blocks and value types."""
+
+import posixpath
+from collections.abc import Iterator
+from urllib.parse import unquote
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES, ROLES, Family
+from sysmlc.ir import Edge, Kind
+
+
+def lower(context: Context, document: Document) -> list[Type]:
+    """Add the libraries of a file with their classes, nested ones below the class around them."""
+    return [
+        type for node in document.root.of(*LIBRARIES) for type in _library(context, document, node)
+    ]
+
+
+def _library(context: Context, document: Document, node: Node) -> Iterator[Type]:
+    family, class_tag, subkind = LIBRARIES[node.tag]
+    context.add(Kind.PACKAGE, node, document, None, subkind=subkind, version=node.text("Version"))
+    waiting = [(child, node) for child in reversed(node.children) if child.tag == class_tag]
+    while waiting:
+        child, above = waiting.pop()
+        yield _class(context, document, child, above, family)
+        waiting += [(c, child) for c in reversed(child.children) if CLASS_TAGS.get(c.tag) is family]
+
+
+def _class(context: Context, document: Document, node: Node, above: Node, family: Family) -> Type:
+    is_role = family is Family.ROLE
+    kind = Kind.DATA_TYPE if family is Family.ATTRIBUTE else Kind.CLASS
+    element = context.add(
+        kind,
+        node,
+        document,
+        above.element,
+        role=ROLES[family],
+        subkind="role-class" if is_role else None,
+        abstract=True if is_role else None,
+    )
+    type = Type(element.id, node, document, family, (*_path(above), node.name))
+    context.types.add(type)
+    return type
+
+
+def _path(node: Node) -> tuple[str, ...]:
+    names = [part.name for part in (node, *node.above()) if part.tag != "CAEXFile"]
+    return tuple(reversed(names))
+
+
+def specialise(context: Context, types: list[Type]) -> None:
+    """Tie every class to what it specialises; a circle is reported and cut."""
+    for type in types:
+        found = context.types.base(type)
+        type.base = context.known(found, type.document, type.node)
+    acyclic: set[Type] = set()
+    for type in types:
+        _cut_cycle(context, type, acyclic)
+        if type.base is not None:
+            context.graph.connect(Edge.SPECIALIZES, type.id, type.base.id)
+
+
+def _cut_cycle(context: Context, start: Type, acyclic: set[Type]) -> None:
+    seen: dict[Type, None] = {}
+    one: Type | None = start
+    while one is not None and one not in seen and one not in acyclic:
+        seen[one] = None
+        one = one.base
+    if one is start and start in seen:
+        names = " -> ".join(t.node.name for t in (*seen, start))
+        context.report(
+            rules.CYCLE, start.document, start.node, element=start.node.name, cycle=names
+        )
+        start.base = None
+    if one is None or one not in seen or one is start:
+        acyclic.update(seen)
+
+
+def in_order(types: list[Type]) -> Iterator[Type]:
+    """The classes, each after the one that it specialises."""
+    done: set[Type] = set()
+    for type in types:
+        for one in reversed(list(type.chain())):
+            if one not in done:
+                done.add(one)
+                yield one
+
+
+def header(context: Context, document: Document) -> None:
+    """The file itself, and the files that it refers to by alias."""
+    root = document.root
+    element = context.add(
+        Kind.DOCUMENT,
+        root,
+        document,
+        None,
+        id=f"{document.name}#",
+        subkind="caex",
+        version=document.version,
+        description=root.text("Description"),
+        superior_standard=root.text("SuperiorStandardVersion"),
+    )
+    context.graph.rename(element, root.attributes.get("FileName", "") or document.name)
+    for node in root.of("ExternalReference"):
+        _alias(context, document, node)
+    for node in root.of("SourceDocumentInformation", "AdditionalInformation"):
+        mark(node)
+    for node in root.of("SuperiorStandardVersion"):
+        node.verdict = Verdict.MAPPED
+
+
+def _alias(context: Context, document: Document, node: Node) -> None:
+    alias, path = node.attributes.get("Alias", ""), node.attributes.get("Path", "")
+    context.types.declare(document, alias, _file(document.name, path))
+    element = context.add(
+        Kind.IMPORT,
+        node,
+        document,
+        None,
+        id=context.free(f"{document.name}#{alias}", node),
+        subkind="alias",
+        path=path,
+    )
+    context.graph.rename(element, alias)
+
+
+def _file(name: str, path: str) -> str:
+    """Name in the unit of the file that a path means, seen from another file."""
+    archive, _, entry = name.rpartition("!")
+    plain = unquote(path.partition("#")[0])
+    if archive:
+        start = "" if plain.startswith("/") else posixpath.dirname(entry)
+        return f"{archive}!{posixpath.normpath(posixpath.join(start, plain.lstrip('/')))}"
+    return posixpath.normpath(posixpath.join(posixpath.dirname(name), plain))
+
+
+def mark(node: Node, verdict: Verdict = Verdict.MAPPED) -> None:
+    """Give the node and all below it one verdict."""
+    for one in node.walk():
+        one.verdict = verdict

@@ -1,0 +1,50 @@
+"""Roles: what a class or an internal element realises (thesis, Table 3.1)."""
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.sites import Site, Sites
+from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES, Family
+from sysmlc.ir import Edge
+
+
+def lower(context: Context, sites: Sites) -> None:
+    """Draw the realizations: once each, and not again where the class realises the role."""
+    of_class: dict[Type, set[Type]] = {}
+    ordered = sorted(sites, key=lambda site: bool(site.root.instance))
+    for site in ordered:
+        inherited = {r for t in _above(site) for r in of_class.get(t, ())}
+        for role in _roles(context, site):
+            if role in inherited:
+                continue
+            context.graph.connect(Edge.REALIZES, _client(site), role.id)
+            if site.own is not None:
+                of_class.setdefault(site.own, set()).add(role)
+
+
+def _above(site: Site) -> list[Type]:
+    """The classes whose roles an internal element has anyway; a class says its own again."""
+    is_class = site.own is not None and site.own.node is site.node and bool(site.own.path)
+    return [] if is_class or site.declared is None else list(site.declared.chain())
+
+
+def _client(site: Site) -> str:
+    if site.own is not None:
+        return site.own.id
+    return site.instance if site.is_known or not site.part else site.part
+
+
+def _roles(context: Context, site: Site) -> list[Type]:
+    found: dict[Type, None] = {}
+    for node in site.node.of(*ROLE_REFERENCES):
+        node.verdict = Verdict.MAPPED
+        path = _path(node)
+        role = context.type(path, Family.ROLE, site.document, node) if path else None
+        if role is not None:
+            found[role] = None
+    return list(found)
+
+
+def _path(node: Node) -> str:
+    return node.attributes.get(ROLE_REFERENCES[node.tag], "").strip()

@@ -1,0 +1,89 @@
+"""Tables: tags of CAEX and what they become (docs/automationml.md)."""
+
+from enum import StrEnum
+
+from sysmlc.ir import AttrValue
+
+
+class Family(StrEnum):
+    """Kinds of classes; a class path is looked up in one family only."""
+
+    SYSTEM_UNIT = "system unit class"
+    ROLE = "role class"
+    INTERFACE = "interface class"
+    ATTRIBUTE = "attribute type"
+
+
+LIBRARIES = {
+    "SystemUnitClassLib": (Family.SYSTEM_UNIT, "SystemUnitClass", "system-unit-class-lib"),
+    "RoleClassLib": (Family.ROLE, "RoleClass", "role-class-lib"),
+    "InterfaceClassLib": (Family.INTERFACE, "InterfaceClass", "interface-class-lib"),
+    "AttributeTypeLib": (Family.ATTRIBUTE, "AttributeType", "attribute-type-lib"),
+}
+"""Tag of a library: the family of its classes, their tag, subkind of its Package."""
+
+CLASS_TAGS = {tag: family for family, tag, _ in LIBRARIES.values()}
+
+BASE = {
+    Family.SYSTEM_UNIT: "RefBaseClassPath",
+    Family.ROLE: "RefBaseClassPath",
+    Family.INTERFACE: "RefBaseClassPath",
+    Family.ATTRIBUTE: "RefAttributeType",
+}
+"""Attribute that names the base class."""
+
+ROLES: dict[Family, str] = {
+    Family.SYSTEM_UNIT: "block",
+    Family.ROLE: "block",
+    Family.INTERFACE: "interface block",
+    Family.ATTRIBUTE: "value type",
+}
+
+ROLE_REFERENCES = {
+    "SupportedRoleClass": "RefRoleClassPath",
+    "RoleRequirements": "RefBaseRoleClassPath",
+}
+"""Elements that say which role something plays: the attribute that names the role class."""
+
+PRIMITIVES = {
+    **dict.fromkeys(("double", "float", "decimal"), "Real"),
+    **dict.fromkeys(
+        ("integer", "int", "long", "short", "byte", "negativeInteger", "nonPositiveInteger"),
+        "Integer",
+    ),
+    **dict.fromkeys(
+        (
+            "nonNegativeInteger",
+            "positiveInteger",
+            "unsignedInt",
+            "unsignedLong",
+            "unsignedShort",
+            "unsignedByte",
+        ),
+        "Integer",
+    ),
+    "boolean": "Boolean",
+}
+"""UML primitive of an XML Schema data type; every other one holds text."""
+
+DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
+"""Values of the attribute Direction of an interface (any case)."""
+
+
+def value_of(text: str, data_type: str) -> AttrValue:
+    """The value that a text means in an XML Schema data type; the text where it means none."""
+    primitive = PRIMITIVES.get(data_type.rpartition(":")[2])
+    plain = text.strip()
+    try:
+        if primitive == "Real":
+            return float(plain)
+        if primitive == "Integer":
+            return int(plain)
+    except ValueError:
+        return text
+    if primitive == "Boolean" and plain.lower() in _TRUTH:
+        return _TRUTH[plain.lower()]
+    return text
+
+
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
