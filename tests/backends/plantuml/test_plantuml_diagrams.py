@@ -5,7 +5,7 @@ from drawing import emitted, model, texts
 
 from sysmlc.ir import Graph, Kind
 
-KINDS = ("bdd", "ibd", "act", "stm", "req", "sd", "uc")
+KINDS = ("bdd", "ibd", "par", "act", "stm", "req", "sd", "uc")
 UNNAMED_IN_PICTURES = (Kind.APPLICATION, Kind.COMMENT)
 
 

@@ -6,7 +6,7 @@ from itertools import groupby
 
 from sysmlc import naming
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.plantuml import act, bdd, ibd, missing, req, sd, stm, uc
+from sysmlc.backends.plantuml import act, bdd, ibd, missing, par, req, sd, stm, uc
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
@@ -28,6 +28,7 @@ BAD_TEMPLATE = rule(
 KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
     bdd.diagrams,
     ibd.diagrams,
+    par.diagrams,
     act.diagrams,
     stm.diagrams,
     req.diagrams,

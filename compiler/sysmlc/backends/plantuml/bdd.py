@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from sysmlc.backends.plantuml import labels, split, uc
+from sysmlc.backends.plantuml import labels, measured, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
@@ -252,6 +252,10 @@ def _box(
             shows += [part.id for part in _all(graph, feature)]
             shows += in_rows.get(feature.id, ())
     compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if t in rows)
+    measures = measured.rows(graph, item)
+    if measures:
+        compartments = (Compartment("", measures), *compartments)
+        shows += measured.shown(graph, item)
     alias = aliases.make(item.id, item.name, str(item.kind))
     return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
 
@@ -275,8 +279,12 @@ def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
         return lines(labels.slot(graph, feature), _ROW)
     if feature.kind is Kind.ENUMERATION_LITERAL:
         return lines(labels.name(feature), _ROW)
-    words = _feature_words(graph, feature)
-    return lines(" ".join(p for p in (words, labels.feature(graph, feature)) if p), _ROW)
+    parts = _feature_words(graph, feature), labels.feature(graph, feature), _unit(graph, feature)
+    return lines(" ".join(part for part in parts if part), _ROW)
+
+
+def _unit(graph: Graph, feature: Element) -> str:
+    return measured.unit_text(graph, feature) if feature.role == "value" else ""
 
 
 def _feature_words(graph: Graph, feature: Element) -> str:

@@ -48,15 +48,20 @@ class Connection:
 
 
 def connections(graph: Graph, block: Element) -> list[Connection]:
-    """Connectors of the block, and item flows between its own features without a connector."""
+    """Connectors of the block, and item flows between its own features without a connector.
+
+    What is bound to a constraint parameter stands in the parametric diagram.
+    """
     owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
     drawn = [made for item in owned if (made := _connector(graph, item)) is not None]
     return [*drawn, *_free_flows(graph, block)]
 
 
 def _connector(graph: Graph, connector: Element) -> Connection | None:
+    if is_parametric(graph, connector):
+        return None
     ends = graph.targets(connector, Edge.END)
-    paths = [path for end in ends if (path := _path(graph, end)) is not None]
+    paths = [path for end in ends if (path := path_of(graph, end)) is not None]
     if len(ends) != 2 or len(paths) != 2:
         return None
     flows = graph.sources(connector, Edge.REALIZING)
@@ -90,7 +95,15 @@ def _row(text: str, way: str, aims: Mapping[str, str], is_both: bool) -> str:
     return f"to {aims[way]}: {text}" if is_both and way in aims else text
 
 
-def _path(graph: Graph, end: Element) -> Path | None:
+def is_parametric(graph: Graph, connector: Element) -> bool:
+    """Whether the connector has an end at a constraint parameter."""
+    ends = graph.targets(connector, Edge.END)
+    roles = (role for end in ends for role in graph.targets(end, Edge.ROLE))
+    return any(role.role == "constraint parameter" for role in roles)
+
+
+def path_of(graph: Graph, end: Element) -> Path | None:
+    """Where a connector end is, seen from the connector's owner; None when nothing is there."""
     role = graph.target(end, Edge.ROLE)
     if role is None:
         return None

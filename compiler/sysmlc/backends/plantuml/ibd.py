@@ -12,7 +12,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 
 _FORMS = {"in": "portin", "out": "portout"}
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
-_DRAWN_ROLES = frozenset(["part", "reference", "constraint property", "constraint parameter"])
+_DRAWN_ROLES = frozenset(["part", "reference"])
 _PORT_WIDTH = 24
 
 
@@ -79,7 +79,7 @@ def _top_parts(graph: Graph, block: Element, found: list[Connection]) -> list[El
     """Parts and references of the block, with inherited and foreign ones that connectors name."""
     own = [item for item in graph.owned(block) if item.kind is Kind.PROPERTY]
     named = [end.top for c in found for end in (c.source, c.target) if end.top]
-    wanted = [item for item in own if item.role in _DRAWN_ROLES - {"constraint parameter"}]
+    wanted = [item for item in own if item.role in _DRAWN_ROLES]
     ids = dict.fromkeys([*(item.id for item in wanted), *named])
     return [graph[id] for id in ids]
 
@@ -124,8 +124,6 @@ class _Drawing:
     def _words(self, part: Element) -> str:
         words = labels.applied(self.graph, part)
         kept = [word for word in words if word not in ("partProperty", "referenceProperty")]
-        if not kept and part.role == "constraint property":
-            kept = ["constraint"]
         return labels.guillemets(kept)
 
     def _inner(self, path: tuple[str, ...]) -> list[Element]:
@@ -204,8 +202,6 @@ def _key(path: tuple[str, ...]) -> str:
 
 
 def _style(part: Element) -> str:
-    if part.role == "constraint property":
-        return "law"
     is_shared = not part.role and part.attrs.get("aggregation") != "composite"
     return "reference" if is_shared or part.role == "reference" else "part"
 
@@ -225,4 +221,4 @@ def _ports_of(graph: Graph, classifier: Element) -> list[Element]:
 
 
 def _is_port(item: Element) -> bool:
-    return item.kind is Kind.PORT or item.role == "constraint parameter"
+    return item.kind is Kind.PORT

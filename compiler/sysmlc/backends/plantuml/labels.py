@@ -22,6 +22,8 @@ _ROLE_WORDS = {
     "proxy port": "proxy",
     "flow port": "flowPort",
     "constraint property": "constraint",
+    "unit": "unit",
+    "quantity kind": "quantityKind",
 }
 _KIND_WORDS = {
     Kind.INTERFACE: "interface",

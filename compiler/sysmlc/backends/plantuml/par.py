@@ -1,0 +1,177 @@
+"""Parametric diagrams: one for each block or constraint block with constraint properties.
+
+SysML 1.6 clause 10: usages of constraint blocks with their parameters, and what is bound to them.
+A feature of a part stands in a box of its own, with the path as its name (clause 8.3.1.2).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from sysmlc.backends.plantuml import labels, measured, split
+from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.bindings import OWNERS, Binding, bindings, usages
+from sysmlc.backends.plantuml.connections import Path
+from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
+from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.query import features, type_of
+
+_ROW = 40
+
+
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All parametric diagrams, in the order of the model."""
+    bound = bindings(graph)
+    for block in graph.of_kind(*OWNERS):
+        has_usages = any(_is_usage(one) for one in graph.owned(block))
+        if (has_usages or block.id in bound) and not block.attrs.get("external"):
+            yield from _of_block(graph, block, usages(graph, block), bound.get(block.id, []))
+
+
+def _is_usage(item: Element) -> bool:
+    return item.role == "constraint property"
+
+
+def _of_block(
+    graph: Graph, block: Element, held: list[Element], found: list[Binding]
+) -> Iterator[Diagram]:
+    whole = graph.qualified_name(block)
+    parts = _divided([(one.id,) for one in held], found)
+    for index, (shown, inside) in enumerate(parts):
+        drawing = _Drawing(graph, block, shown, inside)
+        yield Diagram(
+            kind="par",
+            name=split.numbered(whole, index, len(parts)),
+            frame=plain(f"par [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"),
+            heading=("Parametric diagram", whole),
+            view=drawing.view(),
+            about=block.id,
+            footer=plain(split.footer(index, len(parts), whole)),
+        )
+
+
+def _divided(
+    held: list[tuple[str, ...]], found: list[Binding]
+) -> list[tuple[list[tuple[str, ...]], list[Binding]]]:
+    """Boxes that are drawn together, with all bindings of each; the other ends come along."""
+    boxes = dict.fromkeys([*held, *(end.parts for one in found for end in one.ends)])
+    boxes.pop((), None)
+    names = {_key(path): path for path in boxes}
+    near: dict[str, list[str]] = {key: [] for key in names}
+    for one in found:
+        first, second = (_key(end.parts) for end in one.ends)
+        if first in near and second in near and first != second:
+            near[first].append(second)
+            near[second].append(first)
+    groups = split.chunks(list(names), near) or [[]]
+    return [_group(set(group), names, found, at == 0) for at, group in enumerate(groups)]
+
+
+def _group(
+    group: set[str], names: dict[str, tuple[str, ...]], found: list[Binding], is_first: bool
+) -> tuple[list[tuple[str, ...]], list[Binding]]:
+    inside = [one for one in found if _touches(one, group, is_first)]
+    ends = {_key(end.parts) for one in inside for end in one.ends} | group
+    return [path for key, path in names.items() if key in ends], inside
+
+
+def _touches(binding: Binding, group: set[str], is_first: bool) -> bool:
+    keys = {_key(end.parts) for end in binding.ends if end.parts}
+    return bool(keys & group) or (is_first and not keys)
+
+
+def _key(path: tuple[str, ...]) -> str:
+    return "\x1f".join(path)
+
+
+@dataclass(slots=True)
+class _Drawing:
+    """One parametric diagram in the making; ``boxes`` are paths from the block."""
+
+    graph: Graph
+    block: Element
+    boxes: list[tuple[str, ...]]
+    found: list[Binding]
+    aliases: Aliases = field(default_factory=Aliases)
+    right: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        self.found = [_towards_parameter(one) for one in self.found]
+        self.right = _on_the_right(self.found)
+
+    def view(self) -> InternalView:
+        frame = PartView(
+            self.aliases.make("frame", self.block.name, "block"),
+            " ",
+            "frame",
+            tuple(self._ports((), self.block)),
+            tuple(self._box(path) for path in self.boxes),
+            (self.block.id,),
+        )
+        return InternalView(frame, tuple(self._line(one) for one in self.found), True)
+
+    def _box(self, path: tuple[str, ...]) -> PartView:
+        shown = self.graph[path[-1]]
+        type_ = type_of(self.graph, shown)
+        is_law = _is_usage(shown)
+        return PartView(
+            self.aliases.make(_key(path), shown.name, "property"),
+            self._label(path, shown, type_ if is_law else None),
+            "law" if is_law else "value",
+            tuple(self._ports(path, type_ if is_law else None)),
+            (),
+            (*path, *(one.id for one in self._conditions(type_ if is_law else None))),
+        )
+
+    def _label(self, path: tuple[str, ...], shown: Element, law: Element | None) -> str:
+        steps = ".".join(labels.name(self.graph[id]) for id in path)
+        text = labels.typed(self.graph, shown, steps)
+        rows = [lines(labels.condition(one), _ROW) for one in self._conditions(law)]
+        words = small(plain(labels.guillemets(["constraint"]))) if law is not None else ""
+        unit = measured.unit_text(self.graph, shown) if law is None else ""
+        return stack([words, label(text), label(unit), *(row for some in rows for row in some)])
+
+    def _conditions(self, law: Element | None) -> list[Element]:
+        held = [] if law is None else self.graph.owned(law)
+        return [one for one in held if one.kind is Kind.CONSTRAINT]
+
+    def _ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
+        """All parameters of a usage, and what bindings name besides."""
+        known = [] if owner is None else features(self.graph, owner)
+        ids = [one.id for one in known if one.role == "constraint parameter"]
+        named = [end for one in self.found for end in one.ends if end.parts == path and end.port]
+        keys = dict.fromkeys([*((id,) for id in ids), *((*end.ports, end.port) for end in named)])
+        for key in keys:
+            name = ".".join(labels.name(self.graph[id]) for id in key)
+            alias = self.aliases.make(_key((*path, *key)), self.graph[key[-1]].name, "parameter")
+            text = stack(f"<back:#FFFFFF>{row}</back>" for row in lines(name))
+            form = "portout" if _key((*path, *key)) in self.right else "port"
+            yield PortView(alias, text, form, key)
+
+    def _line(self, binding: Binding) -> Line:
+        one, other = (self._end(end) for end in binding.ends)
+        return Line(one, "--", other, shows=binding.shows)
+
+    def _end(self, end: Path) -> str:
+        key = (*end.parts, *end.ports, end.port) if end.port else end.parts
+        return self.aliases[_key(key) if key else "frame"]
+
+
+# -- layout ------------------------------------------------------------------------------------
+
+
+def _towards_parameter(binding: Binding) -> Binding:
+    """A line from a property to a parameter: so properties stand on the left, none between."""
+    if binding.source.port and not binding.target.port:
+        return replace(binding, source=binding.target, target=binding.source)
+    return binding
+
+
+def _on_the_right(found: list[Binding]) -> frozenset[str]:
+    """Parameters that are bound to those of other usages only, and start the lines to them."""
+    starts = {_place(one.source) for one in found if one.source.parts and one.source.port}
+    return frozenset(starts - {_place(one.target) for one in found})
+
+
+def _place(end: Path) -> str:
+    return _key((*end.parts, *end.ports, end.port))
