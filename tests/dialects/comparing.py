@@ -1,13 +1,20 @@
-"""Compares what the two dialects of one model become: graphs, and output texts."""
+"""Compares what the dialects of one model become: graphs, and output texts."""
 
 from pathlib import Path
 
-from dialects.magicdraw import ids_of, write_mdzip, write_xml
+from dialects import enterprise_architect, magicdraw
 from examples.compiling import compile_text, outputs
 from sysmlc.driver import Compilation
 from sysmlc.ir.diff import Change, diff
 
-WRITERS = {"xml": write_xml, "mdzip": write_mdzip}
+WRITERS = {
+    "xml": magicdraw.write_xml,
+    "mdzip": magicdraw.write_mdzip,
+    "xmi": enterprise_architect.write_xmi,
+}
+"""Writers of the dialects by the suffix of their files."""
+
+_IDS = {"xmi": enterprise_architect.ids_of}
 
 OF_THE_DIALECT = frozenset({"href", "namespace", "tag.Id", "tag.id", "tag.Text", "tag.text"})
 """Attributes in which the dialects differ by their nature: where the standard's files are, and
@@ -17,7 +24,7 @@ how the tools' SysML profiles are called and spelt. What they mean is in roles a
 def compile_both(
     folder: Path, papyrus: bytes, dialect: str = "xml", *emit: str
 ) -> tuple[Compilation, Compilation]:
-    """The compilation of a Papyrus document, and of the same model in MagicDraw's dialect."""
+    """The compilation of a Papyrus document, and of the same model in another dialect."""
     other = WRITERS[dialect](papyrus)
     return (
         compile_text(folder, "model.uml", papyrus, *emit),
@@ -45,8 +52,9 @@ def common_outputs(
     papyrus: bytes, one: Compilation, other: Compilation
 ) -> tuple[dict[str, str], dict[str, str]]:
     """The outputs of both, the second with the ids, the file name and the digest of the first."""
-    names = {new: old for old, new in ids_of(papyrus).items()}
     here, there = one.inputs[0], other.inputs[0]
+    ids_of = _IDS.get(there.path.rpartition(".")[2], magicdraw.ids_of)
+    names = {new: old for old, new in ids_of(papyrus).items()}
     names |= {there.sha256: here.sha256, there.path: here.path}
     return outputs(one), {path: _translated(text, names) for path, text in outputs(other).items()}
 

@@ -35,7 +35,7 @@ _PREFIXES = {
     "MD_Customization_for_SysML__additional_stereotypes": CUSTOMISATION,
 }
 
-_LISTS = frozenset(
+LISTS = frozenset(
     (
         "annotatedElement",
         "bodyPart",
@@ -67,7 +67,7 @@ _NOT_SAVED = frozenset(
 )
 """What Papyrus saves and MagicDraw derives."""
 
-_LISTS_OF = {
+LISTS_OF = {
     "uml:ActivityPartition": {"node", "edge"},
     "uml:Clause": {"body"},
     "uml:InstanceSpecification": {"classifier"},
@@ -178,7 +178,7 @@ class _Writer:
         ids = value.split()
         if name == f"{{{XMI}}}id":
             made.set(name, self.ids[value])
-        elif name in _LISTS or name in _LISTS_OF.get(_type(made), ()):
+        elif name in LISTS or name in LISTS_OF.get(_type(made), ()):
             for id_ in ids:
                 etree.SubElement(made, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
         elif name not in ("name", "value", "body") and all(id_ in self.ids for id_ in ids):
@@ -289,13 +289,13 @@ def _text(source: Element, made: Element) -> None:
 
 def _outside_reference(source: Element, made: Element) -> None:
     """A reference to another file, with the readable path that MagicDraw puts beside it."""
-    href, path = _standard(str(source.get("href")))
+    href, path = standard(str(source.get("href")))
     made.set("href", href)
     detail = {"referentPath": path, "referentType": _type(source).removeprefix("uml:")}
     etree.SubElement(_extension(made), "referenceExtension", detail)
 
 
-def _standard(href: str) -> tuple[str, str]:
+def standard(href: str) -> tuple[str, str]:
     """What MagicDraw calls an element of the standards' files: where it is, and its path."""
     primitives = "UML Standard Profile::UML2 Metamodel::PrimitiveTypes"
     if href.startswith(_PRIMITIVES):

@@ -14,6 +14,7 @@ _STANDARD = re.compile(
     | https?://(www|schema)\.omg\.org/spec/(UML|SysML|MOF|XMI)/
     | https?://www\.eclipse\.org/(uml2|emf)/
     | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/)
+    | https?://www\.sparxsystems\.com/profiles/SysML
     | (.*/)?(UML_Standard_Profile|SysML\ Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)$
     | (.*/)?UML_Standard_Profile\.[\w.]*profile\.uml$
     """,
