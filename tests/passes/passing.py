@@ -8,7 +8,7 @@ from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 
-STRUCTURAL = ("resolve", "inherit", "classify", "ports", "flows", "behaviours")
+STRUCTURAL = ("resolve", "inherit", "classify", "ports", "flows", "behaviours", "interactions")
 MODELS = Path(__file__).parent / "models"
 
 

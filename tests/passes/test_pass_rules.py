@@ -16,6 +16,7 @@ MODULES = {
     "ports": range(300, 310),
     "flows": range(310, 350),
     "behaviours": range(400, 410),
+    "interactions": range(440, 450),
 }
 RULES = [
     (pass_name, rule)

@@ -18,6 +18,7 @@ NAMES = (
     "flows",
     "activities",
     "behaviours",
+    "interactions",
     "recipe",
     "contracts",
     "views",

@@ -9,6 +9,8 @@ from sysmlc.backends.plantuml.text import label, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView
 from sysmlc.ir import Element, Graph, Kind, sequence
 
+_WIDTH = 24
+
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All sequence diagrams, in the order of the model."""
@@ -45,7 +47,7 @@ def _participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participa
     words = small(plain(labels.guillemets(labels.applied(graph, lifeline))))
     return Participant(
         aliases.make(lifeline.id, _name(graph, lifeline), "lifeline"),
-        stack([words, label(_title(graph, lifeline))]),
+        stack([words, label(_title(graph, lifeline), _WIDTH)]),
         "actor" if _is_actor(graph, lifeline) else "participant",
         tuple(shows),
     )

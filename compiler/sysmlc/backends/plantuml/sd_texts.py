@@ -23,7 +23,8 @@ def arguments(item: Element) -> str:
     if found is None:
         return ""
     texts = found if isinstance(found, tuple) else (found,)
-    return f"({', '.join(labels.literal(text) for text in texts)})"
+    words = (" ".join(labels.literal(text).split()) for text in texts)
+    return f"({', '.join(words)})"
 
 
 def operand_text(operand: Element) -> str:
