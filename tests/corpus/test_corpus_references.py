@@ -51,7 +51,10 @@ REASONS = {
         76,
         lambda w: w.target_type == "RedefinableTemplateSignature",
     ),
-    "clauses are lists of tests and bodies, in their order": (12, lambda w: w.source == "clause"),
+    "clauses of a conditional node are in their order": (
+        6,
+        lambda w: w.feature in ("predecessorClause", "successorClause"),
+    ),
     "the type of a value is that of what has it": (
         8,
         lambda w: w.source in ("OpaqueExpression", "InstanceValue"),

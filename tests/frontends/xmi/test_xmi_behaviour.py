@@ -73,7 +73,7 @@ def test_structured_nodes():
     </structuredNode>
     <structuredNode xmi:type="uml:ConditionalNode" xmi:id="cond">
       <node xmi:type="uml:OpaqueAction" xmi:id="b1"/><node xmi:type="uml:OpaqueAction" xmi:id="t1"/>
-      <clause xmi:id="c1" test="t1" body="b1"/><clause xmi:id="c2" test="t1"/>
+      <clause xmi:id="c1" test="t1" body="b1" decider="d"/><clause xmi:id="c2" test="t1"/>
     </structuredNode>
     <group xmi:type="uml:InterruptibleActivityRegion" xmi:id="region" node="loop"/>
   </packagedElement>"""
@@ -88,6 +88,7 @@ def test_structured_nodes():
         "decider": "d",
     }
     assert graph["cond"].attrs["clauses"] == ((("t1",), ("b1",)), (("t1",), ()))
+    assert graph["cond"].attrs["clause_outputs"] == ((("d",), ()), ((), ()))
     assert [(r.source, r.edge, r.target) for r in graph.pending] == [
         ("loop", "in-partition", "region")
     ]

@@ -66,6 +66,7 @@ TYPES: dict[str, _Reader] = {
 
 _COLUMNS = {
     "clauses": ("test", "body"),
+    "clause_outputs": ("decider", "bodyOutput"),
     "handlers": ("handlerBody", "exceptionInput", "exceptionType"),
     "link_ends": ("end", "value"),
 }
@@ -79,6 +80,8 @@ def finish(context: Context) -> None:
     for name, rows in context.rows_of.items():
         for element, row in rows:
             _add_record(context, name, element, row)
+            if name == "clauses":
+                _add_record(context, "clause_outputs", element, row)
     for element, row in context.triggers:
         _trigger(context, element, row)
     for complete, element, row in context.deferred:
