@@ -145,3 +145,28 @@ def test_ids_in_attributes_become_ids_of_the_graph():
     assert graph["d"].attrs["decision_input"] == "b.uml#isFree"
     assert graph["c"].attrs["clauses"] == ((("t",), ()),)
     assert codes(sink) == ["SM151"]
+
+
+def test_a_long_list_that_leads_nowhere_is_one_finding():
+    text = 'Class gate "Gate"\n  Operation open "open"\n' + "    ?> method x{} Activity\n" * 6
+    numbered = text.format(*range(6))
+    graph, sink = refined(numbered, "resolve")
+    (found,) = sink
+    assert found.message == "'method' of 'Gate::open' leads to 'x0' and 5 more that do not exist"
+    assert graph["open"].attrs["unresolved"] == ("method",)
+
+
+def test_a_flow_with_two_targets_keeps_the_first():
+    text = """\
+Activity pull "Pull in"
+  Control start "start" subkind="initial"
+  Action lower "Lower" subkind="opaque"
+  Action raise "Raise" subkind="opaque"
+  ControlFlow go
+    ?> flow-source start Control
+    ?> flow-target raise Action
+    ?> flow-target lower Action
+"""
+    graph, sink = refined(text, "resolve")
+    assert [target.id for target in graph.targets(graph["go"], Edge.FLOW_TARGET)] == ["raise"]
+    assert codes(sink) == ["SM167"]

@@ -10,7 +10,7 @@ for name in STRUCTURAL:
     pipeline.load(name)
 
 MODULES = {
-    "resolve": range(150, 170),
+    "resolve": (*range(150, 160), 166, 167),
     "inherit": range(200, 210),
     "classify": range(210, 260),
     "ports": range(300, 310),

@@ -7,6 +7,7 @@ from typing import ClassVar, NamedTuple
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
+from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.libraries import (
     PRIMITIVE_TYPES,
     is_href,
@@ -16,7 +17,12 @@ from sysmlc.passes.resolve.libraries import (
     primitive,
     split,
 )
-from sysmlc.passes.resolve.rules import BROKEN_ID, BROKEN_REFERENCE, MISSING_LIBRARY
+from sysmlc.passes.resolve.rules import (
+    BROKEN_ID,
+    BROKEN_REFERENCE,
+    MANY_BROKEN,
+    MISSING_LIBRARY,
+)
 from sysmlc.passes.resolve.targets import Targets
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
@@ -29,6 +35,8 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
 """Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
 
 _LISTED = 10
+_SINGLY = 4
+"""References of one element and relation that lead nowhere and are reported one by one."""
 
 
 class _Use(NamedTuple):
@@ -72,8 +80,9 @@ class Resolve:
         answers = _Answers(graph, Targets(graph))
         answers.find(uses)
         graph.pending.clear()
-        for use in uses:
-            _settle(graph, sink, use, answers.get(use.holder, use.target))
+        lost = [use for use in uses if not _settle(graph, use, answers.get(use.holder, use.target))]
+        _report_lost(graph, sink, lost)
+        keep_first_ends(graph, sink)
         _rewrite(graph, answers, uses)
         _report_libraries(graph, sink, answers.outside)
 
@@ -174,17 +183,45 @@ def _stand_in(graph: Graph, href: str, uses: list[_Use]) -> None:
 # -- writing down ------------------------------------------------------------------------------
 
 
-def _settle(graph: Graph, sink: Sink, use: _Use, target: Element | None) -> None:
-    if target is None:
-        _report_broken(graph, sink, use)
-    elif use.edge is not None:
+def _settle(graph: Graph, use: _Use, target: Element | None) -> bool:
+    if target is not None and use.edge is not None:
         graph.connect(use.edge, use.holder, target)
+    return target is not None
 
 
-def _report_broken(graph: Graph, sink: Sink, use: _Use) -> None:
+def _report_lost(graph: Graph, sink: Sink, lost: list[_Use]) -> None:
+    """Report what leads nowhere; of a long list of one element all at once."""
+    lists: dict[tuple[str, str], list[_Use]] = {}
+    for use in lost:
+        lists.setdefault((use.holder.id, use.relation), []).append(use)
+    for uses in lists.values():
+        for use in uses if len(uses) <= _SINGLY else ():
+            _report_broken(graph, sink, use)
+        if len(uses) > _SINGLY:
+            _report_many(graph, sink, uses)
+
+
+def _report_many(graph: Graph, sink: Sink, uses: list[_Use]) -> None:
+    first = uses[0]
+    _mark(graph, first)
+    sink.report(
+        MANY_BROKEN,
+        _subject(graph, first),
+        relation=first.relation,
+        element=graph.qualified_name(first.holder),
+        target=first.target,
+        others=len(uses) - 1,
+    )
+
+
+def _mark(graph: Graph, use: _Use) -> None:
     known = use.holder.attrs.get("unresolved")
     names = {str(name) for name in known} if isinstance(known, tuple) else set()
     graph.set(use.holder, unresolved=tuple(sorted(names | {use.relation})))
+
+
+def _report_broken(graph: Graph, sink: Sink, use: _Use) -> None:
+    _mark(graph, use)
     sink.report(
         BROKEN_REFERENCE if use.edge else BROKEN_ID,
         _subject(graph, use),

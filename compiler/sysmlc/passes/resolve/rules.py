@@ -38,6 +38,57 @@ Activity pull "Pull in"
 Activity isFree "is free"
 """,
 )
+MANY_BROKEN = rule(
+    "SM166",
+    "broken-references",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to '{target}' and {others} more that do not exist",
+    why="The file refers to elements that it does not contain, so what depends on them is lost.",
+    help="restore the elements in the modelling tool, or remove what refers to them",
+    wrong="""\
+Association line "line"
+  ?> end a Property
+  ?> end b Property
+  ?> end c Property
+  ?> end d Property
+  ?> end e Property
+""",
+    right="""\
+Association line "line"
+  ?> end a Property
+  ?> end b Property
+  Property a "a"
+  Property b "b"
+""",
+)
+SEVERAL_TARGETS = rule(
+    "SM167",
+    "several-targets",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to {count} elements, but a flow has only one; "
+    "the first counts",
+    why="A control flow, object flow or transition leads from one node to one node. With several "
+    "it cannot be told what happens after what.",
+    help="draw one flow for each, with a fork or a decision before them",
+    wrong="""\
+Activity pull "Pull in"
+  Control start "start" subkind="initial"
+  Action lower "Lower" subkind="opaque"
+  Action raise "Raise" subkind="opaque"
+  ControlFlow go
+    ?> flow-source start Control
+    ?> flow-target lower Action
+    ?> flow-target raise Action
+""",
+    right="""\
+Activity pull "Pull in"
+  Control start "start" subkind="initial"
+  Action lower "Lower" subkind="opaque"
+  ControlFlow go
+    ?> flow-source start Control
+    ?> flow-target lower Action
+""",
+)
 MISSING_LIBRARY = rule(
     "SM152",
     "missing-library",
