@@ -49,3 +49,18 @@ def test_what_is_not_there_is_not_found():
 
 def test_elements_before_damage_are_still_found():
     assert where("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
+
+
+def test_of_a_long_line_the_part_around_the_place_is_kept():
+    """A file of one line with thousands of findings held that line thousands of times."""
+    text = "<a>" + "<b/>" * 50_000 + "</a>"
+    first, far = where(text, Place("f", 1), Place("f", 25_000))
+    assert (first.shift, first.text) == (0, text[:400])
+    at = far.column - 1 - far.shift
+    assert (len(far.text), far.text[at : at + 4]) == (400, "<b/>")
+
+
+@pytest.mark.parametrize("name", ["base64", "idna", "rot13", "klingon", "unicode_escape"])
+def test_an_encoding_that_is_none_of_texts_does_not_stop_us(name):
+    text = f'<?xml version="1.0" encoding="{name}"?>\n<a/>'
+    assert where(text, Place("f", offset=len(text) - 4)) == [Location(2, 1, "<a/>")]

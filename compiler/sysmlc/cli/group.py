@@ -83,6 +83,8 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
         return run(*args, **kwargs)
     except RecursionError:
         fault = "the model is nested too deeply"
+    except MemoryError:
+        fault = "there is not enough memory for the model"
     except Exception as problem:
         fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
     click.echo(f"sysmlc: {fault}\nPlease report it with the command and the model.", err=True)

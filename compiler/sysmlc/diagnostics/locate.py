@@ -1,6 +1,5 @@
 """Lines, columns and XPaths of places, found only when something is to be shown."""
 
-import codecs
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
@@ -10,21 +9,20 @@ from dataclasses import dataclass
 from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.sources import Source, SourceError
+from sysmlc.sources.encoding import codec
 from sysmlc.sources.xml import parse, parser
 
-_DECLARED = re.compile(rb"""^<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
+_AROUND = 200
+"""Characters of a long line that are kept on each side of a place."""
 _NEWLINE = re.compile("\r\n|\r|\n")
-_BOMS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
 
 
 @dataclass(frozen=True, slots=True)
 class Location:
     """Where something stands: line and column count characters from 1; ``text`` is the line.
 
+    Of a line that is longer than an excerpt needs, ``text`` is the part around the column, and
+    ``shift`` the number of characters before it: files of one line can have many findings.
     ``xpath`` leads to the element, or to the innermost one that is open there; it is empty
     when it was not asked for or the file is not XML.
     """
@@ -33,6 +31,7 @@ class Location:
     column: int
     text: str
     xpath: str = ""
+    shift: int = 0
 
 
 def locate(
@@ -103,7 +102,7 @@ class _Text:
     """The source's text; offsets must be asked for in ascending order."""
 
     def __init__(self, source: Source) -> None:
-        mark, self._encoding = _encoding(source.data)
+        mark, self._encoding = codec(source.data)
         self._data = source.data
         self._offset = mark
         self._before = 0
@@ -117,30 +116,24 @@ class _Text:
             self._offset = offset
         line = bisect_right(self._starts, self._before)
         column = self._before - self._starts[line - 1] + 1
-        return Location(line, column, self._show(line), path)
+        return self._located(line, column, path)
 
     def line(self, place: Place) -> Location:
         """Location of a place whose line is known already."""
-        return Location(place.line, max(place.column, 1), self._show(place.line))
+        return self._located(place.line, max(place.column, 1))
+
+    def _located(self, line: int, column: int, path: str = "") -> Location:
+        start, end = self._bounds(line)
+        shift = max(column - 1 - _AROUND, 0) if end - start > 2 * _AROUND else 0
+        text = self._text[start + shift : min(start + shift + 2 * _AROUND, end)].rstrip("\r\n")
+        return Location(line, column, text, path, shift)
 
     def _decode(self, data: bytes) -> str:
         return data.decode(self._encoding, "replace")
 
-    def _show(self, line: int) -> str:
+    def _bounds(self, line: int) -> tuple[int, int]:
+        """Where a line starts and where the next one does; nothing for one that is not there."""
         if line > len(self._starts):
-            return ""
+            return 0, 0
         end = self._starts[line] if line < len(self._starts) else len(self._text)
-        return self._text[self._starts[line - 1] : end].rstrip("\r\n")
-
-
-def _encoding(data: bytes) -> tuple[int, str]:
-    """Length of the byte order mark, and the encoding."""
-    for mark, name in _BOMS:
-        if data.startswith(mark):
-            return len(mark), name
-    declared = _DECLARED.match(data)
-    name = declared[1].decode("ascii") if declared else "utf-8"
-    try:
-        return 0, codecs.lookup(name).name
-    except LookupError:
-        return 0, "latin-1"
+        return self._starts[line - 1], end

@@ -5,6 +5,9 @@ from collections.abc import Iterator, Mapping
 from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
 
+_LONG = 2_000
+_SHOWN = 200
+
 
 class Sink:
     """Collects findings; the same finding about the same element is kept once.
@@ -31,8 +34,12 @@ class Sink:
         if severity is None:
             return
         message = rule.phrase.format(**facts)
+        if len(message) > _LONG:
+            facts = {name: _shortened(fact) for name, fact in facts.items()}
+            message = rule.phrase.format(**facts)
         advice = (help or rule.help).format(**facts)
-        found = Diagnostic(rule, severity, message, subject, notes, advice)
+        told = tuple(f"{note[:_LONG]}..." if len(note) > _LONG else note for note in notes)
+        found = Diagnostic(rule, severity, message, subject, told, advice)
         self._found.setdefault((rule.code, message, subject), found)
 
     def _severity(self, rule: Rule) -> Severity | None:
@@ -54,3 +61,8 @@ class Sink:
     def erroneous_ids(self) -> frozenset[str]:
         """Ids of the elements that errors are about."""
         return frozenset(found.subject.id for found in self if found.is_error)
+
+
+def _shortened(fact: object) -> object:
+    """A text that would fill pages is shown by its beginning."""
+    return f"{fact[:_SHOWN]}..." if isinstance(fact, str) and len(fact) > _SHOWN else fact

@@ -221,6 +221,8 @@ class _Run:
         except SourceError as problem:
             faults.report_unreadable(problem, self._sink)
             return True
+        except MemoryError:
+            raise
         except Exception as problem:
             self._observer.fault(where, traceback.format_exc())
             text = f"{type(problem).__name__}: {problem}"

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sysmlc.sources.archive import entries, is_archive
+from sysmlc.sources.encoding import in_utf8
 from sysmlc.sources.error import SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
@@ -52,8 +53,8 @@ def load(
     """
     source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
-        return [source]
+        return [in_utf8(source)]
     found = entries(source, wanted, limits)
     if all(is_library_entry(source.name.partition("!")[2]) for source in found):
         raise SourceError("the archive holds no model", name)
-    return found
+    return [in_utf8(source) for source in found]

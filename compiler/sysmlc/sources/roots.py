@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
+_LONGEST = 4096
+"""No file system has longer paths; looking for one takes a call for each of its parts."""
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
@@ -23,7 +25,7 @@ class Roots:
         ``os.path.isfile`` answers and ``Path.is_file`` raises.
         """
         path = unquote(href.partition("#")[0])
-        if not path or _SCHEME.match(path) or "\0" in path:
+        if not path or len(path) > _LONGEST or _SCHEME.match(path) or "\0" in path:
             return None
         target = Path(os.path.realpath(base.parent / path))
         return target if self.allows(target) and os.path.isfile(target) else None  # noqa: PTH113

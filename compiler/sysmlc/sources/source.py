@@ -15,8 +15,10 @@ class Source:
 
     name: str
     data: bytes
+    digest: str = ""
+    """SHA-256 of the file, when the bytes are not as the file has them."""
 
     @cached_property
     def sha256(self) -> str:
-        """SHA-256 of the bytes, in hex."""
-        return hashlib.sha256(self.data).hexdigest()
+        """SHA-256 of the bytes as the file has them, in hex."""
+        return self.digest or hashlib.sha256(self.data).hexdigest()

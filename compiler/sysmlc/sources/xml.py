@@ -7,12 +7,18 @@ let a document with entities pass, so every DOCTYPE is refused before anything i
 from typing import NoReturn
 from xml.parsers import expat
 
+from sysmlc.sources.encoding import declared, fault, is_known
 from sysmlc.sources.error import Fault, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
 
 SEPARATOR = "}"
 """Between namespace and local name in the names that handlers are given."""
+
+_BUFFER = 1 << 20
+"""Bytes of text that come in one piece: long texts are not put together from thousands."""
+
+_INVALID_TOKEN = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 
 Parser = expat.XMLParserType
 """An expat parser; ``CurrentByteIndex`` is the place in the source's bytes."""
@@ -24,6 +30,7 @@ def parser() -> Parser:
     Names are ``namespace}local``, attributes come as dicts, text comes in one piece.
     """
     made = expat.ParserCreate(namespace_separator=SEPARATOR)
+    made.buffer_size = _BUFFER
     made.buffer_text = True
     made.StartDoctypeDeclHandler = _refuse_doctype
     return made
@@ -44,16 +51,19 @@ def parse(source: Source, made: Parser) -> None:
     that cannot be read.
     """
     try:
+        if not is_known(source.data):
+            raise LookupError("unknown")
         made.Parse(source.data, True)
     except expat.ExpatError as problem:
-        offset = max(made.ErrorByteIndex, 0)
-        raise SourceError(f"not well-formed XML: {_reason(problem)}", source.name, offset) from None
+        message, offset = _explained(problem, source, max(made.ErrorByteIndex, 0))
+        raise SourceError(message, source.name, offset) from None
     except _DoctypeError:
         message = "it has a DOCTYPE, which is refused because entities can hide anything"
         raise SourceError(message, source.name, made.CurrentByteIndex, Fault.REFUSED) from None
     except (ValueError, LookupError) as problem:
-        message = f"its encoding cannot be read: {problem}"
-        raise SourceError(message, source.name, 0) from None
+        unknown = f"its encoding '{declared(source.data)}' cannot be read: {problem}"
+        message, offset = fault(source.data) or (unknown, 0)
+        raise SourceError(message, source.name, offset) from None
 
 
 def too_deep(source: Source, made: Parser, limits: Limits = DEFAULT_LIMITS) -> NoReturn:
@@ -70,5 +80,11 @@ def _refuse_doctype(*_declaration: object) -> NoReturn:
     raise _DoctypeError
 
 
-def _reason(problem: expat.ExpatError) -> str:
-    return expat.ErrorString(problem.code) or "unknown fault"
+def _explained(problem: expat.ExpatError, source: Source, offset: int) -> tuple[str, int]:
+    """What is wrong and where; bytes of another encoding are no matter of markup."""
+    if problem.code == _INVALID_TOKEN and source.data[offset : offset + 1] >= b"\x80":
+        found = fault(source.data)
+        if found:
+            return found
+    reason = expat.ErrorString(problem.code) or "unknown fault"
+    return f"not well-formed XML: {reason}", offset

@@ -8,6 +8,9 @@ from collections.abc import Iterable
 WIDTH = 36
 """Characters in one line of a name before it is broken."""
 
+_LONGEST = 4_000
+"""Characters of a text that a diagram shows; nobody reads more in a box."""
+
 _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
 """PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
@@ -20,13 +23,13 @@ _JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 def plain(text: str) -> str:
     """One line that PlantUML shows as written: markup, preprocessor and Unicode traps escaped."""
-    line = " ".join(_visible(text).split())
+    line = " ".join(_visible(_shortened(text)).split())
     return "".join(_character(line, index) for index in range(len(line)))
 
 
 def lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
     """The text in escaped lines of at most ``width`` characters; its own line ends are kept."""
-    rows = [row for part in text.splitlines() for row in _wrapped(part, width)]
+    rows = [row for part in _shortened(text).splitlines() for row in _wrapped(part, width)]
     return tuple(plain(row) for row in rows if row.strip())
 
 
@@ -58,7 +61,11 @@ def padded(text: str) -> str:
 
 def comment(text: str) -> str:
     """Text of a line comment: neither a line end nor the start of a block comment is left."""
-    return " ".join(_visible(text).split()).replace("/'", "/ '").replace("'/", "' /")
+    return " ".join(_visible(_shortened(text)).split()).replace("/'", "/ '").replace("'/", "' /")
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST else text[:_LONGEST] + "…"
 
 
 def _visible(text: str) -> str:

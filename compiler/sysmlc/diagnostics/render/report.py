@@ -19,9 +19,11 @@ class Finding:
     line: int = 0
     column: int = 0
     excerpt: str = ""
-    """The line of the input, without its line end."""
+    """The line of the input, without its line end; of a long line the part around the place."""
     xpath: str = ""
     """Way through the XML file to the element, or to the innermost one that is open there."""
+    shift: int = 0
+    """Characters of the line before the excerpt."""
 
     @property
     def where(self) -> str:
@@ -70,4 +72,4 @@ def _finding(
     file = shown_name(place.file)
     if at is None:
         return Finding(diagnostic, file, place.line, place.column)
-    return Finding(diagnostic, file, at.line, at.column, at.text, at.xpath)
+    return Finding(diagnostic, file, at.line, at.column, at.text, at.xpath, at.shift)

@@ -75,7 +75,7 @@ def _where(finding: Finding) -> Iterator[str]:
 def _excerpt(finding: Finding, paint: _Painter, code: str) -> Iterator[str]:
     if not finding.excerpt.strip():
         return
-    shown, at = _window(finding.excerpt, max(finding.column - 1, 0))
+    shown, at = _window(finding.excerpt, max(finding.column - 1 - finding.shift, 0))
     gutter = " " * len(str(finding.line))
     yield f" {gutter} |"
     yield f" {finding.line} | {visible(shown)}"

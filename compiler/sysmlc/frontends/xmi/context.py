@@ -1,6 +1,7 @@
 """What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
 
 from collections.abc import Callable
+from itertools import islice
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import details, metaclasses, rules
@@ -9,6 +10,7 @@ from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
+from sysmlc.sources import DEFAULT_LIMITS
 
 Completion = Callable[["Context", Element, int], None]
 """Adds to an element what is special about it; takes its row."""
@@ -96,6 +98,8 @@ class Context:
         detail = details.OF.get(kind)
         if detail is not None:
             detail(self, element, row, type_name, feature)
+        if len(values) > DEFAULT_LIMITS.attributes:
+            values = self._first_attributes(row, values)
         for name, value in values.items():
             if name not in _PASSED_OVER and "}" not in name:
                 self.attribute(element, row, name, value)
@@ -144,7 +148,7 @@ class Context:
         if edge is not None:
             if name in v.AMBIGUOUS:
                 edge = v.SPECIAL.get((element.kind, name), edge)
-            for target in self.document.tokens(value):
+            for target in self._targets(row, name, value):
                 self.link(edge, element.id, target, row, name)
         elif name in v.FLAGS:
             if value == "true":
@@ -158,6 +162,23 @@ class Context:
                 element.attrs[v.UNLESS_FALSE[name]] = False
         else:
             self._other(element, row, name, value)
+
+    def _first_attributes(self, row: int, values: dict[str, str]) -> dict[str, str]:
+        """As many attributes as an element may have."""
+        most = DEFAULT_LIMITS.attributes
+        name = self._qualified_name(row)
+        subject = Subject(name, "", self.place(row))
+        self.sink.report(rules.MANY_ATTRIBUTES, subject, element=name, count=len(values), most=most)
+        return dict(islice(values.items(), most))
+
+    def _targets(self, row: int, name: str, value: str) -> list[str]:
+        """The ids in a list, as far as a list may be long."""
+        targets = self.document.tokens(value)
+        most = DEFAULT_LIMITS.references
+        if len(targets) > most:
+            subject = Subject(self._qualified_name(row), "", self.place(row))
+            self.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
+        return targets[:most]
 
     def _other(self, element: Element, row: int, name: str, value: str) -> None:
         backwards = v.REVERSED.get((element.kind, name))

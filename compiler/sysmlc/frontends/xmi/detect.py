@@ -6,7 +6,8 @@ from sysmlc.frontends.xmi import namespaces
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import parse, parser
 
-_HEAD = 1 << 16
+_HEAD = 1 << 24
+"""Bytes of a damaged file that are searched: a DOCTYPE can be long."""
 
 
 class _DecidedError(Exception):

@@ -45,6 +45,27 @@ REPEATED_ID = rule(
     wrong="<packagedElement xmi:id='a'/><packagedElement xmi:id='a'/>",
     right="<packagedElement xmi:id='a'/><packagedElement xmi:id='b'/>",
 )
+LONG_LIST = rule(
+    "SM128",
+    "long-list",
+    Severity.ERROR,
+    "'{feature}' lists {count} ids; those after the first {most} are left out",
+    why="No model has so many references in one place: the file is damaged, or made to exhaust "
+    "memory.",
+    help="look whether the file is what you think",
+    wrong="<edge source='_a _a _a ... (a million times)'/>",
+    right="<edge source='_a'/>",
+)
+MANY_ATTRIBUTES = rule(
+    "SM129",
+    "many-attributes",
+    Severity.ERROR,
+    "'{element}' has {count} attributes; those after the first {most} are left out",
+    why="No element of a model has so many: the file is damaged, or made to exhaust memory.",
+    help="look whether the file is what you think",
+    wrong="<packagedElement a1='' a2='' a3='' ... (ten thousand of them)/>",
+    right="<packagedElement name='Gate'/>",
+)
 BASELESS = rule(
     "SM113",
     "stereotype-without-element",
