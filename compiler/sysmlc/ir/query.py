@@ -250,10 +250,37 @@ def role_of(graph: Graph, end: Element) -> Element | None:
 
 
 def is_boundary(graph: Graph, end: Element) -> bool:
-    """Whether a connector end is a port of the connector's own classifier, not of a part."""
+    """Whether a connector end is a port of the connector's own classifier, not of a part.
+
+    A port nested in such a port is one too.
+    """
     role = role_of(graph, end)
-    is_port = role is not None and role.kind is Kind.PORT
-    return is_port and not graph.targets(end, Edge.PATH)
+    steps = [] if role is None else [*graph.targets(end, Edge.PATH), role]
+    return bool(steps) and all(step.kind is Kind.PORT for step in steps)
+
+
+def end_direction(graph: Graph, end: Element) -> str | None:
+    """Direction of the port at a connector end, as the outermost part of its path shows it.
+
+    A conjugated port turns round the ports nested in it too (SysML 1.6 clause 9.3.2.15).
+    """
+    port = role_of(graph, end)
+    given = None if port is None else port.attrs.get("direction")
+    direction = given if isinstance(given, str) else None
+    for step in graph.targets(end, Edge.PATH):
+        if step.kind is Kind.PORT and step.attrs.get("conjugated"):
+            direction = opposite(direction)
+    return direction
+
+
+def flow_directions(graph: Graph, port: Element) -> list[tuple[Element, str]]:
+    """Flow properties of a port's type, each with its direction at the port itself."""
+    type_ = type_of(graph, port)
+    found = [] if type_ is None else flow_properties(graph, type_)
+    given = [(one, str(one.attrs.get("direction", "inout"))) for one in found]
+    if not port.attrs.get("conjugated"):
+        return given
+    return [(one, opposite(direction) or direction) for one, direction in given]
 
 
 def connectors_of(graph: Graph, role: Element) -> Iterator[Element]:

@@ -9,6 +9,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
     conforms,
     connectors_of,
+    end_direction,
     ends,
     flow_properties,
     flow_source,
@@ -226,27 +227,29 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
     if len(roles) != 2 or not all(one is not None and one.kind is Kind.PORT for one in roles):
         return
     ports = [one for one in roles if one is not None]
-    if not _directions_agree(graph, attached, ports):
-        _report_directions(graph, sink, connector, ports)
+    if not _directions_agree(graph, attached):
+        _report_directions(graph, sink, connector, attached, ports)
     _check_types(graph, sink, connector, ports)
 
 
-def _directions_agree(graph: Graph, attached: list[Element], ports: list[Element]) -> bool:
-    first, second = (one.attrs.get("direction") for one in ports)
+def _directions_agree(graph: Graph, attached: list[Element]) -> bool:
+    first, second = (end_direction(graph, one) for one in attached)
     if "inout" in (first, second) or None in (first, second):
         return True
     delegates = is_boundary(graph, attached[0]) != is_boundary(graph, attached[1])
     return (first == second) is delegates
 
 
-def _report_directions(graph: Graph, sink: Sink, connector: Element, ports: list[Element]) -> None:
+def _report_directions(
+    graph: Graph, sink: Sink, connector: Element, attached: list[Element], ports: list[Element]
+) -> None:
     sink.report(
         CONNECTOR_DIRECTIONS,
         graph.subject(connector),
         connector=_title(graph, connector),
-        first=ports[0].attrs["direction"],
+        first=end_direction(graph, attached[0]),
         one=graph.qualified_name(ports[0]),
-        second=ports[1].attrs["direction"],
+        second=end_direction(graph, attached[1]),
         other=graph.qualified_name(ports[1]),
     )
 

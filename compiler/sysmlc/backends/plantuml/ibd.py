@@ -9,8 +9,10 @@ from sysmlc.backends.plantuml.connections import Connection, Path, connections
 from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import opposite
 
-_FORMS = {"in": "portin", "out": "portout"}
+FORMS = {"in": "portin", "out": "portout"}
+"""How ports are drawn, by direction."""
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 _DRAWN_ROLES = frozenset(["part", "reference"])
 _PORT_WIDTH = 24
@@ -161,9 +163,16 @@ class _Drawing:
         shown = ".".join(labels.name(self.graph[id]) for id in key)
         alias = self.aliases.make(_key((*path, *key)), port.name, "port")
         text = shown if port.name.strip() else labels.typed(self.graph, port)
-        form = _FORMS.get(str(port.attrs.get("direction", "")), "port")
+        form = FORMS.get(str(port.attrs.get("direction", "")), "port")
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
         return PortView(alias, stack(rows), form, key)
+
+    def _direction(self, key: tuple[str, ...]) -> str:
+        """Direction of the innermost port; conjugated ones around it turn it round."""
+        direction = str(self.graph[key[-1]].attrs.get("direction", ""))
+        around = [self.graph[id] for id in key[:-1]]
+        is_turned = len([one for one in around if one.attrs.get("conjugated")]) % 2 == 1
+        return (opposite(direction) or "") if is_turned else direction
 
     def _line(self, connection: Connection) -> Line:
         return Line(

@@ -201,12 +201,22 @@ def _measure(context: Context, row: int, feature: str, base: Element) -> None:
 
 
 def _path(context: Context, end: Element, row: int) -> None:
-    """Path of a connector end: the nested path, with the part that has the port at its end."""
+    """Path of a connector end: the nested path, with the part that has the port at its end.
+
+    MagicDraw repeats that part in the nested path, and other tools the role itself.
+    """
     holder, nested = context.unit.paths.get(end.id, (context.lowered, []))
-    seen = {target.rpartition("#")[2] for target, _, _ in nested}
+    with_port = references(context.document, row, "partWithPort")
+    needless = {_fragment(step) for step in references(context.document, row, "role")}
+    needless -= {_fragment(step) for step in with_port}
+    while nested and _fragment(nested[-1]) in needless:
+        nested = nested[:-1]
+    seen = {_fragment(step) for step in nested}
     steps = [(holder, step) for step in nested]
-    for step in references(context.document, row, "partWithPort"):
-        if step[0].rpartition("#")[2] not in seen:
-            steps.append((context.lowered, step))
+    steps += [(context.lowered, step) for step in with_port if _fragment(step) not in seen]
     for lowered, (target, at, is_href) in steps:
         context.link_from(lowered, Edge.PATH, end.id, target, at, "partWithPort", is_href)
+
+
+def _fragment(step: _Target) -> str:
+    return step[0].rpartition("#")[2]
