@@ -27,7 +27,7 @@ PLANT = "http://example.org/Plant"
 _ID, _TYPE, _IDREF = f"{{{XMI}}}id", f"{{{XMI}}}type", f"{{{XMI}}}idref"
 _PREFIXES = {"xmi": XMI, "uml": UML, "thecustomprofile": CUSTOM, "SysML1.4": SYSML}
 _NOT_SAVED = frozenset({"partition", "base_NamedElement", "base_DirectedRelationship"})
-_TEXTS = frozenset({"name", "value", "body", "symbol"})
+_TEXTS = frozenset({"name", "body", "symbol"})
 _AS_CHILDREN = LISTS | {"type", "incoming", "outgoing"}
 _CONNECTORS = frozenset(
     {"uml:Association", "uml:Connector", "uml:Dependency", "uml:Abstraction", "uml:Realization"}
@@ -133,7 +133,7 @@ class _Writer:
                 etree.SubElement(made, name, {_IDREF: self.ids.get(id_, id_)})
         elif name == "value" and _type(made) == "uml:LiteralUnlimitedNatural":
             made.set(name, value.replace("*", "-1"))
-        elif name not in _TEXTS and all(id_ in self.ids for id_ in ids):
+        elif name not in _TEXTS and ids and all(id_ in self.ids for id_ in ids):
             made.set(name, " ".join(self.ids[id_] for id_ in ids))
         else:
             made.set(name, value)

@@ -181,7 +181,7 @@ class _Writer:
         elif name in LISTS or name in LISTS_OF.get(_type(made), ()):
             for id_ in ids:
                 etree.SubElement(made, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
-        elif name not in ("name", "value", "body") and all(id_ in self.ids for id_ in ids):
+        elif name not in ("name", "body") and ids and all(id_ in self.ids for id_ in ids):
             made.set(name, " ".join(self.ids[id_] for id_ in ids))
         else:
             made.set(name, value)

@@ -4,8 +4,10 @@ from random import Random
 
 from dialects.papyrus import PapyrusDocument
 from dialects.random_behaviour import Behaviours
+from dialects.random_interactions import Interactions
 from dialects.random_rarities import Rarities
 from dialects.random_structure import PLANT, Structure
+from dialects.random_wider import Wider
 
 
 def random_model(random: Random, size: int = 3) -> bytes:
@@ -14,5 +16,7 @@ def random_model(random: Random, size: int = 3) -> bytes:
     structure = Structure(document, random, size)
     Behaviours(structure)
     Rarities(structure)
+    Interactions(structure)
+    Wider(structure)
     document.apply_sysml()
     return document.bytes()
