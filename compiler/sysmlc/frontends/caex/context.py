@@ -25,6 +25,7 @@ class Context:
         self.types = Types(documents, built_in)
         self.nodes: dict[str, tuple[Document, Node]] = {}
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
+        self.mirrors: list[tuple[Document, Node]] = []
         self._plain: dict[str, tuple[Document, Node]] = {}
         self._repeated: set[str] = set()
         self._shared: set[tuple[str, str]] = set()

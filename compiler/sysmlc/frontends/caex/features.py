@@ -1,7 +1,7 @@
 """Attributes and external interfaces: value properties and ports of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import measures
+from sysmlc.frontends.caex import measures, mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
@@ -59,7 +59,12 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
 
 def _attribute_type(context: Context, node: Node, document: Document) -> Type | None:
     path = node.attributes.get("RefAttributeType", "").strip()
-    return context.type(path, Family.ATTRIBUTE, document, node) if path else None
+    if not path:
+        return None
+    if mirrors.is_mirror(context, node):
+        context.mirrors.append((document, node))
+        return None
+    return context.type(path, Family.ATTRIBUTE, document, node)
 
 
 def _redefine(context: Context, owner: Type, node: Node, element: Element) -> None:
@@ -128,7 +133,10 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
 def interface_class(context: Context, node: Node, document: Document) -> Type | None:
     """The interface class that an external interface names."""
     path = node.attributes.get("RefBaseClassPath", "").strip()
-    if not path or context.find(path) is not None:
+    if not path:
+        return None
+    if mirrors.is_mirror(context, node):
+        context.mirrors.append((document, node))
         return None
     return context.type(path, Family.INTERFACE, document, node)
 

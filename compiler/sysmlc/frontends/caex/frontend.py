@@ -7,7 +7,7 @@ from functools import cache
 
 from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.caex import account, detect, features, libraries, roles, rules
+from sysmlc.frontends.caex import account, detect, features, libraries, mirrors, roles, rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, read
 from sysmlc.frontends.caex.links import Links
@@ -62,6 +62,7 @@ def _lower(context: Context) -> None:
         for node in document.root.of("InstanceHierarchy"):
             sites.lower_hierarchy(node, document)
     sites.finish()
+    mirrors.finish(context)
     roles.lower(context, sites)
     drawn = Links(context, sites)
     for document in context.documents:

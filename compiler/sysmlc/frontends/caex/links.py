@@ -6,7 +6,8 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.sites import Site, Sites
+from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.sites import Sites
 from sysmlc.ir import Edge, Element, Kind
 
 SIDES = {"A": "RefPartnerSideA", "B": "RefPartnerSideB"}

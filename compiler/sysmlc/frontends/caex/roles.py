@@ -3,7 +3,8 @@
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
-from sysmlc.frontends.caex.sites import Site, Sites
+from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES, Family
 from sysmlc.ir import Edge
@@ -14,6 +15,8 @@ def lower(context: Context, sites: Sites) -> None:
     of_class: dict[Type, set[Type]] = {}
     ordered = sorted(sites, key=lambda site: bool(site.root.instance))
     for site in ordered:
+        if site.type is None:
+            continue
         inherited = {r for t in _above(site) for r in of_class.get(t, ())}
         for role in _roles(context, site):
             if role in inherited:

@@ -97,6 +97,18 @@ MIRROR_WITHOUT_MASTER = rule(
     right='<InternalElement Name="a" ID="1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b"/>\n'
     '<InternalElement Name="m" RefBaseSystemUnitPath="1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b"/>',
 )
+MIRROR_CYCLE = rule(
+    "SM143",
+    "mirror-cycle",
+    Severity.ERROR,
+    "'{element}' is a mirror of itself, by way of '{reference}'",
+    why="Mirrors may stand for mirrors, but in the end there must be an element.",
+    help="let one of them refer to a system unit class, or to nothing",
+    wrong='<InternalElement Name="a" ID="1" RefBaseSystemUnitPath="2"/>\n'
+    '<InternalElement Name="b" ID="2" RefBaseSystemUnitPath="1"/>',
+    right='<InternalElement Name="a" ID="1"/>\n'
+    '<InternalElement Name="b" ID="2" RefBaseSystemUnitPath="1"/>',
+)
 UNSUPPORTED = rule(
     "SM139",
     "unsupported-caex-element",

@@ -45,6 +45,10 @@ ROLE_REFERENCES = {
 }
 """Elements that say which role something plays: the attribute that names the role class."""
 
+BASE_ROLE = ("AutomationMLBaseRoleClassLib", "AutomationMLBaseRole")
+BASE_INTERFACE = ("AutomationMLInterfaceClassLib", "AutomationMLBaseInterface")
+"""Paths of the classes that all roles and interfaces of the standard specialise."""
+
 PRIMITIVES = {
     **dict.fromkeys(("double", "float", "decimal"), "Real"),
     **dict.fromkeys(

@@ -1,0 +1,72 @@
+"""Facets and groups: internal elements that only show others (AutomationML, IEC 62714-1)."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.holders import own
+from sysmlc.frontends.caex.libraries import mark
+from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
+from sysmlc.ir import Edge, Element, Kind
+
+_KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
+
+
+def kind_of(context: Context, site: Site) -> Kind | None:
+    """Facet or Group when the element plays that role, by inheritance and never by name."""
+    for role in roles_of(context, site):
+        for name, kind in _KINDS.items():
+            if role.conforms(*BASE_ROLE, name):
+                return kind
+    return None
+
+
+def roles_of(context: Context, site: Site) -> Iterator[Type]:
+    """The role classes that an internal element names and that are known."""
+    for node in site.node.of(*ROLE_REFERENCES):
+        path = node.attributes.get(ROLE_REFERENCES[node.tag], "").strip()
+        found = context.types.find(path, Family.ROLE, site.document) if path else None
+        if isinstance(found, Type):
+            yield found
+
+
+def lower(context: Context, site: Site, kind: Kind) -> None:
+    """Add the Facet or Group; what it shows is known when everything is placed."""
+    above = site.parent
+    owner = own(context, above).id if above else context.graph[site.instance].owner
+    element = context.add(kind, site.node, site.document, owner)
+    site.part = element.id
+    mark(site.node)
+    site.node.element = element.id
+    for node in site.node.of("Attribute"):
+        if node.name == "AssociatedFacet":
+            context.graph.set(element, associated_facet=node.text("Value") or None)
+
+
+def show(context: Context, site: Site) -> None:
+    """Draw the references of a Facet to features, of a Group to the masters of its mirrors."""
+    element = context.graph[site.part]
+    for target in dict.fromkeys(_shown(context, site, element)):
+        if target in context.graph:
+            context.graph.connect(Edge.REFERENCES, element, target)
+
+
+def _shown(context: Context, site: Site, element: Element) -> Iterator[str]:
+    above = site.parent.type if site.parent else None
+    for node in site.node.children:
+        if node.tag in ("Attribute", "ExternalInterface") and above is not None:
+            known = above.find(node.tag, node.name)
+            if known is not None and element.kind is Kind.FACET:
+                yield known.id
+        elif node.tag == "InternalElement":
+            yield from _master(context, node)
+
+
+def _master(context: Context, node: Node) -> Iterator[str]:
+    found = context.find(node.attributes.get("RefBaseSystemUnitPath", "").strip())
+    if found is not None and found[1].element:
+        node.verdict = Verdict.MAPPED
+        yield found[1].element

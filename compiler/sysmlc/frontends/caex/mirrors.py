@@ -1,0 +1,83 @@
+"""Mirrors: second places of one element; the last master of a chain is what is meant."""
+
+from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.ir import Edge, Element
+
+_REFERENCE = {
+    "InternalElement": "RefBaseSystemUnitPath",
+    "ExternalInterface": "RefBaseClassPath",
+    "Attribute": "RefAttributeType",
+}
+_GUID = 36
+
+
+def master_id(node: Node) -> str:
+    """The id that a reference holds in place of a class path, or the empty string."""
+    text = node.attributes.get(_REFERENCE.get(node.tag, ""), "").strip()
+    return text.partition("/")[0] if node.tag == "Attribute" else text
+
+
+def is_mirror(context: Context, node: Node) -> bool:
+    """Whether the node names another element and no class."""
+    id = master_id(node)
+    return bool(id) and (context.find(id) is not None or _looks_like_id(id))
+
+
+def master(context: Context, document: Document, node: Node) -> Node | None:
+    """What the mirror stands for in the end; a missing one and a circle are reported."""
+    seen: list[Node] = []
+    while is_mirror(context, node) and node not in seen:
+        seen.append(node)
+        found = context.find(master_id(node))
+        next_node = found[1] if found else None
+        if next_node is not None and node.tag == "Attribute":
+            next_node = _attribute(next_node, node)
+        if next_node is None:
+            _report(context, document, seen[0], master_id(node))
+            return None
+        node = next_node
+    if node in seen:
+        _report(context, document, seen[0], master_id(seen[0]), is_circle=True)
+        return None
+    return node
+
+
+def draw(context: Context, document: Document, node: Node, element: Element) -> Node | None:
+    """The edge from the mirror's element to its master's; the master."""
+    found = master(context, document, node)
+    if found is not None and found.element in context.graph:
+        context.graph.connect(Edge.MIRRORS, element.id, found.element)
+        return found
+    return None
+
+
+def finish(context: Context) -> None:
+    """Tie the mirrors of interfaces and attributes to their masters, and type them alike."""
+    for document, node in context.mirrors:
+        found = draw(context, document, node, context.graph[node.element])
+        type = context.graph.target(context.graph[found.element], Edge.TYPED_BY) if found else None
+        if type is not None:
+            context.graph.connect(Edge.TYPED_BY, node.element, type)
+
+
+def _attribute(owner: Node, mirror: Node) -> Node | None:
+    """``ID/name`` or ``ID/name/inner``: the attribute of the element with that id."""
+    names = mirror.attributes["RefAttributeType"].strip().split("/")[1:] or [mirror.name]
+    node: Node | None = owner
+    for name in names:
+        node = next((n for n in node.of("Attribute") if n.name == name), None) if node else None
+    return node
+
+
+def _report(
+    context: Context, document: Document, node: Node, reference: str, is_circle: bool = False
+) -> None:
+    rule = rules.MIRROR_CYCLE if is_circle else rules.MIRROR_WITHOUT_MASTER
+    context.report(rule, document, node, element=node.name, reference=reference)
+
+
+def _looks_like_id(text: str) -> bool:
+    plain = text.strip("{}")
+    return len(plain) == _GUID and plain.count("-") == 4 and "/" not in plain
