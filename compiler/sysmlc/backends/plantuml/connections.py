@@ -53,32 +53,39 @@ def connections(graph: Graph, block: Element) -> list[Connection]:
     What is bound to a constraint parameter stands in the parametric diagram.
     """
     owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
-    drawn = [made for item in owned if (made := _connector(graph, item)) is not None]
+    drawn = [made for item in owned for made in _connector(graph, item)]
     return [*drawn, *_free_flows(graph, block)]
 
 
-def _connector(graph: Graph, connector: Element) -> Connection | None:
+def _connector(graph: Graph, connector: Element) -> Iterator[Connection]:
+    """One line, or as many as join the first end to all others (UML 2.5.1 clause 11.2.3)."""
     if is_parametric(graph, connector):
-        return None
+        return
     ends = graph.targets(connector, Edge.END)
-    paths = [path for end in ends if (path := path_of(graph, end)) is not None]
-    if len(ends) != 2 or len(paths) != 2:
-        return None
+    known = [(end, path) for end in ends if (path := path_of(graph, end)) is not None]
+    if len(known) == len(ends) == 2:
+        yield _line(graph, connector, known)
+    elif len(known) > 2:
+        yield from (_line(graph, connector, [known[0], other]) for other in known[1:])
+
+
+def _line(graph: Graph, connector: Element, joined: list[tuple[Element, Path]]) -> Connection:
+    (near, first), (far, second) = joined
     flows = graph.sources(connector, Edge.REALIZING)
-    ways = [_way(graph, flow, paths[0], paths[1]) for flow in flows]
-    aims = {"→": _end_name(graph, paths[1]), "←": _end_name(graph, paths[0])}
+    ways = [_way(graph, flow, first, second) for flow in flows]
+    aims = {"→": _end_name(graph, second), "←": _end_name(graph, first)}
     rows = [
         _row(conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1)
         for way, flow in zip(ways, flows, strict=True)
     ]
-    named = _name(graph, connector)
+    ends = graph.targets(connector, Edge.END)
     return Connection(
-        paths[0],
-        paths[1],
+        first,
+        second,
         _arrow(connector, ways),
-        "\n".join(row for row in (named, *rows) if row),
-        labels.multiplicity(ends[0]),
-        labels.multiplicity(ends[1]),
+        "\n".join(row for row in (_name(graph, connector), *rows) if row),
+        labels.multiplicity(near),
+        labels.multiplicity(far),
         (connector.id, *(end.id for end in ends), *(flow.id for flow in flows)),
     )
 

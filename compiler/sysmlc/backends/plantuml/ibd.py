@@ -22,7 +22,7 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All internal block diagrams, in the order of the model."""
     for block in graph.of_kind(*_CLASSES):
         found = connections(graph, block)
-        if found:
+        if found and not block.attrs.get("external"):
             yield from _of_block(graph, block, found)
 
 
@@ -163,7 +163,7 @@ class _Drawing:
         shown = ".".join(labels.name(self.graph[id]) for id in key)
         alias = self.aliases.make(_key((*path, *key)), port.name, "port")
         text = shown if port.name.strip() else labels.typed(self.graph, port)
-        form = FORMS.get(str(port.attrs.get("direction", "")), "port")
+        form = FORMS.get(self._direction(key), "port")
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
         return PortView(alias, stack(rows), form, key)
 
