@@ -32,6 +32,11 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
             yield from divided(graph, activity, view, "act", "Activity diagram", signature, details)
 
 
+def whole(graph: Graph, activity: Element) -> GraphView:
+    """All of an activity in one view, however large."""
+    return _Drawing(graph, activity).view()
+
+
 @dataclass(slots=True)
 class _Drawing:
     """One activity on its way to a picture; ``homes`` maps what a flow may touch to a node."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from sysmlc import naming
-from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.plantuml import act, bdd, ibd, missing, par, req, sd, stm, uc
+from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
+from sysmlc.backends.plantuml import act, author, bdd, ibd, missing, par, req, sd, stm, uc
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
@@ -47,23 +47,35 @@ class PlantUml:
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""
-        found = [diagram for kind in KINDS for diagram in kind(graph)]
-        missing.report(graph, found, sink)
-        if found:
-            _write(graph, found, output, sink, options)
+        if options.diagrams != AUTHOR:
+            found = [diagram for kind in KINDS for diagram in kind(graph)]
+            missing.report(graph, found, sink)
+            _write(graph, found, "", output, sink, options)
+        if options.diagrams != DERIVED:
+            _write(graph, list(author.diagrams(graph, sink)), author.FOLDER, output, sink, options)
 
 
 def _write(
-    graph: Graph, found: list[Diagram], output: Output, sink: Sink, options: EmitOptions
+    graph: Graph,
+    found: list[Diagram],
+    folder: str,
+    output: Output,
+    sink: Sink,
+    options: EmitOptions,
 ) -> None:
+    if not found:
+        return
     from jinja2 import TemplateError
 
     renderer = Renderer(options.templates)
+    found.sort(key=lambda diagram: diagram.kind)
     for kind, group in groupby(found, lambda diagram: diagram.kind):
         try:
             for diagram, file in _named(list(group)):
                 text = renderer.text(diagram, _header(graph, diagram))
-                output.add(f"diagrams/{file}.{kind}.puml", text, diagram.trace(), "plantuml")
+                output.add(
+                    f"diagrams/{folder}{file}.{kind}.puml", text, diagram.trace(), "plantuml"
+                )
         except TemplateError as error:
             fault = f"{type(error).__name__}: {error}"
             sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)

@@ -1,6 +1,6 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.backends.plantuml import labels, measured, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -213,7 +213,7 @@ def _view(
     """``in_rows`` maps properties to what their row stands for, besides themselves."""
     aliases = Aliases()
     in_lines = {id for relation in inside for id in relation.shows}
-    boxes = [_box(graph, item, aliases, in_lines, in_rows) for item in shown]
+    boxes = [box(graph, item, aliases, in_lines, in_rows) for item in shown]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
     boxes += [stub(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
     return box_view(boxes, [line(relation, aliases) for relation in inside])
@@ -236,16 +236,21 @@ def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
     )
 
 
-def _box(
+def box(
     graph: Graph,
     item: Element,
     aliases: Aliases,
     in_lines: set[str],
     in_rows: Mapping[str, tuple[str, ...]],
+    features: Sequence[Element] | None = None,
 ) -> Box:
+    """The box of a classifier, with all that it owns in compartments, or some ``features``.
+
+    What ``in_lines`` names has a line instead of a row; ``in_rows`` says what else a row shows.
+    """
     rows: dict[str, list[str]] = {}
     shows = [item.id]
-    for feature in graph.owned(item):
+    for feature in graph.owned(item) if features is None else features:
         title = _title(feature)
         if title and feature.id not in in_lines:
             rows.setdefault(title, []).extend(_rows(graph, feature))

@@ -105,7 +105,8 @@ def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
 
 
 def _is_ours(item: Element) -> bool:
-    return not item.attrs.get("external")
+    is_drawing = item.kind is Kind.VIEW and item.subkind == "diagram"
+    return not item.attrs.get("external") and not is_drawing
 
 
 def _report(

@@ -4,7 +4,7 @@ SysML 1.6 clause 10: usages of constraint blocks with their parameters, and what
 A feature of a part stands in a box of its own, with the path as its name (clause 8.3.1.2).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sysmlc.backends.plantuml import labels, measured, split
@@ -26,6 +26,16 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
         has_usages = any(_is_usage(one) for one in graph.owned(block))
         if (has_usages or block.id in bound) and not block.attrs.get("external"):
             yield from _of_block(graph, block, usages(graph, block), bound.get(block.id, []))
+
+
+def chosen(
+    graph: Graph, block: Element, shown: Iterable[Element], found: list[Binding]
+) -> InternalView:
+    """The properties in ``shown`` and the bindings, in the frame of the block."""
+    own = [(one.id,) for one in shown if one.kind is Kind.PROPERTY]
+    boxes = dict.fromkeys([*own, *(end.parts for one in found for end in one.ends)])
+    boxes.pop((), None)
+    return _Drawing(graph, block, list(boxes), found).view()
 
 
 def _is_usage(item: Element) -> bool:

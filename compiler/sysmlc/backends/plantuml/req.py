@@ -28,7 +28,7 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
         for element in graph.subtree(root):
             if is_requirement(element) and not element.attrs.get("external"):
                 homes.setdefault(_home(graph, element), []).append(element)
-    every = [*_containments(graph), *_relations(graph)]
+    every = relations(graph)
     for package, requirements in homes.items():
         yield from _of_package(graph, graph.get(package), requirements, every)
 
@@ -43,6 +43,11 @@ def _home(graph: Graph, element: Element) -> str | None:
         if above.kind in (Kind.PACKAGE, Kind.PROFILE):
             return above.id
     return None
+
+
+def relations(graph: Graph) -> list[Relation]:
+    """Lines between requirements, and to what satisfies, verifies or refines them."""
+    return [*_containments(graph), *_relations(graph)]
 
 
 def _containments(graph: Graph) -> Iterator[Relation]:
@@ -97,13 +102,14 @@ def _of_package(
 
 def _view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView:
     aliases = Aliases()
-    boxes = [_box(graph, item, aliases) for item in shown]
+    boxes = [box(graph, item, aliases) for item in shown]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
     boxes += [_other(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
     return box_view(boxes, [bdd.line(relation, aliases) for relation in inside])
 
 
-def _box(graph: Graph, item: Element, aliases: Aliases) -> Box:
+def box(graph: Graph, item: Element, aliases: Aliases) -> Box:
+    """The box of a requirement, with id and text."""
     rows = [f"id = {item.attrs['req_id']}"] if item.attrs.get("req_id") else []
     rows += [f"text = {item.attrs['text']}"] if item.attrs.get("text") else []
     shown = tuple(row for text in rows for row in lines(text, _TEXT_WIDTH))

@@ -29,7 +29,7 @@ _ROW = 44
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All state machine diagrams, in the order of the model."""
     for machine in graph.of_kind(Kind.STATE_MACHINE):
-        view = _view(graph, machine)
+        view = whole(graph, machine)
         if view.nodes:
             regions = tuple(item.id for item in _regions(graph, machine))
             title = "State machine diagram"
@@ -64,7 +64,8 @@ def divided(
         )
 
 
-def _view(graph: Graph, machine: Element) -> GraphView:
+def whole(graph: Graph, machine: Element) -> GraphView:
+    """All of a state machine in one view, however large."""
     aliases = Aliases()
     nodes = _inside(graph, machine, aliases)
     if any(child.subkind in _POINTS for child in graph.owned(machine)):

@@ -70,7 +70,7 @@ def _of_package(
             name=split.numbered(whole, index, len(parts)),
             frame=plain(f"uc [package] {whole}"),
             heading=("Use case diagram", whole),
-            view=_view(graph, shown, alone if index == 0 else [], inside),
+            view=view(graph, shown, alone if index == 0 else [], inside),
             about=package.id if package is not None else "",
             footer=plain(split.footer(index, len(parts), whole)),
         )
@@ -94,9 +94,10 @@ def _with(part: list[str], alone: list[Element], every: Sequence[Relation]) -> s
 # -- figures -----------------------------------------------------------------------------------
 
 
-def _view(
+def view(
     graph: Graph, cases: list[Element], alone: list[Element], inside: list[Relation]
 ) -> UseCaseView:
+    """Use cases in their subjects, actors, and the lines between them."""
     aliases = Aliases()
     tied = [graph[id] for r in inside for id in (r.source, r.target)]
     shown = list(dict.fromkeys([*cases, *alone, *tied]))

@@ -113,6 +113,8 @@ class LibraryElements:
             edge = edge or v.REFERENCES.get(feature)
             if edge is not None:
                 self._link(edge, made, entry.targets(feature))
+        if made.kind is Kind.CONNECTOR_END and made.owner is not None:
+            self._graph.connect(Edge.END, made.owner, made)
 
     def _connect_part(self, entry: Entry) -> None:
         """What is an edge of its owner: a generalization, or a stereotype's metaclass."""
