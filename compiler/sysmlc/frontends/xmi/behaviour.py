@@ -6,9 +6,9 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, text_of, value_in
+from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, value_in
 from sysmlc.frontends.xmi.unit import Lowered, Unit
-from sysmlc.frontends.xmi.values import ValueText, opaque, value_of
+from sysmlc.frontends.xmi.values import ValueText, opaque, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element
 
 _Reader = Callable[[Context, int], None]

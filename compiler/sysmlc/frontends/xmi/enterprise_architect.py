@@ -17,6 +17,8 @@ from sysmlc.ir.identity import derived_id
 
 _STEREOTYPE = re.compile(r"@STEREO;(.*?)@ENDSTEREO", re.DOTALL)
 _PREFIX = "EAID_"
+_LISTS = ("elements", "connectors", "attributes", "operations", "parameters")
+"""What holds descriptions of elements, by which they are nested."""
 
 
 def is_extension(document: Document, row: int) -> bool:
@@ -26,12 +28,11 @@ def is_extension(document: Document, row: int) -> bool:
 
 def finish(context: Context) -> None:
     """Read what the extensions say of elements; applications must be in the graph already."""
-    document = context.document
-    for extension in context.extensions:
-        for part in ("elements", "connectors"):
-            for holder in document.children(extension, part):
-                for row in document.children(holder):
-                    _element(context, row)
+    waiting = [row for extension in context.extensions for row in _parts(context, extension)]
+    while waiting:
+        row = waiting.pop()
+        _element(context, row)
+        waiting.extend(_parts(context, row))
 
 
 def _element(context: Context, row: int) -> None:
@@ -42,13 +43,11 @@ def _element(context: Context, row: int) -> None:
         for end in document.children(row, holder):
             # An end has the id of the connector with its first two digits replaced.
             _details(context, end, f"{_PREFIX}{ends}{id[len(_PREFIX) + 2 :]}")
-    for part in _parts(context, row):
-        _element(context, part)
 
 
 def _parts(context: Context, row: int) -> Iterator[int]:
     document = context.document
-    for features in ("attributes", "operations", "parameters"):
+    for features in _LISTS:
         for holder in document.children(row, features):
             yield from document.children(holder)
 

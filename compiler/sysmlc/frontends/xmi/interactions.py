@@ -5,8 +5,9 @@ from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.elements import Reader, reading
-from sysmlc.frontends.xmi.structure import text_of, value_in
+from sysmlc.frontends.xmi.structure import value_in
 from sysmlc.frontends.xmi.unit import Lowered
+from sysmlc.frontends.xmi.values import text_of
 from sysmlc.ir import Edge, Element, Kind
 
 _ENDS = (("sendEvent", Edge.FLOW_SOURCE), ("receiveEvent", Edge.FLOW_TARGET))

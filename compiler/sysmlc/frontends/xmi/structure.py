@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.values import ValueText, bound, value_of
+from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _Reader = Callable[[Context, int], None]
@@ -181,13 +181,6 @@ def keep_alternatives(element: Element, value: ValueText, key: str = "") -> None
         prefix = f"{key}_" if key else ""
         element.attrs[f"{prefix}bodies"] = value.bodies
         element.attrs[f"{prefix}languages"] = value.languages
-
-
-def text_of(value: ValueText) -> str:
-    """The value as text: ``true`` and ``false`` for truth values."""
-    if isinstance(value.value, bool):
-        return "true" if value.value else "false"
-    return "" if value.value is None else str(value.value)
 
 
 def _lower(context: Context, row: int) -> None:

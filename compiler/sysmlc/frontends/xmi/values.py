@@ -1,5 +1,7 @@
 """Value specifications: literals as JSON values, expressions as text."""
 
+import re
+from math import isfinite
 from typing import NamedTuple
 
 from sysmlc.frontends.xmi.document import Document
@@ -26,6 +28,9 @@ _LEGIBLE = (
 
 _OF_TIME = ("TimeExpression", "Duration")
 _INTERVALS = ("Interval", "TimeInterval", "DurationInterval")
+_EXPRESSIONS = ("Expression", "StringExpression")
+_NESTING = frozenset((*_OF_TIME, *_INTERVALS, *_EXPRESSIONS))
+_INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
 
 
 class ValueText(NamedTuple):
@@ -42,20 +47,45 @@ class ValueText(NamedTuple):
     """Languages of ``bodies``, one each, empty where the source gives none."""
 
 
+_Inner = dict[int, ValueText]
+"""Values by row that stand inside others."""
+
+
 def value_of(document: Document, row: int) -> ValueText:
     """The value that the value specification in this row means (UML 2.5.1 clause 8)."""
+    inner: _Inner = {}
+    if document.types[row] in _NESTING:
+        # From the innermost outwards: calls that nest as deep as a file may would not end well.
+        for at in range(document.ends[row] - 1, row, -1):
+            if document.types[at] in _NESTING:
+                inner[at] = _value(document, at, inner)
+    return _value(document, row, inner)
+
+
+def _value(document: Document, row: int, inner: _Inner) -> ValueText:
     type_name = document.types[row]
     if type_name in _LITERALS:
         return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
     if type_name == "InstanceValue":
         return _instance(document, row)
-    if type_name in ("Expression", "StringExpression"):
-        return ValueText(_expression(document, row), language="UML")
+    if type_name in _EXPRESSIONS:
+        return ValueText(_expression(document, row, inner), language="UML")
     if type_name in _OF_TIME:
-        return _time(document, row)
+        return _time(document, row, inner)
     if type_name in _INTERVALS:
-        return ValueText(_interval(document, row))
+        return ValueText(_interval(document, row, inner))
     return opaque(document, row)
+
+
+def _part(document: Document, row: int, inner: _Inner) -> ValueText:
+    return inner[row] if row in inner else _value(document, row, inner)
+
+
+def text_of(value: ValueText) -> str:
+    """The value as text: ``true`` and ``false`` for truth values."""
+    if isinstance(value.value, bool):
+        return "true" if value.value else "false"
+    return "" if value.value is None else str(value.value)
 
 
 def opaque(document: Document, row: int) -> ValueText:
@@ -107,42 +137,44 @@ def _literal(type_name: str, text: str) -> AttrValue:
         return text
     if type_name == "LiteralNull":
         return "null"
-    try:
-        return _number(type_name, text)
-    except ValueError:
-        return text
-
-
-def _number(type_name: str, text: str) -> AttrValue:
     if type_name == "LiteralReal":
-        return float(text or "0")
+        return _real(text or "0")
     if text in ("*", "-1") and type_name == "LiteralUnlimitedNatural":
         return "*"
-    return int(text or "0")
+    return int(text or "0") if not text or _INTEGER.match(text) else text
 
 
-def _time(document: Document, row: int) -> ValueText:
+def _real(text: str) -> AttrValue:
+    """A number; text that JSON has no number for stays as it is (``INF``)."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return number if isfinite(number) else text
+
+
+def _time(document: Document, row: int, inner: _Inner) -> ValueText:
     """A time or duration: what it is, else the observations that it is said of."""
-    inner = next(document.children(row, "expr"), None)
-    if inner is not None:
-        return value_of(document, inner)
+    expression = next(document.children(row, "expr"), None)
+    if expression is not None:
+        return _part(document, expression, inner)
     found = (document.ids.get(target) for target in document.targets(row, "observation"))
     return ValueText(", ".join(name_of_instance(document, at) for at in found if at is not None))
 
 
-def _interval(document: Document, row: int) -> str:
+def _interval(document: Document, row: int, inner: _Inner) -> str:
     """``min..max``; the bounds stand inside (MagicDraw), or elsewhere in the file (Papyrus)."""
-    bounds = [_bound(document, row, feature) for feature in ("min", "max")]
+    bounds = [_bound(document, row, feature, inner) for feature in ("min", "max")]
     return bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
 
 
-def _bound(document: Document, row: int, feature: str) -> str:
+def _bound(document: Document, row: int, feature: str, inner: _Inner) -> str:
     for child in document.children(row, feature):
         if document.types[child]:
-            return str(value_of(document, child).value)
+            return text_of(_part(document, child, inner))
     for target in document.targets(row, feature):
         at = document.ids.get(target)
-        return str(_elsewhere(document, at).value) if at is not None else target
+        return text_of(_elsewhere(document, at)) if at is not None else target
     return ""
 
 
@@ -150,9 +182,11 @@ def _elsewhere(document: Document, row: int) -> ValueText:
     """A value that an id leads to: only a leaf is read, for the way could lead in a circle."""
     inner = next(document.children(row, "expr"), None)
     if inner is None and document.types[row] in _OF_TIME:
-        return _time(document, row)
+        return _time(document, row, {})
     leaf = row if inner is None else inner
-    return value_of(document, leaf) if document.types[leaf] in _LITERALS else opaque(document, leaf)
+    return (
+        _value(document, leaf, {}) if document.types[leaf] in _LITERALS else opaque(document, leaf)
+    )
 
 
 def _instance(document: Document, row: int) -> ValueText:
@@ -164,10 +198,10 @@ def _instance(document: Document, row: int) -> ValueText:
     return ValueText(name or document.attributes[row].get("name", ""), instance=target)
 
 
-def _expression(document: Document, row: int) -> str:
+def _expression(document: Document, row: int, inner: _Inner) -> str:
     """``symbol(operand, ...)``; without a symbol the operands joined (StringExpression)."""
     inside = [*document.children(row, "operand"), *document.children(row, "subExpression")]
-    operands = [str(value_of(document, child).value) for child in inside]
+    operands = [text_of(_part(document, child, inner)) for child in inside]
     symbol = document.attributes[row].get("symbol", "")
     if not symbol:
         return "".join(operands)

@@ -1,0 +1,70 @@
+"""Value specifications as JSON values and text, however deep and odd (UML 2.5.1 clause 8)."""
+
+import pytest
+from reading_xmi import papyrus, read
+
+RULE = '<ownedRule xmi:id="r">{}</ownedRule>'
+DEFAULT = (
+    '<packagedElement xmi:type="uml:Class" xmi:id="k"><ownedAttribute xmi:id="r">{}'
+    "</ownedAttribute></packagedElement>"
+)
+
+
+def body(specification):
+    return read(papyrus(RULE.format(specification))).graph["r"].attrs["body"]
+
+
+def default(type_name, value):
+    literal = f'<defaultValue xmi:type="uml:{type_name}" value="{value}"/>'
+    return read(papyrus(DEFAULT.format(literal))).graph["r"].attrs["default"]
+
+
+def test_an_expression_is_written_with_its_operands():
+    assert (
+        body(
+            '<specification xmi:type="uml:Expression" symbol="and">'
+            '<operand xmi:type="uml:Expression" symbol="&lt;">'
+            '<operand xmi:type="uml:OpaqueExpression"><body>level</body></operand>'
+            '<operand xmi:type="uml:LiteralInteger" value="7"/></operand>'
+            '<operand xmi:type="uml:LiteralBoolean" value="true"/></specification>'
+        )
+        == "and((level < 7), true)"
+    )
+
+
+@pytest.mark.parametrize("depth", [10, 490])
+def test_expressions_may_nest_as_deep_as_a_file_may(depth):
+    inside = '<operand xmi:type="uml:Expression" symbol="not">' * depth + "</operand>" * depth
+    text = body(f'<specification xmi:type="uml:Expression" symbol="not">{inside}</specification>')
+    assert text == "not(" * depth + "not" + ")" * depth
+
+
+def test_times_may_nest_as_deep_as_a_file_may():
+    inside = '<expr xmi:type="uml:TimeExpression">' * 480 + "</expr>" * 480
+    leaf = '<expr xmi:type="uml:LiteralInteger" value="5"/>'
+    nested = inside.replace("></expr>", f">{leaf}</expr>", 1)
+    assert body(f'<specification xmi:type="uml:TimeExpression">{nested}</specification>') == "5"
+
+
+@pytest.mark.parametrize(
+    ("type_name", "written", "value"),
+    [
+        ("LiteralInteger", "-3", -3),
+        ("LiteralInteger", "+3", 3),
+        ("LiteralInteger", "1_000", "1_000"),
+        ("LiteralInteger", "\u0663", "\u0663"),
+        ("LiteralInteger", "9" * 5000, "9" * 5000),
+        ("LiteralInteger", "n", "n"),
+        ("LiteralReal", "2.5e1", 25.0),
+        ("LiteralReal", "INF", "INF"),
+        ("LiteralReal", "NaN", "NaN"),
+        ("LiteralReal", "1e999", "1e999"),
+        ("LiteralUnlimitedNatural", "*", "*"),
+        ("LiteralUnlimitedNatural", "-1", "*"),
+        ("LiteralBoolean", "true", True),
+        ("LiteralString", "", ""),
+    ],
+)
+def test_a_literal_is_a_json_value_or_stays_text(type_name, written, value):
+    found = default(type_name, written)
+    assert (found, type(found)) == (value, type(value))
