@@ -33,7 +33,7 @@ def test_model_passes_and_passing_again_changes_nothing(path):
     once = print_text(graph)
     pipeline.pipeline(STRUCTURAL).run(graph, Sink(), verify_each=True)
     assert print_text(graph) == once
-    assert graph.pending == []
+    assert not graph.pending
     assert [found.message for found in sink if found.rule.code in ("SM150", "SM151")] == []
 
 

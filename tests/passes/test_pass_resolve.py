@@ -118,7 +118,7 @@ def test_missing_element_of_a_file_of_the_unit_is_an_error_at_the_reference():
         "p",
     )
     assert graph["p"].attrs["unresolved"] == ("typed-by",)
-    assert graph.pending == []
+    assert not graph.pending
 
 
 def test_what_follows_from_a_broken_reference_is_not_reported():

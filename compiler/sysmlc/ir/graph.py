@@ -6,10 +6,10 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.reference import Reference
+from sysmlc.ir.neighbours import Index, drop, every, first, put
+from sysmlc.ir.reference import Reference, References
 
 _T = TypeVar("_T")
-_Index = dict[Edge, dict[str, list[str]]]
 
 
 class Graph:
@@ -22,11 +22,14 @@ class Graph:
 
     def __init__(self) -> None:
         self._elements: dict[str, Element] = {}
-        self._of_kind: dict[Kind, dict[str, None]] = {}
-        self._out: _Index = {edge: {} for edge in Edge}
-        self._in: _Index = {edge: {} for edge in Edge}
+        self._of_kind: dict[Kind, list[Element]] = {}
+        self._fresh: list[Element] = []
+        self._stale: set[Kind] = set()
+        self._out: dict[Edge, Index] = {edge: {} for edge in Edge}
+        self._in: dict[Edge, Index] = {}
+        self._drawn: dict[Edge, list[Element]] = {edge: [] for edge in Edge}
         self._derived: dict[type, tuple[object, ...]] = {}
-        self.pending: list[Reference] = []
+        self.pending = References()
 
     # -- reading -------------------------------------------------------------------------------
 
@@ -46,9 +49,17 @@ class Graph:
         """The element with this id, or None."""
         return None if id is None else self._elements.get(id)
 
+    def find_all(self, ids: Iterable[str]) -> list[Element | None]:
+        """The elements with these ids, None for each that is not there."""
+        return list(map(self._elements.get, ids))
+
     def of_kind(self, *kinds: Kind) -> list[Element]:
         """Elements of these kinds: kind by kind, each in the order of addition."""
-        return [self._elements[id] for kind in kinds for id in self._of_kind.get(kind, ())]
+        if self._fresh or self._stale:
+            self._index_kinds()
+        if len(kinds) == 1:
+            return self._of_kind.get(kinds[0], [])[:]
+        return [element for kind in kinds for element in self._of_kind.get(kind, ())]
 
     def roots(self) -> list[Element]:
         """Elements that nothing owns."""
@@ -64,28 +75,31 @@ class Graph:
 
     def targets(self, element: Element, edge: Edge) -> list[Element]:
         """Where the element's edges of this kind lead, in order."""
-        return [self._elements[id] for id in self._out[edge].get(element.id, ())]
+        return every(self._out[edge], element.id)
 
     def sources(self, element: Element, edge: Edge) -> list[Element]:
         """Where the edges of this kind that reach the element come from, in order."""
-        return [self._elements[id] for id in self._in[edge].get(element.id, ())]
+        if edge is Edge.OWNS:
+            owner = self.owner(element)
+            return [] if owner is None else [owner]
+        return every(self._incoming(edge), element.id)
 
     def target(self, element: Element, edge: Edge) -> Element | None:
         """Where the first edge of this kind leads, or None."""
-        ids = self._out[edge].get(element.id)
-        return self._elements[ids[0]] if ids else None
+        return first(self._out[edge], element.id)
 
     def source(self, element: Element, edge: Edge) -> Element | None:
         """Where the first edge of this kind that reaches the element comes from, or None."""
-        ids = self._in[edge].get(element.id)
-        return self._elements[ids[0]] if ids else None
+        if edge is Edge.OWNS:
+            return self.owner(element)
+        return first(self._incoming(edge), element.id)
 
     def edges(self, *kinds: Edge) -> Iterator[tuple[Edge, str, str]]:
         """All edges of these kinds (of every kind when none is given) as (kind, from, to)."""
         for kind in kinds or tuple(Edge):
-            for source, targets in self._out[kind].items():
-                for target in targets:
-                    yield kind, source, target
+            for source in self._out[kind]:
+                for target in every(self._out[kind], source):
+                    yield kind, source, target.id
 
     def subtree(self, element: Element) -> Iterator[Element]:
         """The element and everything below it, owner before owned."""
@@ -133,22 +147,37 @@ class Graph:
         if element.owner is not None and element.owner not in self._elements:
             raise KeyError(element.owner)
         self._elements[element.id] = element
-        self._of_kind.setdefault(element.kind, {})[element.id] = None
+        self._fresh.append(element)
         if element.owner is not None:
-            self._append(Edge.OWNS, element.owner, element.id)
+            put(self._out[Edge.OWNS], element.owner, element)
         return element
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Add an edge unless it is there. Use ``move`` for ownership."""
         if edge is Edge.OWNS:
             raise ValueError("ownership is changed by move()")
-        self._link(edge, self._id(source), self._id(target))
+        self._link(edge, self._known(source), self._known(target))
+
+    def connect_all(
+        self, edges: Iterable[Edge], sources: Iterable[str], targets: Iterable[Element | None]
+    ) -> None:
+        """Add many edges; those without a target, or from an element that is not there, are not."""
+        starts = map(self._elements.get, sources)
+        for edge, source, target in zip(edges, starts, targets, strict=True):
+            if source is None or target is None:
+                continue
+            out = self._out[edge]
+            if source.id in out or edge in self._in:
+                self._link(edge, source, target)
+            else:
+                out[source.id] = target
+                self._drawn[edge] += (source, target)
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Remove an edge if it is there. Use ``move`` for ownership."""
         if edge is Edge.OWNS:
             raise ValueError("ownership is changed by move()")
-        self._unlink(edge, self._id(source), self._id(target))
+        self._unlink(edge, self._known(source), self._known(target))
 
     def replace_targets(self, edge: Edge, source: Element, targets: Iterable[Element]) -> None:
         """Make ``targets`` the only and ordered targets of the element's edges of this kind."""
@@ -162,17 +191,17 @@ class Graph:
         if owner is not None and any(a is element for a in (owner, *self.ancestors(owner))):
             raise ValueError(f"{element!r} cannot own itself")
         if element.owner is not None:
-            self._unlink(Edge.OWNS, element.owner, element.id)
+            drop(self._out[Edge.OWNS], element.owner, element)
         element.owner = None if owner is None else owner.id
         if owner is not None:
-            self._link(Edge.OWNS, owner.id, element.id)
+            put(self._out[Edge.OWNS], owner.id, element)
 
     def remove(self, element: Element) -> None:
         """Remove the element, what it owns, and all their edges."""
         for doomed in reversed(list(self.subtree(element))):
-            self._cut(doomed.id)
+            self._cut(doomed)
             del self._elements[doomed.id]
-            del self._of_kind[doomed.kind][doomed.id]
+            self._stale.add(doomed.kind)
 
     def rename(self, element: Element, name: str) -> None:
         """Give the element another name."""
@@ -202,36 +231,50 @@ class Graph:
 
     # -- inside --------------------------------------------------------------------------------
 
-    def _id(self, element: Element | str) -> str:
-        id = element if isinstance(element, str) else element.id
-        if id not in self._elements:
-            raise KeyError(id)
-        return id
+    def _known(self, element: Element | str) -> Element:
+        return self._elements[element if isinstance(element, str) else element.id]
 
-    def _link(self, edge: Edge, source: str, target: str) -> None:
-        if target not in self._out[edge].get(source, ()):
-            self._append(edge, source, target)
+    def _index_kinds(self) -> None:
+        for element in self._fresh:
+            self._of_kind.setdefault(element.kind, []).append(element)
+        self._fresh.clear()
+        for kind in self._stale:
+            left = self._of_kind.get(kind, [])
+            self._of_kind[kind] = [e for e in left if self._elements.get(e.id) is e]
+        self._stale.clear()
 
-    def _append(self, edge: Edge, source: str, target: str) -> None:
-        self._out[edge].setdefault(source, []).append(target)
-        self._in[edge].setdefault(target, []).append(source)
+    def _incoming(self, edge: Edge) -> Index:
+        """The way back, made when it is asked for first: many kinds are only followed forwards."""
+        known = self._in.get(edge)
+        if known is None:
+            known = self._in[edge] = {}
+            ends = iter(self._drawn.pop(edge))
+            for source, target in zip(ends, ends, strict=True):
+                put(known, target.id, source)
+        return known
 
-    def _unlink(self, edge: Edge, source: str, target: str) -> None:
-        if target not in self._out[edge].get(source, ()):
+    def _link(self, edge: Edge, source: Element, target: Element) -> None:
+        if not put(self._out[edge], source.id, target):
             return
-        _drop(self._out[edge], source, target)
-        _drop(self._in[edge], target, source)
+        known = self._in.get(edge)
+        if known is None:
+            self._drawn[edge] += (source, target)
+        else:
+            put(known, target.id, source)
 
-    def _cut(self, id: str) -> None:
-        for edge in Edge:
-            for target in tuple(self._out[edge].get(id, ())):
-                self._unlink(edge, id, target)
-            for source in tuple(self._in[edge].get(id, ())):
-                self._unlink(edge, source, id)
+    def _unlink(self, edge: Edge, source: Element, target: Element) -> None:
+        if drop(self._out[edge], source.id, target):
+            drop(self._incoming(edge), target.id, source)
+
+    def _cut(self, element: Element) -> None:
+        if element.owner is not None:
+            drop(self._out[Edge.OWNS], element.owner, element)
+        for edge in _DRAWN:
+            if self._out[edge]:
+                for target in self.targets(element, edge):
+                    self._unlink(edge, element, target)
+                for source in self.sources(element, edge):
+                    self._unlink(edge, source, element)
 
 
-def _drop(index: dict[str, list[str]], key: str, value: str) -> None:
-    values = index[key]
-    values.remove(value)
-    if not values:
-        del index[key]
+_DRAWN = tuple(edge for edge in Edge if edge is not Edge.OWNS)

@@ -1,5 +1,6 @@
 """References as a front end found them, before they are edges."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from sysmlc.ir.kinds import Edge, Kind
@@ -20,3 +21,48 @@ class Reference(NamedTuple):
     kind: Kind = Kind.CLASS
     name: str = ""
     ordinal: int = -1
+
+
+class References:
+    """References in the order in which they were found, as columns.
+
+    A large model has as many references as elements, and next to none says more than edge,
+    source and target: a tuple for each would cost more than the edge that comes of it.
+    """
+
+    __slots__ = ("edges", "ordinals", "said", "sources", "targets")
+
+    def __init__(self) -> None:
+        self.edges: list[Edge] = []
+        self.sources: list[str] = []
+        self.targets: list[str] = []
+        self.ordinals: list[int] = []
+        self.said: dict[int, tuple[Kind, str]] = {}
+        """What is known of external targets, by the number of the reference."""
+
+    def __len__(self) -> int:
+        return len(self.edges)
+
+    def __iter__(self) -> Iterator[Reference]:
+        return map(self.__getitem__, range(len(self.edges)))
+
+    def __getitem__(self, number: int) -> Reference:
+        kind, name = self.said.get(number, (Kind.CLASS, ""))
+        ordinal = self.ordinals[number]
+        edge, source, target = self.edges[number], self.sources[number], self.targets[number]
+        return Reference(edge, source, target, kind, name, ordinal)
+
+    def append(self, reference: Reference) -> None:
+        """Add a reference."""
+        edge, source, target, kind, name, ordinal = reference
+        if name or kind is not Kind.CLASS:
+            self.said[len(self.edges)] = (kind, name)
+        self.edges.append(edge)
+        self.sources.append(source)
+        self.targets.append(target)
+        self.ordinals.append(ordinal)
+
+    def clear(self) -> None:
+        """Forget all references."""
+        for column in (self.edges, self.sources, self.targets, self.ordinals, self.said):
+            column.clear()

@@ -33,15 +33,16 @@ def verify(graph: Graph) -> list[str]:
 
 def _ownership(graph: Graph) -> Iterator[str]:
     reached = {element.id for root in graph.roots() for element in graph.subtree(root)}
+    owners = {owned: owner for _, owner, owned in graph.edges(Edge.OWNS)}
     for element in graph:
         if element.id not in reached:
             yield f"{element!r} ({element.id}) is not below a root"
-        yield from _owner(graph, element)
+        yield from _owner(graph, element, owners.get(element.id))
 
 
-def _owner(graph: Graph, element: Element) -> Iterator[str]:
+def _owner(graph: Graph, element: Element, above: str | None) -> Iterator[str]:
     owner = graph.owner(element)
-    if graph.source(element, Edge.OWNS) is not owner:
+    if element.owner != above:
         yield f"{element!r} ({element.id}) is not owned by its owner {owner!r}"
     allowed = _OWNERS.get(element.kind)
     if owner is not None and allowed is not None and owner.kind not in allowed:

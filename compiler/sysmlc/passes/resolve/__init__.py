@@ -76,22 +76,34 @@ class Resolve:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Resolve in place; see the class."""
-        uses = [*_references(graph), *_attributes(graph)]
+        pending = graph.pending
+        targets = graph.find_all(pending.targets)
+        elsewhere = _elsewhere(graph, targets)
+        uses = [*_attributes(graph)]
         answers = _Answers(graph, Targets(graph))
-        answers.find(uses)
-        graph.pending.clear()
-        lost = [use for use in uses if not _settle(graph, use, answers.get(use.holder, use.target))]
+        answers.find([*elsewhere.values(), *uses])
+        for number, use in elsewhere.items():
+            targets[number] = answers.get(use.holder, use.target)
+        graph.connect_all(pending.edges, pending.sources, targets)
+        pending.clear()
+        lost = [use for number, use in elsewhere.items() if targets[number] is None]
+        lost += [use for use in uses if answers.get(use.holder, use.target) is None]
         _report_lost(graph, sink, lost)
         keep_first_ends(graph, sink)
         _rewrite(graph, answers, uses)
         _report_libraries(graph, sink, answers.outside)
 
 
-def _references(graph: Graph) -> Iterator[_Use]:
-    for one in graph.pending:
-        holder = graph.get(one.source)
-        if holder is not None:
-            yield _Use(holder, one.target, one.kind, one.name, one.ordinal, edge=one.edge)
+def _elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, _Use]:
+    """The references, by number, whose target is no id of the graph."""
+    uses: dict[int, _Use] = {}
+    for number, target in enumerate(targets):
+        if target is None:
+            one = graph.pending[number]
+            holder = graph.get(one.source)
+            if holder is not None:
+                uses[number] = _Use(holder, one.target, one.kind, one.name, one.ordinal, one.edge)
+    return uses
 
 
 def _attributes(graph: Graph) -> Iterator[_Use]:
@@ -183,12 +195,6 @@ def _stand_in(graph: Graph, href: str, uses: list[_Use]) -> None:
 # -- writing down ------------------------------------------------------------------------------
 
 
-def _settle(graph: Graph, use: _Use, target: Element | None) -> bool:
-    if target is not None and use.edge is not None:
-        graph.connect(use.edge, use.holder, target)
-    return target is not None
-
-
 def _report_lost(graph: Graph, sink: Sink, lost: list[_Use]) -> None:
     """Report what leads nowhere; of a long list of one element all at once."""
     lists: dict[tuple[str, str], list[_Use]] = {}
@@ -238,9 +244,8 @@ def _subject(graph: Graph, use: _Use) -> Subject:
     return Subject(subject.name, subject.id, Place(use.holder.source, use.ordinal))
 
 
-def _rewrite(graph: Graph, answers: _Answers, uses: list[_Use]) -> None:
-    held = {(use.holder, use.attribute): None for use in uses if use.attribute}
-    for holder, name in held:
+def _rewrite(graph: Graph, answers: _Answers, held: list[_Use]) -> None:
+    for holder, name in dict.fromkeys((use.holder, use.attribute) for use in held):
         graph.set(holder, **{name: _renamed(answers, holder, holder.attrs[name])})
 
 

@@ -1,0 +1,69 @@
+"""Neighbours of elements by edges of one kind, compact: most elements have one, some thousands."""
+
+from sysmlc.ir.element import Element
+
+Neighbours = Element | list[Element] | dict[Element, None]
+"""One neighbour stands for itself; several are a list, many a dict, each in order of addition."""
+
+Index = dict[str, Neighbours]
+"""Neighbours by the id of the element that they belong to; no entry where there is none."""
+
+_MANY = 16
+"""From here on a dict, so that neither a search nor a removal looks at all neighbours."""
+
+
+def put(index: Index, id: str, neighbour: Element) -> bool:
+    """Add a neighbour; False when it is there already."""
+    known = index.get(id)
+    if known is None:
+        index[id] = neighbour
+    elif isinstance(known, Element):
+        if known is neighbour:
+            return False
+        index[id] = [known, neighbour]
+    elif neighbour in known:
+        return False
+    elif isinstance(known, dict):
+        known[neighbour] = None
+    elif len(known) < _MANY:
+        known.append(neighbour)
+    else:
+        index[id] = dict.fromkeys((*known, neighbour))
+    return True
+
+
+def drop(index: Index, id: str, neighbour: Element) -> bool:
+    """Remove a neighbour; False when it is not there."""
+    known = index.get(id)
+    if known is None:
+        return False
+    if isinstance(known, Element):
+        if known is not neighbour:
+            return False
+        del index[id]
+        return True
+    if neighbour not in known:
+        return False
+    if isinstance(known, dict):
+        del known[neighbour]
+    else:
+        known.remove(neighbour)
+    if not known:
+        del index[id]
+    return True
+
+
+def every(index: Index, id: str) -> list[Element]:
+    """All neighbours, in order of addition."""
+    known = index.get(id)
+    if known is None:
+        return []
+    return [known] if isinstance(known, Element) else list(known)
+
+
+def first(index: Index, id: str) -> Element | None:
+    """The neighbour that was added first, or None."""
+    known = index.get(id)
+    if known is None or isinstance(known, Element):
+        return known
+    return next(iter(known))
