@@ -55,10 +55,15 @@ _DEFAULTS = {
     "uml:CallBehaviorAction": {"isSynchronous": "true"},
     "uml:Pseudostate": {"kind": "initial"},
     "uml:Transition": {"kind": "external"},
+    "uml:Message": {"messageKind": "complete", "messageSort": "synchCall"},
+    "uml:CombinedFragment": {"interactionOperator": "seq"},
     "uml:LiteralBoolean": {"value": "false"},
     "uml:LiteralInteger": {"value": "0"},
 }
 """What Enterprise Architect writes and Papyrus leaves out."""
+
+_WRITTEN_AS = {"uml:MessageOccurrenceSpecification": "uml:OccurrenceSpecification"}
+"""Metaclasses for which it writes a more general one."""
 
 
 def write_xmi(papyrus: bytes) -> bytes:
@@ -113,7 +118,7 @@ class _Writer:
 
     def _copy_content(self, source: Element, made: Element) -> None:
         if _TYPE in source.attrib:
-            made.set(_TYPE, source.attrib[_TYPE])
+            made.set(_TYPE, _WRITTEN_AS.get(_type(source), _type(source)))
         for name, value in {**_DEFAULTS.get(_type(source), {}), **source.attrib}.items():
             if name != _TYPE and name not in _NOT_SAVED:
                 self._feature(made, str(name), str(value))

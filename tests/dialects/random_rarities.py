@@ -18,6 +18,10 @@ class Rarities:
             self._interface,
             self._signal_content,
             self._use_case,
+            self._extension,
+            self._collaboration,
+            self._template,
+            self._submachine,
             self._value_activity,
             self._structured_activity,
             self._interruptible_activity,
@@ -108,6 +112,52 @@ class Rarities:
             for i, one in enumerate((actor, case))
         ]
         self.document.set(link, memberEnd=ends)
+
+    def _extension(self) -> None:
+        add = self.document.add
+        base, more = self._packaged("UseCase", "Run"), self._packaged("UseCase", "Refill")
+        point = add(base, "extensionPoint", "ExtensionPoint", "low")
+        extend = add(more, "extend", "Extend", extendedCase=base, extensionLocation=[point])
+        if self.structure.maybe():
+            rule = add(extend, "condition", "Constraint")
+            self.document.opaque(rule, "specification", "level < 3", "OCL")
+
+    def _collaboration(self) -> None:
+        add, block = self.document.add, self.random.choice(self.structure.blocks)
+        made = self._packaged("Collaboration", "Feeding")
+        role = add(made, "ownedAttribute", "Property", "feeder", type=block.element)
+        self.document.set(made, collaborationRole=[role])
+        user = self._packaged("Class", "Cell")
+        part = add(user, "ownedAttribute", "Property", "gate", type=block.element)
+        use = add(user, "collaborationUse", "CollaborationUse", "feeding", type=made)
+        add(use, "roleBinding", "Dependency", client=[role], supplier=[part])
+
+    def _template(self) -> None:
+        add = self.document.add
+        made, bound = self._packaged("Class", "Stack"), self._packaged("Class", "Pallets")
+        signature = add(made, "ownedTemplateSignature", "RedefinableTemplateSignature", "sig")
+        formal = add(signature, "ownedParameter", "ClassifierTemplateParameter")
+        item = add(formal, "ownedParameteredElement", "Class", "T")
+        self.document.set(formal, parameteredElement=item)
+        self.document.set(signature, parameter=[formal])
+        add(made, "ownedAttribute", "Property", "top", type=item)
+        binding = add(bound, "templateBinding", "TemplateBinding", signature=signature)
+        substitution = add(binding, "parameterSubstitution", "TemplateParameterSubstitution")
+        actual = self.structure.items[0]
+        self.document.set(substitution, formal=formal, actual=actual)
+
+    def _submachine(self) -> None:
+        add = self.document.add
+        inner, outer = (
+            self._packaged("StateMachine", "Inner"),
+            self._packaged("StateMachine", "Use"),
+        )
+        entry = add(inner, "connectionPoint", "Pseudostate", "go in", kind="entryPoint")
+        region = add(outer, "region", "Region", "Region1")
+        state = add(region, "subvertex", "State", "nested", submachine=inner)
+        point = add(state, "connection", "ConnectionPointReference", "at", entry=[entry])
+        start = add(region, "subvertex", "Pseudostate", "Initial")
+        add(region, "transition", "Transition", "", source=start, target=point)
 
     # -- activities ----------------------------------------------------------------------------
 

@@ -110,7 +110,10 @@ def test_random_models_hold_what_they_promise():
     wanted = """uml:Port isConjugated PortsAndFlows:FlowProperty Blocks:NestedConnectorEnd
         uml:InformationFlow uml:StateMachine uml:TimeEvent uml:DecisionNode uml:ForkNode
         uml:InputPin Requirements:Requirement Allocations:Allocate Plant:Robot uml:Stereotype
-        uml:Enumeration uml:Generalization uml:Operation uml:ActivityPartition"""
+        uml:Enumeration uml:Generalization uml:Operation uml:ActivityPartition uml:Interaction
+        uml:CombinedFragment uml:ConsiderIgnoreFragment uml:InteractionUse uml:StateInvariant
+        uml:BehaviorExecutionSpecification uml:DurationConstraint uml:Gate uml:Extend
+        uml:CollaborationUse uml:TemplateBinding uml:ConnectionPointReference"""
     assert [word for word in wanted.split() if word not in text] == []
 
 
