@@ -1,6 +1,6 @@
 """Questions that passes and back ends ask of a graph, answered without changing it."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
@@ -289,6 +289,29 @@ def connectors_of(graph: Graph, role: Element) -> Iterator[Element]:
         connector = graph.source(end, Edge.END)
         if connector is not None:
             yield connector
+
+
+def allocated_to(graph: Graph, element: Element) -> list[Element]:
+    """What the element is allocated to: itself, or what it is a usage of.
+
+    What a definition is allocated to holds for all its usages (SysML 1.6 clause 15.3.1.1): the
+    type of a part, the behaviour that an action calls.
+    """
+    return _allocated(graph, element, graph.targets)
+
+
+def allocated_from(graph: Graph, element: Element) -> list[Element]:
+    """What is allocated to the element, or to what it is a usage of."""
+    return _allocated(graph, element, graph.sources)
+
+
+def _allocated(
+    graph: Graph, element: Element, follow: Callable[[Element, Edge], list[Element]]
+) -> list[Element]:
+    definitions = [*graph.targets(element, Edge.CALLS), type_of(graph, element)]
+    known = [element, *(one for one in definitions if one is not None)]
+    found = (other for one in known for other in follow(one, Edge.ALLOCATED_TO))
+    return list(dict.fromkeys(found))
 
 
 def opposite(direction: str | None) -> str | None:

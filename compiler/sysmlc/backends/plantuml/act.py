@@ -90,6 +90,8 @@ class _Drawing:
     def _lane_name(self, partition: Element) -> str:
         represented = self.graph.targets(partition, Edge.REPRESENTS)
         names = ", ".join(labels.typed(self.graph, item) for item in represented)
+        if partition.role == "allocate partition":
+            return f"«allocate» {names or partition.name or 'partition'}"
         if not partition.name.strip() or partition.name == names:
             return names or "partition"
         return f"{partition.name}: {names}" if names else partition.name

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
 from sysmlc.backends.plantuml.text import label, lines
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -97,13 +97,14 @@ def _action(graph: Graph, node: Element) -> Look:
     extra = [item for item in graph.owned(node) if item.kind in (Kind.TRIGGER, Kind.CONSTRAINT)]
     rows = [*_body(node), *_called(node, called), *_extra(graph, node, extra)]
     rows += [row for pin in pins for row in _pin(graph, pin)]
+    allocations, ids = allocated.of_node(graph, node)
     return Look(
         _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
         label(_title(node, called)),
         _words(graph, node),
-        tuple(rows),
+        (*rows, *allocations),
         pins=tuple(pin.id for pin in pins),
-        shows=tuple(item.id for item in extra),
+        shows=(*(item.id for item in extra), *ids),
     )
 
 

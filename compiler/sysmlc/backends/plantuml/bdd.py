@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from sysmlc.backends.plantuml import labels, measured, split, uc
+from sysmlc.backends.plantuml import allocated, labels, measured, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
@@ -55,7 +55,7 @@ _BY_KIND = {
 }
 _TITLES = (
     "literals values parts references attributes flow_properties ports "
-    "parameters constraints operations receptions slots behaviors"
+    "parameters constraints operations receptions slots behaviors allocations"
 )
 _ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
 _ROW = 64
@@ -256,7 +256,9 @@ def box(
             rows.setdefault(title, []).extend(_rows(graph, feature))
             shows += [part.id for part in _all(graph, feature)]
             shows += in_rows.get(feature.id, ())
-    compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if t in rows)
+    rows["allocations"], allocations = allocated.of_block(graph, item)
+    shows += allocations
+    compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if rows.get(t))
     measures = measured.rows(graph, item)
     if measures:
         compartments = (Compartment("", measures), *compartments)

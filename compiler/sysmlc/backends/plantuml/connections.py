@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
 
@@ -48,13 +48,13 @@ class Connection:
 
 
 def connections(graph: Graph, block: Element) -> list[Connection]:
-    """Connectors of the block, and item flows between its own features without a connector.
+    """Connectors of the block; item flows without a connector and allocations between features.
 
     What is bound to a constraint parameter stands in the parametric diagram.
     """
     owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
     drawn = [made for item in owned for made in _connector(graph, item)]
-    return [*drawn, *_free_flows(graph, block)]
+    return [*drawn, *_free_flows(graph, block), *_allocations(graph, block)]
 
 
 def _connector(graph: Graph, connector: Element) -> Iterator[Connection]:
@@ -178,6 +178,12 @@ def _free_flows(graph: Graph, block: Element) -> Iterator[Connection]:
 def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:
     text = f"«flow» {conveyed(graph, flow)}"
     return Connection(_direct(source), _direct(target), "..>", text, shows=(flow.id,))
+
+
+def _allocations(graph: Graph, block: Element) -> Iterator[Connection]:
+    for dependency, client, supplier in allocated.between_features(graph, block):
+        text = " ".join(part for part in ("«allocate»", dependency.name) if part)
+        yield Connection(_direct(client), _direct(supplier), "..>", text, shows=(dependency.id,))
 
 
 def _direct(feature: Element) -> Path:

@@ -7,6 +7,7 @@ from typing import ClassVar
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
+from sysmlc.passes.classify.allocations import add_allocations
 from sysmlc.passes.classify.bindings import add_bindings
 from sysmlc.passes.classify.lineage import (
     Ancestor,
@@ -53,6 +54,7 @@ class Classify:
         _give_levels(graph, lineages)
         _give_values(graph)
         add_bindings(graph)
+        add_allocations(graph)
         add_relations(graph, sink)
         check_requirements(graph, sink)
 

@@ -1,0 +1,72 @@
+"""Allocation in activities and of definitions."""
+
+import pytest
+from passing import again, refined
+
+from sysmlc.ir import Edge
+from sysmlc.ir.query import allocated_from, allocated_to
+from sysmlc.ir.text import print_text
+
+SYSML = 'namespace="http://www.omg.org/spec/SysML/20150709/SysML"'
+LANES = f"""\
+Class robot "Robot"
+Class cell "Cell"
+  Property arm "arm" aggregation="composite"
+    -> typed-by robot
+Activity job "Job"
+  Partition lane "lane"
+    -> represents arm
+    Application s stereotype="AllocateActivityPartition" {SYSML}
+      -> subject lane
+    Partition inner "inner"
+  Partition plain "plain"
+    -> represents cell
+  Action pick "pick" subkind="opaque"
+    -> in-partition lane
+  Action place "place" subkind="call-behavior"
+    -> in-partition inner
+    -> calls move
+  Action look "look" subkind="opaque"
+    -> in-partition plain
+  Control start subkind="initial"
+    -> in-partition lane
+Activity move "Move"
+"""
+DEFINITION = f"""\
+Dependency d subkind="abstraction"
+  -> client move
+  -> supplier robot
+  Application a stereotype="Allocate" {SYSML}
+    -> subject d
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "expected"), [("pick", ["arm"]), ("place", ["arm"]), ("look", []), ("start", [])]
+)
+def test_actions_in_an_allocate_partition_go_to_what_it_represents(node, expected):
+    graph, _ = refined(LANES, "classify")
+    assert [one.id for one in graph.targets(graph[node], Edge.ALLOCATED_TO)] == expected
+
+
+def test_a_second_run_changes_nothing():
+    graph, _ = refined(LANES, "classify")
+    once = print_text(graph)
+    assert again(graph, "classify") == once
+
+
+def test_an_allocation_of_a_definition_holds_for_its_usages():
+    graph, _ = refined(LANES + DEFINITION, "classify")
+    assert [one.id for one in allocated_to(graph, graph["place"])] == ["arm", "robot"]
+    assert [one.id for one in allocated_to(graph, graph["move"])] == ["robot"]
+    assert [one.id for one in allocated_to(graph, graph["look"])] == []
+    assert [one.id for one in allocated_from(graph, graph["arm"])] == ["pick", "place", "move"]
+
+
+@pytest.mark.parametrize("way", ["allocatedTo", "allocatedFrom"])
+def test_the_tags_of_sysml_1_2_say_the_same(way):
+    here, there = ("pick", "arm") if way == "allocatedTo" else ("arm", "pick")
+    tags = f'  Application b stereotype="Allocated" {SYSML} tag.{way}="{there}"\n'
+    text = LANES.replace("AllocateActivityPartition", "Other") + tags + f"    -> subject {here}\n"
+    graph, _ = refined(text, "classify")
+    assert graph.targets(graph["pick"], Edge.ALLOCATED_TO) == [graph["arm"]]
