@@ -16,11 +16,12 @@ from sysmlc.frontends.xmi import (
     links,
     lowering,
     rules,
+    snapshot_parts,
     snapshot_use,
 )
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document, read
-from sysmlc.frontends.xmi.snapshot import Snapshots, is_snapshot
+from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
 from sysmlc.ir.drawing import Drawing
@@ -55,8 +56,11 @@ class XmiFrontend:
             documents = [d for source in models if (d := _read(source, sink)) is not None]
             unit = Unit(documents, graph)
             contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
-            if beside:
-                _add_library(unit, contexts, models, snapshot_use.read(beside, sink), coverage)
+            models, parts = snapshot_parts.split(models)
+            if beside or parts:
+                snapshots = snapshot_use.read([*beside, *parts], sink)
+                snapshot_use.add(unit, contexts, models, snapshots)
+                snapshot_use.account(snapshots, beside, unit, coverage)
             _finish(unit, contexts, sink, coverage)
 
     def companions(self, name: str) -> Sequence[str]:
@@ -70,17 +74,6 @@ class XmiFrontend:
         ordered = sorted(sources, key=lambda source: source.name)
         models = [source for source in ordered if not is_snapshot(source)]
         graph.store(Drawing, [*graph.derived(Drawing), *drawings.read(models, beside, sink)])
-
-
-def _add_library(
-    unit: Unit,
-    contexts: list[Context],
-    models: list[Source],
-    snapshots: Snapshots,
-    coverage: Coverage,
-) -> None:
-    snapshot_use.add(unit, contexts, models, snapshots)
-    snapshot_use.account(snapshots, unit, coverage)
 
 
 def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:

@@ -48,11 +48,15 @@ def _hrefs(model: Source) -> Iterator[tuple[str, str]]:
 
 
 def _stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[str]:
-    """Ids of the stereotypes that the models apply: applications name them, not refer to them."""
+    """Ids of the custom stereotypes that the models apply.
+
+    Applications do not refer to them: the profile is named in a namespace that MagicDraw makes.
+    """
     applied = {
         (mangled(c.document.features[row]), last_segment(c.document.namespace(row)))
         for c in contexts
         for row in c.applications
+        if c.document.namespace(row).endswith(".xmi")
     }
     for entry in snapshots.entries.values():
         if entry.type == "Stereotype":
@@ -79,13 +83,17 @@ def _name(source: str, paths: Counter[str]) -> str:
     return project[1].replace("$h", "-") if project else source
 
 
-def account(snapshots: Snapshots, unit: Unit, coverage: Coverage) -> None:
-    """Count every element of the snapshots once: what no model needs stays outside."""
+def account(snapshots: Snapshots, files: Iterable[Source], unit: Unit, coverage: Coverage) -> None:
+    """Count every element of the snapshots once: what no model needs stays outside.
+
+    ``files`` are the snapshots that are files; parts of a model are counted there.
+    """
     used = {name: Counter[str]() for name in snapshots.counts}
     for id in unit.library:
         entry = snapshots.entries[id]
         used[entry.source][_written(entry)] += 1
-    for name, counts in snapshots.counts.items():
+    for name in (file.name for file in files if file.name in snapshots.counts):
+        counts = snapshots.counts[name]
         for type_name, number in counts.items():
             mapped = min(used[name][type_name], number)
             if mapped:
