@@ -21,6 +21,8 @@ _PACKAGES = {
     "Allocations": "Allocations",
     "Blocks": "Blocks",
     "ConstraintBlocks": "ConstraintBlocks",
+    "DeprecatedElements": "DeprecatedElements",
+    "ModelElements": "ModelElements",
     "PortsAndFlows": "Ports_u0026Flows",
     "Requirements": "Requirements",
 }
@@ -167,7 +169,12 @@ class PapyrusDocument:
         return id_
 
 
-_BASES = {"TestCase": "Behavior", "ValueType": "DataType"}
+_BASES = {
+    "TestCase": "Behavior",
+    "ValueType": "DataType",
+    "DirectedFeature": "Feature",
+    **dict.fromkeys(("Continuous", "Discrete", "Probability", "Rate"), "ActivityEdge"),
+}
 """Stereotypes whose base property names a general metaclass."""
 
 

@@ -7,6 +7,7 @@ from dialects.random_behaviour import Behaviours
 from dialects.random_interactions import Interactions
 from dialects.random_rarities import Rarities
 from dialects.random_structure import PLANT, Structure
+from dialects.random_sysml import Meanings
 from dialects.random_wider import Wider
 
 
@@ -18,5 +19,6 @@ def random_model(random: Random, size: int = 3) -> bytes:
     Rarities(structure)
     Interactions(structure)
     Wider(structure)
+    Meanings(structure)
     document.apply_sysml()
     return document.bytes()
