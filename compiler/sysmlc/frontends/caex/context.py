@@ -1,14 +1,18 @@
 """What the readers of nodes share: the graph, ids, and findings about what leads nowhere."""
 
 from collections import Counter
+from collections.abc import Callable
 
 from sysmlc.diagnostics import Rule, Sink, Subject, Verdict
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.paths import plain
+from sysmlc.frontends.caex.paths import plain, split
 from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
+
+Provide = Callable[["Context", Family, str], bool]
+"""Adds a standard library to the graph; says whether there is one of that name."""
 
 _ROOTS = frozenset({*LIBRARIES, "InstanceHierarchy"})
 
@@ -17,12 +21,13 @@ class Context:
     """The lowering of the files of one unit."""
 
     def __init__(
-        self, documents: list[Document], built_in: Document, graph: Graph, sink: Sink
+        self, documents: list[Document], graph: Graph, sink: Sink, provide: Provide
     ) -> None:
         self.documents = documents
         self.graph = graph
         self.sink = sink
-        self.types = Types(documents, built_in)
+        self.types = Types(documents)
+        self._provide = provide
         self.nodes: dict[str, tuple[Document, Node]] = {}
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
@@ -68,6 +73,7 @@ class Context:
         id = id or self.id_of(node, document, owner)
         element = Element(id, kind, name, owner, node.ordinal, document.name, given)
         if document.is_built_in:
+            element.source, element.ordinal = "", -1
             element.attrs["external"] = True
         self.graph.add(element)
         node.element = id
@@ -98,14 +104,19 @@ class Context:
 
     def type(self, text: str, family: Family, document: Document, node: Node) -> Type | None:
         """The class that a path means; what leads nowhere is kept for one report."""
-        found = self.types.find(text, family, document)
-        return self.known(found, document, node)
-
-    def known(self, found: Type | Missing | None, document: Document, node: Node) -> Type | None:
-        """The class that was found, or None; a path that leads nowhere is noted."""
+        found = self.look_up(text, family, document)
         if isinstance(found, Missing):
             self.missing.setdefault(found, []).append((document, node))
             return None
+        return found
+
+    def look_up(self, text: str, family: Family, document: Document) -> Type | Missing:
+        """The class that a path means, in the unit or else in a standard library."""
+        found = self.types.find(text, family, document)
+        if isinstance(found, Missing) and found.what in ("library", "file"):
+            library = split(text).names[0]
+            if self._provide(self, family, library):
+                return self.types.find(text, family, document)
         return found
 
     # -- findings ------------------------------------------------------------------------------

@@ -3,20 +3,25 @@
 import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import cache
 
-from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.caex import account, detect, features, libraries, mirrors, roles, rules
+from sysmlc.frontends.caex import (
+    account,
+    detect,
+    features,
+    libraries,
+    mirrors,
+    roles,
+    rules,
+)
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, read
 from sysmlc.frontends.caex.links import Links
 from sysmlc.frontends.caex.sites import Sites
+from sysmlc.frontends.caex.standard import Standard
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
-
-_LIBRARIES = "automationml-libraries.aml"
 
 
 class CaexFrontend:
@@ -41,7 +46,7 @@ class CaexFrontend:
         ordered = sorted(sources, key=lambda source: source.name)
         with _no_collection():
             documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-            context = Context(documents, _built_in(), graph, sink)
+            context = Context(documents, graph, sink, Standard().provide)
             _lower(context)
             account.account(context, coverage)
 
@@ -67,12 +72,6 @@ def _lower(context: Context) -> None:
     drawn = Links(context, sites)
     for document in context.documents:
         drawn.lower(document)
-
-
-@cache
-def _built_in() -> Document:
-    path = resources.path("metamodels", _LIBRARIES)
-    return read(Source(_LIBRARIES, path.read_bytes()), is_built_in=True)
 
 
 @contextmanager

@@ -28,7 +28,7 @@ def roles_of(context: Context, site: Site) -> Iterator[Type]:
     """The role classes that an internal element names and that are known."""
     for node in site.node.of(*ROLE_REFERENCES):
         path = node.attributes.get(ROLE_REFERENCES[node.tag], "").strip()
-        found = context.types.find(path, Family.ROLE, site.document) if path else None
+        found = context.look_up(path, Family.ROLE, site.document) if path else None
         if isinstance(found, Type):
             yield found
 

@@ -16,11 +16,12 @@ from sysmlc.ir import Edge, Kind
 def lower(context: Context, document: Document) -> list[Type]:
     """Add the libraries of a file with their classes, nested ones below the class around them."""
     return [
-        type for node in document.root.of(*LIBRARIES) for type in _library(context, document, node)
+        type for node in document.root.of(*LIBRARIES) for type in library(context, document, node)
     ]
 
 
-def _library(context: Context, document: Document, node: Node) -> Iterator[Type]:
+def library(context: Context, document: Document, node: Node) -> Iterator[Type]:
+    """Add one library; its classes in document order."""
     family, class_tag, subkind = LIBRARIES[node.tag]
     context.add(Kind.PACKAGE, node, document, None, subkind=subkind, version=node.text("Version"))
     waiting = [(child, node) for child in reversed(node.children) if child.tag == class_tag]
@@ -56,7 +57,9 @@ def specialise(context: Context, types: list[Type]) -> None:
     """Tie every class to what it specialises; a circle is reported and cut."""
     for type in types:
         found = context.types.base(type)
-        type.base = context.known(found, type.document, type.node)
+        if isinstance(found, str):
+            found = context.type(found, type.family, type.document, type.node)
+        type.base = found
     acyclic: set[Type] = set()
     for type in types:
         _cut_cycle(context, type, acyclic)

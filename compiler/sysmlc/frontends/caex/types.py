@@ -68,55 +68,58 @@ class Missing(NamedTuple):
 class Types:
     """All classes of a unit by file, family and path."""
 
-    def __init__(self, documents: list[Document], built_in: Document) -> None:
-        self.built_in = built_in
+    def __init__(self, documents: list[Document]) -> None:
         self._by_path: dict[tuple[str, Family, tuple[str, ...]], Type] = {}
         self._libraries: set[tuple[str, Family, str]] = set()
-        self._documents = {document.name: document for document in documents}
+        self._documents = {document.name for document in documents}
         self._aliases: dict[tuple[str, str], str] = {}
-        for document in (*documents, built_in):
-            for library in document.root.of(*LIBRARIES):
-                self._libraries.add((document.name, LIBRARIES[library.tag][0], library.name))
+        self._standard: dict[tuple[Family, str], str] = {}
+        for document in documents:
+            for node in document.root.of(*LIBRARIES):
+                self._libraries.add((document.name, LIBRARIES[node.tag][0], node.name))
 
     def declare(self, document: Document, alias: str, file: str) -> None:
         """The file's alias means another file (which may not be there)."""
         self._aliases.setdefault((document.name, alias), file)
 
+    def hold(self, document: Document, family: Family, library: str) -> None:
+        """A standard library is provided; it is asked where a file has none of its name."""
+        self._standard[family, library] = document.name
+
     def add(self, type: Type) -> None:
         """Know a class under its path; of two with the same path the first counts."""
         self._by_path.setdefault((type.document.name, type.family, type.path), type)
 
-    def __iter__(self) -> Iterator[Type]:
-        return iter(self._by_path.values())
-
     def find(self, text: str, family: Family, document: Document) -> Type | Missing:
         """The class that a path means in a file."""
         alias, names = split(text)
-        file = document.name
-        if alias:
-            declared = self._aliases.get((document.name, alias))
-            if declared is None:
-                return Missing("alias", alias)
-            if declared not in self._documents:
-                return Missing("file", declared)
-            file = declared
-        found = self._by_path.get((file, family, names))
-        if found is None and (file, family, names[0]) not in self._libraries:
-            found = self._by_path.get((self.built_in.name, family, names))
-            if found is None:
-                return self._outside(family, names[0])
-        return found or Missing("class", "/".join(names))
+        file = self._file(document, alias)
+        if isinstance(file, Missing) and file.what == "alias":
+            return file
+        if isinstance(file, Missing) or (file, family, names[0]) not in self._libraries:
+            return self._in_standard(family, names, file)
+        return self._by_path.get((file, family, names)) or Missing("class", "/".join(names))
 
-    def _outside(self, family: Family, library: str) -> Missing:
-        is_known = (self.built_in.name, family, library) in self._libraries
-        return Missing("class" if is_known else "library", library)
+    def _file(self, document: Document, alias: str) -> str | Missing:
+        if not alias:
+            return document.name
+        declared = self._aliases.get((document.name, alias))
+        if declared is None:
+            return Missing("alias", alias)
+        return declared if declared in self._documents else Missing("file", declared)
 
-    def base(self, type: Type) -> "Type | Missing | None":
-        """What the class specialises: a bare name means the class around it."""
+    def _in_standard(
+        self, family: Family, names: tuple[str, ...], file: str | Missing
+    ) -> Type | Missing:
+        held = self._standard.get((family, names[0]))
+        if held is None:
+            return file if isinstance(file, Missing) else Missing("library", names[0])
+        return self._by_path.get((held, family, names)) or Missing("class", "/".join(names))
+
+    def base(self, type: Type) -> "Type | str | None":
+        """What the class specialises: a class around it of that bare name, or a path."""
         text = type.node.attributes.get(BASE[type.family], "").strip()
-        if not text:
-            return None
         above = type.node.parent
-        if above is not None and above.tag in CLASS_TAGS and text == above.name:
+        if text and above is not None and above.tag in CLASS_TAGS and text == above.name:
             return self._by_path.get((type.document.name, type.family, type.path[:-1]))
-        return self.find(text, type.family, type.document)
+        return text or None
