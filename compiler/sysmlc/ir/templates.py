@@ -18,8 +18,9 @@ class Substitution:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A template from which an element is made."""
+    """``bound`` is made of ``template`` (None when the model does not say which)."""
 
+    bound: Element
     template: Element | None
     substitutions: tuple[Substitution, ...]
 
@@ -29,22 +30,21 @@ def parameters(graph: Graph, template: Element) -> list[Element]:
     return [item for item in graph.owned(template) if item.kind is Kind.TEMPLATE_PARAMETER]
 
 
-def bindings(graph: Graph, element: Element) -> list[Binding]:
+def bindings(graph: Graph, bound: Element) -> list[Binding]:
     """The bindings by which the element is made of templates."""
-    return [
-        Binding(graph.target(item, Edge.BINDS), _substitutions(graph, item))
-        for item in graph.owned(element)
-        if item.kind is Kind.TEMPLATE_BINDING
-    ]
+    owned = (item for item in graph.owned(bound) if item.kind is Kind.TEMPLATE_BINDING)
+    return [binding(graph, bound, item) for item in owned]
 
 
-def _substitutions(graph: Graph, binding: Element) -> tuple[Substitution, ...]:
-    return tuple(
+def binding(graph: Graph, bound: Element, item: Element) -> Binding:
+    """What one TemplateBinding of ``bound`` says."""
+    substitutions = tuple(
         Substitution(
-            graph.target(item, Edge.INSTANCE_OF),
-            graph.target(item, Edge.REFERENCES),
-            item.attrs.get("value"),
+            graph.target(one, Edge.INSTANCE_OF),
+            graph.target(one, Edge.REFERENCES),
+            one.attrs.get("value"),
         )
-        for item in graph.owned(binding)
-        if item.kind is Kind.TEMPLATE_SUBSTITUTION
+        for one in graph.owned(item)
+        if one.kind is Kind.TEMPLATE_SUBSTITUTION
     )
+    return Binding(bound, graph.target(item, Edge.BINDS), substitutions)

@@ -76,9 +76,7 @@ def test_a_wrong_template_is_reported(tmp_path, text):
 
 def test_what_no_diagram_shows_is_reported():
     _, sink = emitted(parse_text(NOT_DRAWN.wrong))
-    assert [found.message for found in sink] == [
-        "1 Unit of 'Plant' in no diagram: second"
-    ]
+    assert [found.message for found in sink] == ["1 Unit of 'Plant' in no diagram: second"]
 
 
 def test_what_a_diagram_shows_is_not_reported():
@@ -110,3 +108,64 @@ Activity a "run"
     assert '(Left)</size>\\n<size:10>«opaque»</size>\\ngo" as go_1 <<action>> <<lane1>>' in made
     assert 'stop" as stop_1 <<action>> <<lane2>>' in made
     assert 'state "Spare" as spare_1 <<lane>>' in made
+
+
+TEMPLATE = """
+Package p "Plant"
+  Class stack "Stack"
+    TemplateParameter t "T" subkind="classifier"
+      -> references item
+      DataType item "T"
+    TemplateParameter n "size"
+    Property top "top"
+      -> typed-by item
+  Class bound "Pallets"
+    TemplateBinding b
+      -> binds stack
+      TemplateSubstitution s1
+        -> instance-of t
+        -> references pallet
+      TemplateSubstitution s2 value=3
+        -> instance-of n
+  Class pallet "Pallet"
+  Class feeding "Feeding" subkind="collaboration"
+    Property role "feeder"
+  Class cell "Cell"
+    Property gate "gate"
+    CollaborationUse use "feeding"
+      -> typed-by feeding
+      Dependency rb subkind="role-binding"
+        -> client role
+        -> supplier gate
+"""
+
+
+def test_templates_and_what_is_made_of_them():
+    files, sink = emitted(parse_text(TEMPLATE))
+    (made,) = [file for file in files if file.path == "diagrams/Plant.bdd.puml"]
+    assert 'class "**Stack<U+003C>T, size<U+003E>**" as stack_1' in made.text
+    assert "pallets_1 ..> stack_1 : <size:10>«bind» T → Pallet, size → 3</size>" in made.text
+    assert 'class "T"' not in made.text
+    assert list(sink) == []
+
+
+def test_a_collaboration_use_says_who_plays_which_role():
+    (made,) = texts(parse_text(TEMPLATE)).values()
+    assert ".. collaborations ..\n{field} feeding : Feeding (feeder = gate)" in made
+
+
+def test_an_actor_of_use_cases_is_in_their_diagram_only():
+    model = parse_text("""
+Package p "Plant"
+  Actor a "Operator"
+  Actor b "Owner"
+  UseCase u "Run"
+  Class k "Line"
+  Dependency d subkind="dependency"
+    -> client b
+    -> supplier k
+""")
+    made = texts(model)
+    assert "Operator" in made["Plant.uc.puml"]
+    assert "Operator" not in made["Plant.bdd.puml"]
+    assert "Owner" in made["Plant.bdd.puml"]

@@ -1,6 +1,6 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.backends.plantuml import allocated, labels, measured, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -51,11 +51,12 @@ _BY_KIND = {
     Kind.STATE_MACHINE: "behaviors",
     Kind.INTERACTION: "behaviors",
     Kind.SLOT: "slots",
+    Kind.COLLABORATION_USE: "collaborations",
     Kind.PARAMETER: "parameters",
 }
 _TITLES = (
     "literals values parts references attributes flow_properties ports "
-    "parameters constraints operations receptions slots behaviors allocations"
+    "parameters constraints operations receptions slots collaborations behaviors allocations"
 )
 _ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
 _ROW = 64
@@ -91,9 +92,11 @@ def is_block(element: Element) -> bool:
 
 def _is_shown(graph: Graph, element: Element) -> bool:
     """A behaviour has a box when it stands in a package and has no diagram of its own."""
+    owner = graph.owner(element)
+    if owner is not None and owner.kind is Kind.TEMPLATE_PARAMETER:
+        return False
     if element.kind is not Kind.ACTIVITY:
         return is_block(element)
-    owner = graph.owner(element)
     is_free = owner is None or owner.kind is Kind.PACKAGE
     is_drawn = any(item.kind in ACTIVITY_NODES for item in graph.owned(element))
     return is_free and not is_drawn and not element.attrs.get("external")
@@ -274,20 +277,29 @@ def _title(feature: Element) -> str:
 
 
 def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
-    if feature.kind is Kind.OPERATION:
-        return lines(labels.operation(graph, feature), _ROW)
-    if feature.kind is Kind.CONSTRAINT:
-        return lines(labels.condition(feature), _ROW)
-    if feature.kind in (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION):
-        words = labels.guillemets(labels.keywords(graph, feature))
-        text = labels.name(feature) + labels.signature(graph, feature)
-        return lines(f"{words} {text}".strip(), _ROW)
-    if feature.kind is Kind.SLOT:
-        return lines(labels.slot(graph, feature), _ROW)
-    if feature.kind is Kind.ENUMERATION_LITERAL:
-        return lines(labels.name(feature), _ROW)
+    text = _TEXTS.get(feature.kind)
+    if text is not None:
+        return lines(text(graph, feature), _ROW)
     parts = _feature_words(graph, feature), labels.feature(graph, feature), _unit(graph, feature)
     return lines(" ".join(part for part in parts if part), _ROW)
+
+
+def _behaviour(graph: Graph, feature: Element) -> str:
+    words = labels.guillemets(labels.keywords(graph, feature))
+    return f"{words} {labels.name(feature)}{labels.signature(graph, feature)}".strip()
+
+
+_TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
+    Kind.OPERATION: labels.operation,
+    Kind.CONSTRAINT: lambda _, feature: labels.condition(feature),
+    Kind.ACTIVITY: _behaviour,
+    Kind.STATE_MACHINE: _behaviour,
+    Kind.INTERACTION: _behaviour,
+    Kind.SLOT: labels.slot,
+    Kind.COLLABORATION_USE: labels.collaboration_use,
+    Kind.ENUMERATION_LITERAL: lambda _, feature: labels.name(feature),
+}
+"""How features read that are no properties, ports or parameters."""
 
 
 def _unit(graph: Graph, feature: Element) -> str:
@@ -307,7 +319,9 @@ def heading(graph: Graph, item: Element, where: str = "") -> str:
     """The head of a box: stereotypes, name, and where it comes from when it is foreign."""
     words = small(plain(labels.guillemets(labels.keywords(graph, item))))
     mark = "//" if item.attrs.get("abstract") else "**"
-    text = labels.instance(graph, item) if item.kind is Kind.INSTANCE else labels.name(item)
+    is_instance = item.kind is Kind.INSTANCE
+    own = labels.name(item) + labels.template(graph, item)
+    text = labels.instance(graph, item) if is_instance else own
     rows = [f"{mark}{row}{mark}" for row in lines(text)]
     return stack([words, *rows, *(small(row) for row in lines(where, 48))])
 
@@ -334,3 +348,5 @@ def _all(graph: Graph, feature: Element) -> Iterator[Element]:
     yield feature
     if feature.kind in (Kind.OPERATION, Kind.ACTIVITY, Kind.STATE_MACHINE):
         yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)
+    if feature.kind is Kind.COLLABORATION_USE:
+        yield from graph.owned(feature)

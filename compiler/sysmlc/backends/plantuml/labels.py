@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, templates
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
@@ -140,12 +140,18 @@ def signature(graph: Graph, element: Element) -> str:
     """``(in a : T) : R`` of an operation or behaviour; nothing when it has no parameters."""
     parameters = [item for item in graph.owned(element) if item.kind is Kind.PARAMETER]
     taken = [feature(graph, p) for p in parameters if p.attrs.get("direction") != "return"]
-    text = f"({', '.join(taken)})" if parameters else ""
+    text = template(graph, element) + (f"({', '.join(taken)})" if parameters else "")
     for result in parameters:
         if result.attrs.get("direction") == "return":
             shown = typed(graph, result)
             text += f" {shown}" if shown.startswith(":") else f" : {shown}"
     return text
+
+
+def template(graph: Graph, element: Element) -> str:
+    """``<T, n>`` behind the name of a template; nothing for what is none."""
+    names = [name(item) for item in templates.parameters(graph, element)]
+    return f"<{', '.join(names)}>" if names else ""
 
 
 def instance(graph: Graph, element: Element) -> str:
@@ -161,6 +167,19 @@ def slot(graph: Graph, element: Element) -> str:
     if element.attrs.get("value") is not None:
         values.insert(0, literal(element.attrs["value"]))
     return f"{features or name(element)} = {', '.join(values)}"
+
+
+def collaboration_use(graph: Graph, element: Element) -> str:
+    """``name : Collaboration (role = part, ...)``."""
+    bindings = [item for item in graph.owned(element) if item.subkind == "role-binding"]
+    parts = [
+        f"{name(role)} = {name(part)}"
+        for item in bindings
+        for role in graph.targets(item, Edge.CLIENT)
+        for part in graph.targets(item, Edge.SUPPLIER)
+    ]
+    text = typed(graph, element)
+    return f"{text} ({', '.join(parts)})" if parts else text
 
 
 def condition(element: Element) -> str:

@@ -90,11 +90,15 @@ _NAMES_SHOWN = 3
 def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
     """Report every element of the model that is in none of the diagrams.
 
-    What stands inside an element that is reported is not reported again.
+    What stands inside an element that is reported is not reported again. What a parameter of a
+    template stands for is named behind the template's name.
     """
     shown = {id for diagram in found for id in diagram.trace()}
     missed = [item for item in graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS) if _is_ours(item)]
-    missed = [item for item in missed if item.id not in shown]
+    formal = {
+        item.id for one in graph.of_kind(Kind.TEMPLATE_PARAMETER) for item in graph.owned(one)
+    }
+    missed = [item for item in missed if item.id not in shown and item.id not in formal]
     gone = {item.id for item in missed}
     groups: dict[tuple[str, Kind], list[Element]] = {}
     for item in missed:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, templates
 
 _SHAPES = {"composite": "*", "shared": "o"}
 _DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}
@@ -37,6 +37,7 @@ def relations(graph: Graph) -> list[Relation]:
         *_associations(graph),
         *_dependencies(graph),
         *_flows(graph),
+        *_bindings(graph),
     ]
 
 
@@ -130,6 +131,23 @@ def _dependency_word(graph: Graph, item: Element) -> str:
     applied = labels.keywords(graph, item)
     word = _DEPENDENCY_WORDS.get(item.role) or _DEPENDENCY_WORDS.get(item.subkind, "")
     return labels.guillemets(applied or ([word] if word else []))
+
+
+def _bindings(graph: Graph) -> Iterator[Relation]:
+    """From what is made of a template to the template (UML 2.5.1, 7.3.4)."""
+    for item in graph.of_kind(Kind.TEMPLATE_BINDING):
+        bound = graph.owner(item)
+        found = templates.binding(graph, bound, item) if bound is not None else None
+        if found is not None and found.template is not None:
+            parts = ", ".join(_substitution(one) for one in found.substitutions)
+            shows = (item.id, *(one.id for one in graph.owned(item)))
+            text = f"«bind» {parts}".strip()
+            yield Relation(found.bound.id, found.template.id, "..>", text, shows=shows)
+
+
+def _substitution(one: templates.Substitution) -> str:
+    actual = labels.name(one.actual) if one.actual is not None else labels.literal(one.value)
+    return f"{labels.name(one.formal) if one.formal is not None else '?'} → {actual}"
 
 
 def _flows(graph: Graph) -> Iterator[Relation]:
