@@ -69,7 +69,7 @@ def _box(choice: Choice, item: Element, aliases: Aliases, in_lines: set[str]) ->
     if item.kind is Kind.COMMENT:
         text = "\\n".join(lines(str(item.attrs.get("body", "")), _TEXT))
         alias = aliases.make(item.id, "", "note")
-        return Box(alias, text or labels.name(item), "comment", shows=(item.id,))
+        return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
     if item.attrs.get("external"):
         return bdd.stub(graph, item, aliases)
     if req.is_requirement(item):
