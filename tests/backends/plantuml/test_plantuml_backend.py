@@ -169,3 +169,26 @@ Package p "Plant"
     assert "Operator" in made["Plant.uc.puml"]
     assert "Operator" not in made["Plant.bdd.puml"]
     assert "Owner" in made["Plant.bdd.puml"]
+
+
+def test_submachines_their_points_and_protocols():
+    made = texts(
+        parse_text("""
+StateMachine inner "Inner"
+  Pseudostate go "go in" subkind="entry-point"
+StateMachine outer "Outer"
+  Region r
+    Pseudostate i subkind="initial"
+    State s "Nested"
+      -> calls inner
+      Pseudostate at "at" subkind="connection-point"
+        -> references go
+    Transition t guard="ready" subkind="protocol"
+      -> flow-source i
+      -> flow-target at
+      Constraint t.p body="done" subkind="postcondition"
+""")
+    )["Outer.stm.puml"]
+    assert 'state "Nested : Inner" as nested_1 <<state>> {' in made
+    assert 'state "at" as at_1 <<entryPoint>>' in made
+    assert "initial_1 --> at_1 : [ready] / [done]" in made

@@ -23,6 +23,7 @@ _SHAPES = {
     "exit-point": "exitPoint",
 }
 _POINTS = frozenset(["entry-point", "exit-point"])
+_REFERENCE = "connection-point"
 _ROW = 44
 
 
@@ -110,7 +111,7 @@ def _vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
     if vertex.kind is Kind.FINAL_STATE:
         return Node(alias, name, "end", shows=(vertex.id,))
     if vertex.kind is Kind.PSEUDOSTATE:
-        return _pseudostate(vertex, alias, name)
+        return _pseudostate(graph, vertex, alias, name)
     rows, shown = _rows(graph, vertex)
     return Node(
         alias,
@@ -124,8 +125,10 @@ def _vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
     )
 
 
-def _pseudostate(vertex: Element, alias: str, name: str) -> Node:
-    shape = _SHAPES.get(vertex.subkind)
+def _pseudostate(graph: Graph, vertex: Element, alias: str, name: str) -> Node:
+    """A reference to an entry or exit point of a submachine is drawn as that point."""
+    points = (item.subkind for item in graph.targets(vertex, Edge.REFERENCES))
+    shape = _SHAPES.get(next(points, "") if vertex.subkind == _REFERENCE else vertex.subkind)
     if shape is not None:
         return Node(alias, name, shape, shows=(vertex.id,))
     sign = "✕" if vertex.subkind == "terminate" else f"«{plain(vertex.subkind)}»"
@@ -133,7 +136,8 @@ def _pseudostate(vertex: Element, alias: str, name: str) -> Node:
 
 
 def _title(graph: Graph, state: Element) -> str:
-    submachine = labels.type_name(graph, state)
+    machines = (labels.name(item) for item in graph.targets(state, Edge.CALLS))
+    submachine = ", ".join(machines) or labels.type_name(graph, state)
     return label(f"{labels.name(state)} : {submachine}" if submachine else labels.name(state))
 
 
@@ -180,9 +184,14 @@ def _parts(graph: Graph, transition: Element) -> list[str]:
 
 
 def transition_text(graph: Graph, transition: Element) -> str:
-    """``trigger [guard] / effect`` (UML 2.5.1, clause 14.2.4)."""
+    """``trigger [guard] / effect``, of protocols ``/ [postcondition]`` (UML 2.5.1, 14.2.4)."""
     triggers = [trigger_text(graph, item) for item in graph.targets(transition, Edge.TRIGGER)]
     effects = [behaviour_text(item) for item in graph.targets(transition, Edge.EFFECT)]
+    effects += [
+        f"[{item.attrs.get('body') or labels.name(item)}]"
+        for item in graph.owned(transition)
+        if item.subkind == "postcondition"
+    ]
     guard = guard_text(graph, transition)
     words = labels.guillemets(labels.keywords(graph, transition))
     parts = [words, ", ".join(triggers), guard, f"/ {'; '.join(effects)}" if effects else ""]
