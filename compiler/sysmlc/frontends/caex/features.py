@@ -1,7 +1,7 @@
 """Attributes and external interfaces: value properties and ports of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import measures, mirrors
+from sysmlc.frontends.caex import constraints, measures, mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
@@ -14,6 +14,8 @@ _CARDINALITY = ("MinOccur", "MaxOccur")
 
 def lower_own(context: Context, type: Type) -> None:
     """Add the attributes and interfaces that stand directly below a class."""
+    if type.family is Family.ATTRIBUTE:
+        constraints.lower(context, context.graph[type.id], type.node, type.document)
     for child in type.node.children:
         if child.tag == "Attribute":
             attribute(context, type, child, type.document)
@@ -53,6 +55,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
     _redefine(context, owner, node, element)
     structure = _structure(context, owner, node, document, element, declared)
     measures.type_value(context, element, node, structure or declared)
+    constraints.lower(context, element, node, document)
     owner.members["Attribute", node.name] = Member(element.id, structure or declared, node)
     return structure
 

@@ -10,6 +10,8 @@ from sysmlc.frontends.caex import (
     detect,
     features,
     libraries,
+    mappings,
+    metadata,
     mirrors,
     roles,
     rules,
@@ -69,9 +71,11 @@ def _lower(context: Context) -> None:
     sites.finish()
     mirrors.finish(context)
     roles.lower(context, sites)
+    mappings.lower(context, sites)
     drawn = Links(context, sites)
     for document in context.documents:
         drawn.lower(document)
+        metadata.lower(context, document)
 
 
 @contextmanager

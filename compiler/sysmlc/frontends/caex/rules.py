@@ -149,3 +149,14 @@ MALFORMED = rule(
     wrong="<CAEXFile><InstanceHierarchy></CAEXFile>",
     right="<CAEXFile><InstanceHierarchy/></CAEXFile>",
 )
+MAPPING = rule(
+    "SM144",
+    "mapping-of-nothing",
+    Severity.ERROR,
+    "a mapping object of '{element}' names '{feature}', which does not exist",
+    why="It says which feature of the element is which one of its role; one of them is missing.",
+    help="correct the name, or remove the mapping",
+    wrong='<AttributeNameMapping SystemUnitAttributeName="len" RoleAttributeName="length"/>',
+    right='<AttributeNameMapping SystemUnitAttributeName="l" RoleAttributeName="length"/>\n'
+    "where the element has an attribute 'l' and the role one named 'length'",
+)

@@ -1,0 +1,94 @@
+"""What CAEX says about elements beside their structure: descriptions, revisions, origin."""
+
+import re
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.libraries import mark
+from sysmlc.ir import Edge, Element, Kind
+
+_CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
+_KEPT = frozenset({"Revision", "AdditionalInformation", "SourceObjectInformation"})
+
+
+def lower(context: Context, document: Document) -> None:
+    """Add what is said about the elements of a file; those of the file itself are read before."""
+    for node in document.root.walk():
+        element = context.graph.get(node.element)
+        if element is None or element.kind is Kind.DOCUMENT:
+            continue
+        _texts(context, node, element)
+        for child in node.children:
+            _child(context, document, child, element)
+
+
+def _texts(context: Context, node: Node, element: Element) -> None:
+    for text in node.all_texts("Description") if node.texts or node.children else ():
+        if text.strip():
+            _comment(context, element, text)
+    change = node.attributes.get("ChangeMode", "")
+    if change and change != "state":
+        context.graph.set(element, change_mode=change)
+
+
+def _comment(context: Context, element: Element, text: str) -> None:
+    owner = element.id if element.kind not in (Kind.IMPORT,) else element.owner
+    id = f"{element.id}/Description"
+    if id not in context.graph:
+        comment = Element(id, Kind.COMMENT, "", owner, element.ordinal, element.source)
+        comment.attrs["body"] = text.strip()
+        context.graph.add(comment)
+
+
+def _child(context: Context, document: Document, node: Node, element: Element) -> None:
+    if node.verdict is not None:
+        return
+    if node.tag in ("Copyright", "Description", "Version"):
+        mark(node)
+        if node.tag == "Copyright":
+            context.graph.set(element, copyright=_text(node) or None)
+    elif node.tag == "RefSemantic":
+        mark(node)
+        path = node.attributes.get("CorrespondingAttributePath", "")
+        known = element.attrs.get("semantics", ())
+        if path and isinstance(known, tuple):
+            context.graph.set(element, semantics=(*known, path))
+    elif node.tag in _KEPT:
+        _keep(context, document, node, element)
+
+
+def _keep(context: Context, document: Document, node: Node, element: Element) -> None:
+    id = context.free(f"{element.id}/{node.tag}", node)
+    made = Element(id, Kind.METADATA, node.tag, element.id, node.ordinal, document.name)
+    for key, value in _flat(node):
+        known = made.attrs.get(key)
+        made.attrs[key] = value if known is None else f"{known}\n{value}"
+    context.graph.add(made)
+    context.graph.connect(Edge.REFERENCES, made.id, element.id)
+    mark(node, Verdict.MAPPED)
+
+
+def _flat(top: Node) -> Iterator[tuple[str, str]]:
+    """Attributes and texts below the node, named by their path."""
+    waiting = [(top, "")]
+    while waiting:
+        node, prefix = waiting.pop()
+        for name, value in node.attributes.items():
+            yield f"{prefix}{_snake(name.rpartition('}')[2])}", value
+        for tag, text in (node.texts or {}).items():
+            if text.strip():
+                yield (
+                    f"{prefix}{_snake(tag)}" if tag else prefix.rstrip(".") or "text",
+                    text.strip(),
+                )
+        waiting += [(child, f"{prefix}{_snake(child.tag)}.") for child in reversed(node.children)]
+
+
+def _snake(name: str) -> str:
+    return _CAPITAL.sub(r"_\1", name).lower()
+
+
+def _text(node: Node) -> str:
+    return (node.texts or {}).get("", "").strip()
