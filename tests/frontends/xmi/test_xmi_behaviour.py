@@ -183,3 +183,24 @@ def test_pre_and_postconditions():
     )
     assert reading.graph["c"].attrs == {"body": "x > 0", "subkind": "precondition"}
     assert reading.graph["d"].attrs == {"subkind": "postcondition"}
+
+
+def test_variables_are_properties_of_their_scope():
+    reading = read(
+        papyrus(
+            """
+  <packagedElement xmi:type="uml:Activity" xmi:id="act"><variable xmi:id="v" name="n" type="k"
+      activityScope="act"/>
+    <node xmi:type="uml:ReadVariableAction" xmi:id="a" variable="v"/></packagedElement>"""
+        )
+    )
+    assert (
+        below_model(reading)
+        == """\
+Activity act
+  Property v "n" subkind="variable"
+    ?> typed-by k Class
+  Action a subkind="read-variable"
+    ?> calls v Class
+"""
+    )

@@ -197,6 +197,8 @@ REDUNDANT = frozenset(
         "includingCase",
         "specificMachine",
         "parameterSet",
+        "scope",
+        "activityScope",
         "boundElement",
         "template",
         "templateBinding",
