@@ -14,6 +14,7 @@ Package p "Plant"
       -> typed-by arm
     Property robot.eye "eye" role="part" aggregation="composite"
       -> typed-by arm
+    Operation robot.op "grasp"
   Class arm "Arm" role="block"
     Property arm.grip "grip" role="value"
   Class far "Far" role="block" external=true
@@ -50,6 +51,7 @@ def drawn(client: str, supplier: str) -> tuple[dict[str, str], list[str]]:
         ("pick", "robot", "bdd.puml", "← Job.pick"),
         ("far.part", "robot.arm", "bdd.puml", "arm ← Far.part"),
         ("robot", "robot.arm", "bdd.puml", "→ Robot.arm"),
+        ("robot.op", "robot.arm", "bdd.puml", "grasp → Robot.arm"),
     ],
 )
 def test_an_allocation_is_drawn(client, supplier, file, text):
@@ -71,4 +73,4 @@ def test_an_allocate_partition_says_so():
     )
     files, _ = emitted(parse_text(text + "      -> in-partition lane\n"))
     act = next(one.text for one in files if one.path.endswith(".act.puml"))
-    assert "(«allocate» arm : Arm)" in act
+    assert "(«allocate» lane: arm : Arm)" in act

@@ -88,13 +88,12 @@ class _Drawing:
                 yield Node(alias, title, "lane", shows=(partition.id,))
 
     def _lane_name(self, partition: Element) -> str:
+        word = "«allocate» " if partition.role == "allocate partition" else ""
         represented = self.graph.targets(partition, Edge.REPRESENTS)
         names = ", ".join(labels.typed(self.graph, item) for item in represented)
-        if partition.role == "allocate partition":
-            return f"«allocate» {names or partition.name or 'partition'}"
         if not partition.name.strip() or partition.name == names:
-            return names or "partition"
-        return f"{partition.name}: {names}" if names else partition.name
+            return word + (names or "partition")
+        return word + (f"{partition.name}: {names}" if names else partition.name)
 
     def _group(self, element: Element, title: str, shape: str, children: tuple[Node, ...]) -> Node:
         alias = self.aliases.make(element.id, element.name, str(element.kind))

@@ -7,7 +7,8 @@ from sysmlc.backends.plantuml.text import lines
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _WIDTH = 44
-_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION)
+_PLACES = (Kind.PROPERTY, Kind.PORT)
+_FEATURES = (*_PLACES, Kind.OPERATION)
 _BOXED = (
     Kind.CLASS,
     Kind.COMPONENT,
@@ -53,7 +54,7 @@ def between_features(graph: Graph, block: Element) -> Iterator[tuple[Element, El
     """Allocations from one feature of the block to another: dependency, client, supplier."""
     for own in _features(graph, block):
         for dependency, other in _opposite(graph, own, Edge.CLIENT):
-            if other.owner == block.id and other.kind in _FEATURES[:2]:
+            if own.kind in _PLACES and other.kind in _PLACES and other.owner == block.id:
                 yield dependency, own, other
 
 
@@ -71,7 +72,7 @@ def _features(graph: Graph, block: Element) -> list[Element]:
 
 def _has_line(one: Element, other: Element) -> bool:
     """Whether a block definition or an internal block diagram draws it."""
-    if one.kind in _FEATURES[:2] and other.kind in _FEATURES[:2]:
+    if one.kind in _PLACES and other.kind in _PLACES:
         return one.owner == other.owner
     return one.kind in _BOXED and other.kind in _BOXED
 
