@@ -1,16 +1,14 @@
 """Spoils documents with knowledge of their structure: what hand edits, merges and bugs leave."""
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from random import Random
 
 from lxml import etree
 
-from dialects.papyrus import XMI, Element, id_of
+from dialects.papyrus import XMI, Element
 
-_TYPE = f"{{{XMI}}}type"
-_ID = f"{{{XMI}}}id"
-_JUNK = (
+JUNK = (
     "",
     " ",
     "-1",
@@ -51,50 +49,68 @@ _METACLASSES = (
 )
 
 Change = Callable[[Element, Random], object]
+Damage = Callable[[bytes, Random], bytes]
 
 
-def mutate(document: bytes, random: Random) -> tuple[str, bytes]:
+def mutate(
+    document: bytes,
+    random: Random,
+    more_changes: Sequence[Change] = (),
+    more_damages: Sequence[Damage] = (),
+) -> tuple[str, bytes]:
     """One to three changes of the document; what was done, and the result."""
     done: list[str] = []
     root = etree.fromstring(document)
+    _never_empty(root)
     for _ in range(random.randint(1, 3)):
-        change = random.choice(_CHANGES)
+        change = random.choice((*_CHANGES, *more_changes))
         done.append(change.__name__.strip("_"))
         change(root, random)
+        _never_empty(root)
     spoilt = etree.tostring(root, xml_declaration=True, encoding="UTF-8")
     if random.random() < 0.25:
-        damage = random.choice(_DAMAGES)
-        done.append(damage.__name__.strip("_"))
-        spoilt = damage(spoilt, random)
+        name, spoilt = damage(spoilt, random, more_damages)
+        done.append(name)
     return " ".join(done), spoilt
 
 
-def damage(data: bytes, random: Random) -> tuple[str, bytes]:
+def damage(data: bytes, random: Random, more_damages: Sequence[Damage] = ()) -> tuple[str, bytes]:
     """Damage to the bytes alone, for files that are no XML."""
-    chosen = random.choice(_DAMAGES)
+    chosen = random.choice((*_DAMAGES, *more_damages))
     return chosen.__name__.strip("_"), chosen(data, random)
 
 
 # -- changes of the tree -----------------------------------------------------------------------
 
 
-def _any(root: Element, random: Random) -> Element:
+def xmi_key(root: Element, name: str) -> str:
+    """An attribute of XMI, in the version of XMI that the document is written in."""
+    spaces = [uri for uri in root.nsmap.values() if "omg.org" in uri and "XMI" in uri]
+    return f"{{{spaces[0] if spaces else XMI}}}{name}"
+
+
+def any_element(root: Element, random: Random) -> Element:
+    """Some element, not the root."""
     return random.choice([element for element in root.iter("*") if element is not root])
 
 
+def any_id(root: Element, random: Random) -> str:
+    """Id of some element, or the empty string."""
+    return any_element(root, random).get(xmi_key(root, "id"), "")
+
+
 def _drop(root: Element, random: Random) -> None:
-    victim = _any(root, random)
+    victim = any_element(root, random)
     victim.getparent().remove(victim)
-    _never_empty(root)
 
 
 def _duplicate(root: Element, random: Random) -> None:
-    original = _any(root, random)
+    original = any_element(root, random)
     original.addnext(copy.deepcopy(original))
 
 
 def _swap(root: Element, random: Random) -> None:
-    one, other = _any(root, random), _any(root, random)
+    one, other = any_element(root, random), any_element(root, random)
     if one not in other.iterancestors() and other not in one.iterancestors() and one is not other:
         here, there = etree.Element("here"), etree.Element("there")
         one.addprevious(here)
@@ -104,81 +120,85 @@ def _swap(root: Element, random: Random) -> None:
 
 
 def _move(root: Element, random: Random) -> None:
-    moved, owner = _any(root, random), _any(root, random)
+    moved, owner = any_element(root, random), any_element(root, random)
     if moved is not owner and moved not in owner.iterancestors():
         owner.append(moved)
 
 
-def _references(root: Element) -> list[tuple[Element, str]]:
-    ids = {id_of(element) for element in root.iter("*")}
+def references(root: Element) -> list[tuple[Element, str]]:
+    """Elements and the names of their attributes that hold an id of the document."""
+    key = xmi_key(root, "id")
+    ids = {element.get(key) for element in root.iter("*")}
     return [
         (element, str(name))
         for element in root.iter("*")
         for name, value in element.attrib.items()
-        if name != _ID and value in ids
+        if name != key and value in ids
     ]
 
 
 def _retarget(root: Element, random: Random) -> None:
-    found = _references(root)
+    found = references(root)
     if found:
         element, name = random.choice(found)
-        element.set(name, id_of(_any(root, random)))
+        element.set(name, any_id(root, random))
 
 
 def _close_a_cycle(root: Element, random: Random) -> None:
     """A reference to its own element or an owner of it: inheritance, types and flows in circles."""
-    found = _references(root)
+    found = references(root)
     if found:
         element, name = random.choice(found)
-        element.set(name, id_of(random.choice([element, *element.iterancestors()])))
+        circle = [element, *element.iterancestors()]
+        element.set(name, random.choice(circle).get(xmi_key(root, "id"), ""))
 
 
 def _dangle(root: Element, random: Random) -> None:
-    found = _references(root)
+    found = references(root)
     if found:
         element, name = random.choice(found)
         element.set(name, random.choice(["_nothing", "a b", "", "_"]))
 
 
 def _change_type(root: Element, random: Random) -> None:
-    typed = [element for element in root.iter("*") if _TYPE in element.attrib]
-    random.choice(typed or [root]).set(_TYPE, "uml:" + random.choice(_METACLASSES))
+    key = xmi_key(root, "type")
+    typed = [element for element in root.iter("*") if key in element.attrib]
+    random.choice(typed or [root]).set(key, "uml:" + random.choice(_METACLASSES))
 
 
 def _rename_feature(root: Element, random: Random) -> None:
-    element = _any(root, random)
-    element.tag = _any(root, random).tag
+    element = any_element(root, random)
+    element.tag = any_element(root, random).tag
 
 
 def _drop_attribute(root: Element, random: Random) -> None:
-    element = _any(root, random)
+    element = any_element(root, random)
     if element.attrib:
         del element.attrib[random.choice(list(element.attrib))]
 
 
 def _spoil_attribute(root: Element, random: Random) -> None:
-    element = _any(root, random)
+    element = any_element(root, random)
     if element.attrib:
-        element.set(random.choice(list(element.attrib)), random.choice(_JUNK))
+        element.set(random.choice(list(element.attrib)), random.choice(JUNK))
 
 
 def _spoil_text(root: Element, random: Random) -> None:
     texts = [element for element in root.iter("*") if element.text and element.text.strip()]
-    random.choice(texts or [_any(root, random)]).text = random.choice(_JUNK)
+    random.choice(texts or [any_element(root, random)]).text = random.choice(JUNK)
 
 
 def _same_id(root: Element, random: Random) -> None:
-    _any(root, random).set(_ID, id_of(_any(root, random)))
+    any_element(root, random).set(xmi_key(root, "id"), any_id(root, random))
 
 
 def _bury(root: Element, random: Random) -> None:
     """An element under many owners of its own kind."""
-    victim = _any(root, random)
+    victim = any_element(root, random)
     tag, attributes = victim.tag, dict(victim.attrib)
     for depth in range(random.choice([3, 120])):
         outer = etree.Element(tag, attributes)
-        outer.set(_ID, f"_deep{depth}")
+        outer.set(xmi_key(root, "id"), f"_deep{depth}")
         victim.addprevious(outer)
         outer.append(victim)
         victim = outer
@@ -241,7 +261,7 @@ def _forbidden_prologue(data: bytes, random: Random) -> bytes:
     return head + b'?><!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>' + rest
 
 
-_DAMAGES: tuple[Callable[[bytes, Random], bytes], ...] = (
+_DAMAGES: tuple[Damage, ...] = (
     _truncate,
     _flip,
     _insert,

@@ -119,7 +119,7 @@ def _expanded(folder: Path, patterns: Iterable[str]) -> list[Path]:
 
 
 def _same(left: Path, right: Path) -> bool:
-    return left.resolve() == right.resolve()
+    return os.path.realpath(left) == os.path.realpath(right)
 
 
 def compile_unit(

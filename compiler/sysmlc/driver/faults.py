@@ -114,6 +114,17 @@ CHANGING = rule(
     wrong="sysmlc plant.mdzip while the tool saves it",
     right="sysmlc plant.mdzip after the tool has saved it",
 )
+LEADS_OUT = rule(
+    "SM180",
+    "link-leads-out",
+    Severity.WARNING,
+    "'{path}' is a link that leads out of the folder; it is not read",
+    why="Folders of models come from others. A link in one could make sysmlc read any file of "
+    "this machine, and findings would quote it.",
+    help="name the file itself if it is meant",
+    wrong="ln -s /etc/secrets.xml models/plant.uml; sysmlc models/",
+    right="ln -s shared/plant.uml models/plant.uml; sysmlc models/",
+)
 INTERNAL_FAULT = rule(
     "SM900",
     "internal-fault",

@@ -9,7 +9,7 @@ from pathlib import Path
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.frontends.base import Frontend
-from sysmlc.sources import Source
+from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
 
 SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".ir"})
@@ -80,7 +80,14 @@ def _absolute(path: Path) -> Path:
 
 
 def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:
-    found = sorted(_walk(folder))
+    inside = Roots((folder,))
+    found = []
+    for path in sorted(_walk(folder)):
+        if path.is_symlink() and not inside.allows(path):
+            name = name_of(path, root)
+            sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
+        else:
+            found.append(path)
     if not found:
         name = name_of(folder, root)
         sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=name)

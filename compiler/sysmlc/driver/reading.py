@@ -1,5 +1,6 @@
 """Bytes of the inputs, with the files that they refer to, ready for the front ends."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,7 +50,7 @@ class _Reader:
 
     def read(self, path: Path, otherwise: Rule | None) -> None:
         """Read a file; ``otherwise`` is reported when no front end recognises it."""
-        real = path.resolve()
+        real = Path(os.path.realpath(path))
         if real in self._seen:
             return
         self._seen.add(real)

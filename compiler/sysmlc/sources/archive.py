@@ -10,8 +10,11 @@ from sysmlc.sources.error import Fault, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
 
-_MAGIC = b"PK\x03\x04"
+_MAGIC = (b"PK\x03\x04", b"PK\x05\x06")
 _CHUNK = 1 << 20
+_NO_TABLE = "File is not a zip file"
+"""What zipfile says when the table at the end is missing, however the file starts."""
+_CUT_SHORT = "its table of contents is missing, as when a download or a save was cut off"
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
 
@@ -31,25 +34,44 @@ def entries(
     """
     try:
         with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
-            return list(_read_all(archive.name, opened, wanted, limits))
+            return list(_read_all(archive, opened, wanted, limits))
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, ValueError) as problem:
-        raise SourceError(f"damaged archive: {problem}", archive.name) from None
+        reason = _CUT_SHORT if str(problem) == _NO_TABLE else str(problem)
+        raise SourceError(f"damaged archive: {reason}", archive.name) from None
 
 
 def _read_all(
-    name: str, opened: zipfile.ZipFile, wanted: Callable[[str], bool], limits: Limits
+    archive: Source, opened: zipfile.ZipFile, wanted: Callable[[str], bool], limits: Limits
 ) -> Iterator[Source]:
-    infos = opened.infolist()
+    name, infos = archive.name, opened.infolist()
     _check_names(name, infos, limits)
-    left = limits.total_size
-    for info in sorted(infos, key=lambda entry: entry.filename):
-        if info.is_dir() or not wanted(info.filename):
-            continue
+    left = _allowance(len(archive.data), limits)
+    chosen = [info for info in infos if not info.is_dir() and wanted(info.filename)]
+    _check_declared(name, chosen, left, limits)
+    for info in sorted(chosen, key=lambda entry: entry.filename):
         _check_method(name, info)
         with opened.open(info) as stream:
             data = _read(f"{name}!{info.filename}", stream, info, left, limits)
         left -= len(data)
         yield Source(f"{name}!{info.filename}", data)
+
+
+def _allowance(packed: int, limits: Limits) -> int:
+    """How many bytes all entries may hold."""
+    return min(limits.total_size, max(packed * limits.total_ratio, limits.free_size))
+
+
+def _check_declared(name: str, infos: list[zipfile.ZipInfo], left: int, limits: Limits) -> None:
+    """Refuse what is too large by its own account before anything is unpacked."""
+    for info in infos:
+        if info.file_size > max(info.compress_size * limits.ratio, _CHUNK):
+            raise _too_much(f"{name}!{info.filename}")
+    if sum(info.file_size for info in infos) > left:
+        raise _too_much(name)
+
+
+def _too_much(name: str) -> SourceError:
+    return SourceError("unpacks to more than the limits allow", name, fault=Fault.LIMIT)
 
 
 def _check_names(name: str, infos: list[zipfile.ZipInfo], limits: Limits) -> None:
@@ -85,6 +107,6 @@ def _read(name: str, stream: IO[bytes], info: zipfile.ZipInfo, left: int, limits
     while piece := stream.read(_CHUNK):
         size += len(piece)
         if size > cap:
-            raise SourceError("unpacks to more than the limits allow", name, fault=Fault.LIMIT)
+            raise _too_much(name)
         pieces.append(piece)
     return b"".join(pieces)

@@ -21,6 +21,9 @@ class Limits:
     """Entries of an archive."""
     total_size: int = 2 << 30
     """What all entries of an archive hold when unpacked."""
+    total_ratio: int = 50
+    """Unpacked to packed size of an archive, above the first ``free_size``."""
+    free_size: int = 64 << 20
     ratio: int = 200
     """Unpacked to packed size of one entry, above the first megabyte."""
 

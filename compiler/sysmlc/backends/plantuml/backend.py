@@ -6,7 +6,19 @@ from itertools import groupby
 
 from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
-from sysmlc.backends.plantuml import act, author, bdd, ibd, missing, par, req, sd, stm, uc
+from sysmlc.backends.plantuml import (
+    act,
+    author,
+    bdd,
+    ibd,
+    missing,
+    par,
+    req,
+    sd,
+    sd_remarks,
+    stm,
+    uc,
+)
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
@@ -50,6 +62,7 @@ class PlantUml:
         if options.diagrams != AUTHOR:
             found = [diagram for kind in KINDS for diagram in kind(graph)]
             missing.report(graph, found, sink)
+            sd_remarks.report(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
             _write(graph, list(author.diagrams(graph, sink)), author.FOLDER, output, sink, options)

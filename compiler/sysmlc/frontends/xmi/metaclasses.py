@@ -102,6 +102,11 @@ _DIVIDED = {
     "PartDecomposition": (Kind.FRAGMENT, "part-decomposition"),
     "StateInvariant": (Kind.FRAGMENT, "state-invariant"),
     "Continuation": (Kind.FRAGMENT, "continuation"),
+    # UML 2.0 called them so; old exports of Enterprise Architect and MagicDraw do.
+    "EventOccurrence": (Kind.OCCURRENCE, "message"),
+    "Stop": (Kind.OCCURRENCE, "destruction"),
+    "ExecutionOccurrence": (Kind.EXECUTION, "behavior"),
+    "InteractionOccurrence": (Kind.FRAGMENT, "ref"),
     "TimeObservation": (Kind.OBSERVATION, "time"),
     "DurationObservation": (Kind.OBSERVATION, "duration"),
     "OpaqueBehavior": (Kind.ACTIVITY, "opaque"),

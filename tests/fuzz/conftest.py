@@ -1,0 +1,18 @@
+"""One guarding process for all tests of this folder."""
+
+import pytest
+
+from fuzz.answers import Asked
+from fuzz.guard import Guard
+
+
+@pytest.fixture(scope="session")
+def guard():
+    with Guard() as made:
+        yield made
+
+
+@pytest.fixture
+def asked(guard, tmp_path):
+    """An empty folder and the process that answers."""
+    return Asked(guard, tmp_path)
