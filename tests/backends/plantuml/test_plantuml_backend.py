@@ -6,6 +6,7 @@ from drawing import emitted, texts
 from sysmlc.backends.plantuml import pieces, split
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
 from sysmlc.backends.plantuml.missing import NOT_DRAWN
+from sysmlc.backends.plantuml.sd_remarks import OVERTAKEN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node
 from sysmlc.ir.text import parse_text
 
@@ -192,3 +193,13 @@ StateMachine outer "Outer"
     assert 'state "Nested : Inner" as nested_1 <<state>> {' in made
     assert 'state "at" as at_1 <<entryPoint>>' in made
     assert "initial_1 --> at_1 : [ready] / [done]" in made
+
+
+def test_a_message_that_another_overtakes_is_reported():
+    _, sink = emitted(parse_text(OVERTAKEN.wrong))
+    assert [found.message for found in sink] == [
+        "message 'slow' of 'Feed' is drawn where it is sent, though 'quick' comes first on "
+        "lifeline 'belt'"
+    ]
+    _, sink = emitted(parse_text(OVERTAKEN.right))
+    assert list(sink) == []

@@ -1,0 +1,113 @@
+"""What sequence diagrams in PlantUML cannot say: messages that are on their way for a while."""
+
+from sysmlc.backends.plantuml.sd_texts import event_name
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, sequence
+
+OVERTAKEN = rule(
+    "SM710",
+    "overtaken-message",
+    Severity.INFO,
+    "message '{message}' of '{interaction}' is drawn where it is sent, though '{other}' comes "
+    "first on lifeline '{lifeline}'",
+    why="PlantUML draws a message as one level line, so the diagram shows that it arrives before "
+    "what the model puts between sending and receiving. The graph has the order of the model.",
+    wrong="""\
+Interaction feed "Feed"
+  Lifeline g "gate"
+  Lifeline b "belt"
+  Occurrence s1
+    -> covers g
+  Occurrence s2
+    -> covers g
+  Occurrence r2
+    -> covers b
+  Occurrence r1
+    -> covers b
+  Message m1 "slow" subkind="asynch-call"
+    -> send-event s1
+    -> receive-event r1
+    -> flow-source g
+    -> flow-target b
+  Message m2 "quick" subkind="asynch-call"
+    -> send-event s2
+    -> receive-event r2
+    -> flow-source g
+    -> flow-target b
+""",
+    right="""\
+Interaction feed "Feed"
+  Lifeline g "gate"
+  Lifeline b "belt"
+  Occurrence s1
+    -> covers g
+  Occurrence s2
+    -> covers g
+  Occurrence r1
+    -> covers b
+  Occurrence r2
+    -> covers b
+  Message m1 "slow" subkind="asynch-call"
+    -> send-event s1
+    -> receive-event r1
+    -> flow-source g
+    -> flow-target b
+  Message m2 "quick" subkind="asynch-call"
+    -> send-event s2
+    -> receive-event r2
+    -> flow-source g
+    -> flow-target b
+""",
+)
+
+
+def report(graph: Graph, sink: Sink) -> None:
+    """Report each message that something else overtakes on the lifeline that receives it."""
+    for interaction in graph.of_kind(Kind.INTERACTION):
+        for container in sequence.containers(graph, interaction):
+            items = sequence.happenings(graph, container)
+            at = {item.id: number for number, item in enumerate(items)}
+            for item in items:
+                _check(graph, sink, interaction, items, at, item)
+
+
+def _check(
+    graph: Graph,
+    sink: Sink,
+    interaction: Element,
+    items: list[Element],
+    at: dict[str, int],
+    sent: Element,
+) -> None:
+    message = sequence.sent(graph, sent)
+    received = graph.target(message, Edge.RECEIVE_EVENT) if message is not None else None
+    if message is None or received is None or received.id not in at:
+        return
+    lifelines = {one.id for one in sequence.covered(graph, received)}
+    for other in items[at[sent.id] + 1 : at[received.id]]:
+        found = [one for one in sequence.covered(graph, other) if one.id in lifelines]
+        if found and _drawn(graph, at, other) > at[sent.id]:
+            _report(graph, sink, interaction, message, other, found[0])
+            return
+
+
+def _drawn(graph: Graph, at: dict[str, int], other: Element) -> int:
+    """Where it is drawn: a message at the first of its ends, an execution with its ends."""
+    if other.kind is Kind.EXECUTION:
+        return -1
+    message = sequence.received(graph, other)
+    first = graph.target(message, Edge.SEND_EVENT) if message is not None else None
+    return min(at[other.id], at.get(first.id, at[other.id]) if first is not None else at[other.id])
+
+
+def _report(
+    graph: Graph, sink: Sink, interaction: Element, message: Element, other: Element, line: Element
+) -> None:
+    sink.report(
+        OVERTAKEN,
+        graph.subject(message),
+        message=event_name(graph, message),
+        interaction=graph.qualified_name(interaction),
+        other=event_name(graph, other),
+        lifeline=line.name or "without name",
+    )
