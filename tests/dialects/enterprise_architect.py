@@ -28,7 +28,7 @@ _ID, _TYPE, _IDREF = f"{{{XMI}}}id", f"{{{XMI}}}type", f"{{{XMI}}}idref"
 _PREFIXES = {"xmi": XMI, "uml": UML, "thecustomprofile": CUSTOM, "SysML1.4": SYSML}
 _NOT_SAVED = frozenset({"partition", "base_NamedElement", "base_DirectedRelationship"})
 _TEXTS = frozenset({"name", "body", "symbol"})
-_AS_CHILDREN = LISTS | {"type", "incoming", "outgoing"}
+_AS_CHILDREN = (LISTS - {"covered"}) | {"type", "incoming", "outgoing"}
 _CONNECTORS = frozenset(
     {"uml:Association", "uml:Connector", "uml:Dependency", "uml:Abstraction", "uml:Realization"}
     | {"uml:InformationFlow", "uml:ControlFlow", "uml:ObjectFlow", "uml:Transition"}

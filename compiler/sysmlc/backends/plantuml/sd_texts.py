@@ -31,8 +31,10 @@ def operand_text(operand: Element) -> str:
     """``(1, 3) guard`` of an operand; the bounds are a loop's (17.6.4)."""
     bounds = [operand.attrs.get(key) for key in ("min", "max")]
     told = [labels.literal(value) for value in bounds if value is not None]
-    guard = operand.attrs.get("guard")
-    parts = [f"({', '.join(told)})" if told else "", labels.literal(guard) if guard else ""]
+    guard = labels.literal(operand.attrs.get("guard", "")).strip()
+    if guard.startswith("[") and guard.endswith("]"):
+        guard = guard[1:-1]  # Modellers write the brackets of the notation into the guard.
+    parts = [f"({', '.join(told)})" if told else "", guard]
     return " ".join(part for part in parts if part)
 
 
