@@ -1,5 +1,5 @@
-"""The PlantUML back end: block definition, internal block, activity, state machine and
-requirement diagrams in ``out/diagrams``."""
+"""The PlantUML back end: diagrams of structure, behaviour, requirements, interactions and use
+cases in ``out/diagrams``."""
 
 from sysmlc.backends.plantuml.backend import PlantUml
 
