@@ -53,7 +53,7 @@ class Ports:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Complete the ports in place; see the class."""
-        ports = graph.of_kind(Kind.PORT)
+        ports = [one for one in graph.of_kind(Kind.PORT) if one.role != "constraint parameter"]
         for port in ports:
             _give_type(graph, port)
         for port in ports:

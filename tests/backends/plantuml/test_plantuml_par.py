@@ -157,3 +157,26 @@ def test_a_port_nested_in_a_conjugated_port_points_the_other_way():
     )
     ibd = drawn(nested)["Line.ibd.puml"]
     assert ibd.count('portout "<back:#FFFFFF>door.deep</back>"') == 2
+
+
+def test_constraint_parameters_of_magicdraw_are_ports():
+    bound = connector("k", "crane.hook hook.mass", "crane.law law.m")
+    text = block(bound).replace("Property law.", "Port law.")
+    shown = drawn(text)
+    assert lines(shown["Crane.par.puml"]) == ["mass_1 -- m_1"]
+    assert ".. parameters ..\n{field} f\n{field} m\n" in shown["model.bdd.puml"]
+
+
+def test_a_usage_without_constraint_block_is_a_row_and_no_diagram():
+    shown = drawn(block("").replace("    -> typed-by law\n", ""))
+    assert list(shown) == ["model.bdd.puml"]
+    assert ".. constraints ..\n{field} e1" in shown["model.bdd.puml"]
+
+
+def test_a_type_of_one_property_shows_what_it_specialises():
+    text = (
+        'Class gate "Gate" role="block"\n'
+        'Class own "" role="block" property_specific=true\n  -> specializes gate\n'
+        'Class line "Line" role="block"\n  Property g "g" role="value"\n    -> typed-by own\n'
+    )
+    assert "g : [Gate]" in drawn(text)["model.bdd.puml"]

@@ -271,7 +271,7 @@ def box(
 
 
 def _title(feature: Element) -> str:
-    if feature.kind is Kind.PROPERTY:
+    if feature.kind is Kind.PROPERTY or feature.role == "constraint parameter":
         return _BY_ROLE.get(feature.role, "attributes")
     return _BY_KIND.get(feature.kind, "")
 

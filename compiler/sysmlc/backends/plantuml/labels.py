@@ -86,9 +86,18 @@ def name(element: Element) -> str:
 
 
 def type_name(graph: Graph, element: Element) -> str:
-    """Name of the element's type; a conjugated port shows ``~``."""
-    names = [name(type_) for type_ in graph.targets(element, Edge.TYPED_BY)]
+    """Name of the element's type; a conjugated port shows ``~``.
+
+    A type that is specific to the property is ``[General]`` (SysML 1.6 clause 8.3.1.1).
+    """
+    names = [_specific(graph, type_) for type_ in graph.targets(element, Edge.TYPED_BY)]
     return ("~" if element.attrs.get("conjugated") else "") + ", ".join(names) if names else ""
+
+
+def _specific(graph: Graph, type_: Element) -> str:
+    if not type_.attrs.get("property_specific"):
+        return name(type_)
+    return f"[{', '.join(map(name, graph.targets(type_, Edge.SPECIALIZES))) or name(type_)}]"
 
 
 def multiplicity(element: Element) -> str:

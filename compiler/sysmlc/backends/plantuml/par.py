@@ -23,7 +23,7 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All parametric diagrams, in the order of the model."""
     bound = bindings(graph)
     for block in graph.of_kind(*OWNERS):
-        has_usages = any(_is_usage(one) for one in graph.owned(block))
+        has_usages = any(_is_law(graph, one) for one in graph.owned(block))
         if (has_usages or block.id in bound) and not block.attrs.get("external"):
             yield from _of_block(graph, block, usages(graph, block), bound.get(block.id, []))
 
@@ -36,6 +36,10 @@ def chosen(
     boxes = dict.fromkeys([*own, *(end.parts for one in found for end in one.ends)])
     boxes.pop((), None)
     return _Drawing(graph, block, list(boxes), found).view()
+
+
+def _is_law(graph: Graph, item: Element) -> bool:
+    return _is_usage(item) and type_of(graph, item) is not None
 
 
 def _is_usage(item: Element) -> bool:

@@ -9,6 +9,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
 from sysmlc.passes.classify.allocations import add_allocations
 from sysmlc.passes.classify.bindings import add_bindings
+from sysmlc.passes.classify.constraints import check_constraints
 from sysmlc.passes.classify.lineage import (
     Ancestor,
     Profiles,
@@ -57,6 +58,7 @@ class Classify:
         add_allocations(graph)
         add_relations(graph, sink)
         check_requirements(graph, sink)
+        check_constraints(graph, sink)
 
 
 # -- stereotypes -------------------------------------------------------------------------------

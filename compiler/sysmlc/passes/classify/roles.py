@@ -39,7 +39,8 @@ _BY_STEREOTYPE: dict[Kind, Mapping[str, str]] = {
     Kind.INSTANCE: UNIT_ROLES,
     Kind.COMMENT: COMMENT_ROLES,
     Kind.PARTITION: PARTITION_ROLES,
-    Kind.PORT: PORT_ROLES,
+    # MagicDraw's constraint parameters are ports.
+    Kind.PORT: PORT_ROLES | {"ConstraintParameter": "constraint parameter"},
     Kind.PROPERTY: PROPERTY_ROLES,
     Kind.CONNECTOR: CONNECTOR_ROLES,
     Kind.ITEM_FLOW: FLOW_ROLES,
@@ -70,7 +71,14 @@ def by_structure(graph: Graph, element: Element) -> str:
         return _property_role(graph, element)
     if element.kind is Kind.CLASS:
         return _class_role(graph, element)
+    if element.kind is Kind.PORT and _is_of_constraint_block(graph, element):
+        return "constraint parameter"
     return _BY_KIND.get(element.kind, "")
+
+
+def _is_of_constraint_block(graph: Graph, feature: Element) -> bool:
+    owner = graph.owner(feature)
+    return owner is not None and owner.role == "constraint block"
 
 
 def _class_role(graph: Graph, class_: Element) -> str:
@@ -90,7 +98,7 @@ def _property_role(graph: Graph, feature: Element) -> str:
         return ""
     if type_ is not None and type_.role == "constraint block":
         return "constraint property"
-    if owner.role == "constraint block":
+    if _is_of_constraint_block(graph, feature):
         return "constraint parameter"
     return _role_by_type(feature, type_)
 

@@ -1,0 +1,64 @@
+"""Constraint properties, parameters and bindings, as Papyrus and MagicDraw have them."""
+
+import pytest
+from passing import codes, lines, refined
+
+from sysmlc.ir import Edge
+
+LAW = (
+    'Class law "Law" role="constraint block"\n'
+    '  {kind} law.f "f"\n'
+    '  {kind} law.m "m"\n'
+    'Class crane "Crane" role="block"\n'
+    '  Property crane.mass "mass" role="value"\n'
+    '  Property crane.law "law" aggregation="composite"\n'
+    "    -> typed-by law\n"
+    '  Connector k "k"\n'
+    "    -> end k.1 k.2\n"
+    "    ConnectorEnd k.1\n      -> role crane.mass\n"
+    "    ConnectorEnd k.2\n      -> path crane.law\n      -> role law.m\n"
+)
+
+
+@pytest.mark.parametrize("kind", ["Property", "Port"])
+def test_a_connector_at_a_parameter_binds_without_its_stereotype(kind):
+    graph, sink = refined(LAW.format(kind=kind), "flows")
+    assert graph["law.m"].role == "constraint parameter"
+    assert graph["crane.law"].role == "constraint property"
+    assert graph["k"].role == "binding connector"
+    assert graph.targets(graph["crane.mass"], Edge.BINDS) == [graph["law.m"]]
+    assert lines(sink) == [
+        "SM218 info: nothing is bound to parameters of constraint 'Crane::law': 'f'"
+    ]
+
+
+def test_a_connector_between_parts_binds_nothing():
+    text = (
+        'Class a "A" role="block"\n'
+        '  Property one "one" role="part"\n  Property two "two" role="part"\n'
+        '  Connector k "k"\n    -> end k.1 k.2\n'
+        "    ConnectorEnd k.1\n      -> role one\n    ConnectorEnd k.2\n      -> role two\n"
+    )
+    graph, _ = refined(text, "classify")
+    assert graph["k"].role == ""
+    assert list(graph.edges(Edge.BINDS)) == []
+
+
+def test_a_binding_of_another_usage_leaves_this_one_open():
+    text = LAW.format(kind="Property") + ('  Property crane.law2 "law2"\n    -> typed-by law\n')
+    found = [line for line in lines(refined(text, "classify")[1]) if "law2" in line]
+    assert found == [
+        "SM218 info: nothing is bound to parameters of constraint 'Crane::law2': 'f', 'm'"
+    ]
+
+
+def test_equal_names_of_units_are_equal_units():
+    text = (
+        'DataType a "A" role="value type"\n  -> references a.u\n  Unit a.u "kg"\n'
+        'DataType b "B" role="value type"\n  -> references b.u\n  Unit b.u "kg"\n'
+        'Class c "C" role="block"\n'
+        '  Property x "x" role="value"\n    -> typed-by a\n    -> binds y\n'
+        '  Property y "y" role="value"\n    -> typed-by b\n'
+    )
+    assert "SM219" not in codes(refined(text, "classify")[1])
+    assert "SM219" in codes(refined(text.replace('b.u "kg"', 'b.u "g"'), "classify")[1])
