@@ -41,7 +41,8 @@ def graph_changes(one: Compilation, other: Compilation) -> list[Change]:
 def _of_dialect(change: Change) -> bool:
     """Papyrus applies SysML package by package and MagicDraw once; the tools' libraries have other
     names; MagicDraw notes the path of a connector end also where partWithPort says it."""
-    stand_in = change.detail in ("Profile", "Package") and "::" not in change.element
+    is_library = "::" not in change.element or change.element.startswith("SysML::")
+    stand_in = change.detail in ("Profile", "Package") and is_library
     path = change.detail == "Application" and change.element.endswith("::NestedConnectorEnd")
     applied = change.detail.startswith("applies ")
     imported = change.element.endswith("::<Import>") and change.detail.startswith("references ")

@@ -53,20 +53,27 @@ def test_primitives_of_all_dialects_are_one_data_type_each(href, kind, path, nam
     ("href", "name"),
     [
         ("pathmap://SYSMLC_PROFILES/sysmlc.profile.uml#Task", "Task"),
-        ("http://www.omg.org/spec/SysML/20150709/SysML.xmi#SysML.Blocks.Block", "Block"),
-        ("pathmap://UML_METAMODELS/UML.metamodel.uml#Port", "Port"),
+        ("http://www.omg.org/spec/SysML/20150709/SysML.xmi#SysML.NewInSysML9", "NewInSysML9"),
         (
-            "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Ports_u0026Flows",
-            "Ports&Flows",
+            "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_New_u0026Old",
+            "New&Old",
         ),
-        ("https://www.omg.org/spec/UML/20161101/UML.xmi#Class", "Class"),
     ],
 )
-def test_standard_libraries_stand_in_without_complaint(href, name):
+def test_what_is_new_in_a_standard_library_stands_in_without_complaint(href, name):
     graph, sink = refined(pointing(href, edge="references"), "resolve")
     stub = graph.target(graph["p"], Edge.REFERENCES)
     assert (stub.name, stub.attrs["external"], stub.attrs["href"]) == (name, True, href)
     assert codes(sink) == []
+
+
+def test_a_stub_keeps_the_qualified_name_that_the_reference_shows():
+    text = pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Company::Robots::Arm")
+    graph, _ = refined(text, "resolve")
+    stub = graph.target(graph["p"], Edge.TYPED_BY)
+    assert (stub.name, stub.attrs["qualified_name"]) == ("Arm", "Company::Robots::Arm")
+    plain, _ = refined(pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Arm"), "resolve")
+    assert "qualified_name" not in plain.target(plain["p"], Edge.TYPED_BY).attrs
 
 
 def test_absent_library_is_one_warning_that_lists_what_it_takes_down():

@@ -64,7 +64,7 @@ def test_external_targets_are_named_as_the_tools_name_them():
         )
     )
     assert [(r.kind, r.name) for r in reading.graph.pending] == [
-        ("DataType", "length[metre]"),
+        ("DataType", "ISO-80000::length::length[metre]"),
         ("DataType", "Integer"),
         ("Class", ""),
     ]

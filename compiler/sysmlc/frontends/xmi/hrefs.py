@@ -49,13 +49,16 @@ def base_name(path: str) -> str:
 
 
 def hint(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
-    """Kind, if it is written, and name of the external element that an ``href`` refers to."""
+    """Kind, if it is written, and name of the external element that an ``href`` refers to.
+
+    MagicDraw writes its qualified name.
+    """
     path, type_name = _reference_extension(document, row)
     href = document.attributes[row].get("href", "")
-    name = path.rpartition("::")[2] or name_in(href)
+    name = path or name_in(href)
     known = kind_of(document.types[row] or type_name)
     kind = known[0] if known else None
-    if kind is None and feature == "type" and name in _PRIMITIVES:
+    if kind is None and feature == "type" and name.rpartition("::")[2] in _PRIMITIVES:
         kind = Kind.DATA_TYPE
     if not name and feature in ("appliedProfile", "importedPackage"):
         file = _MODEL_FILE.match(base_name(href.partition("#")[0]))

@@ -75,12 +75,15 @@ class Profiles:
     def _choose(self, namespace: str, name: str) -> Element | None:
         """The one of that name whose profile has the namespace; alone in the unit it will do,
         unless the namespace is known to be somebody else's."""
+        whose = family(namespace)
         candidates = sorted(self._named.get(name, ()), key=lambda one: one.id)
+        if whose is not Family.CUSTOM:
+            # What SysML says of its own stereotypes is known without any library.
+            candidates = [one for one in candidates if not one.attrs.get("external")]
         for fits in (self._has_uri, self._has_name):
             found = next((one for one in candidates if fits(one, namespace)), None)
             if found is not None:
                 return found
-        whose = family(namespace)
         same = [one for one in candidates if self._family(one) is whose]
         return same[0] if same and (len(same) == 1 or whose is not Family.CUSTOM) else None
 

@@ -17,6 +17,7 @@ from sysmlc.passes.resolve.libraries import (
     primitive,
     split,
 )
+from sysmlc.passes.resolve.outside import add, known
 from sysmlc.passes.resolve.rules import (
     BROKEN_ID,
     BROKEN_REFERENCE,
@@ -24,6 +25,7 @@ from sysmlc.passes.resolve.rules import (
     MISSING_LIBRARY,
 )
 from sysmlc.passes.resolve.targets import Targets
+from sysmlc.passes.standins import StandIn
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},
@@ -91,7 +93,8 @@ class Resolve:
         _report_lost(graph, sink, lost)
         keep_first_ends(graph, sink)
         _rewrite(graph, answers, uses)
-        _report_libraries(graph, sink, answers.outside)
+        missing = {h: uses for h, uses in answers.outside.items() if h not in answers.known}
+        _report_libraries(graph, sink, missing)
 
 
 def _elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, _Use]:
@@ -133,6 +136,8 @@ class _Answers:
     targets: Targets
     outside: dict[str, list[_Use]] = field(default_factory=dict)
     """Uses of elements outside the unit, by the href of the stand-in."""
+    known: dict[str, StandIn] = field(default_factory=dict)
+    """Those of ``outside`` that are elements of a known library."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
     _stubs: dict[str, str] = field(default_factory=dict)
 
@@ -143,11 +148,11 @@ class _Answers:
             if use.target not in self.graph and self._is_outside(use):
                 distant.setdefault(use.target, []).append(use)
         for target in sorted(distant):
-            href = _canonical(target, distant[target])
+            href = self._canonical(target, distant[target])
             self._stubs[target] = _stand_in_id(href)
             self.outside.setdefault(href, []).extend(distant[target])
         for href in sorted(self.outside):
-            _stand_in(self.graph, href, self.outside[href])
+            self._add(href, self.outside[href])
 
     def get(self, holder: Element, target: str) -> Element | None:
         """The element that ``target`` means in the holder's file."""
@@ -166,12 +171,23 @@ class _Answers:
         library, _ = split(use.target)
         return not self.targets.files(use.holder.source, library)
 
+    def _canonical(self, target: str, uses: list[_Use]) -> str:
+        # All uses are asked, for the order in which they come must not matter.
+        name = max({primitive(target, use.path, use.kind) for use in uses})
+        if name:
+            return PRIMITIVE_TYPES + name
+        found = known(target, {use.path for use in uses}, {use.kind for use in uses})
+        if found is None:
+            return target
+        self.known[found.href] = found
+        return found.href
 
-def _canonical(target: str, uses: list[_Use]) -> str:
-    # All uses are asked, for the order in which they come must not matter.
-    names = {primitive(target, use.path, use.kind) for use in uses}
-    name = max(names)
-    return PRIMITIVE_TYPES + name if name else target
+    def _add(self, href: str, uses: list[_Use]) -> None:
+        if href in self.known and not href.startswith(PRIMITIVE_TYPES):
+            origin = min(uses, key=_Use.place).holder.id
+            add(self.graph, self.known[href], {use.kind for use in uses}, origin)
+        else:
+            _stand_in(self.graph, href, uses)
 
 
 def _stand_in_id(href: str) -> str:
@@ -188,6 +204,8 @@ def _stand_in(graph: Graph, href: str, uses: list[_Use]) -> None:
     if href.startswith(PRIMITIVE_TYPES):
         kind, path = Kind.DATA_TYPE, ""
         attrs["subkind"] = "primitive"
+    if "::" in path:
+        attrs["qualified_name"] = path
     attrs["origin"] = min(uses, key=_Use.place).holder.id
     graph.add(Element(id, kind, name_of(href, path), attrs=attrs))
 

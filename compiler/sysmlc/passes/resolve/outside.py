@@ -1,0 +1,50 @@
+"""Stand-ins in the graph for what the libraries of UML, SysML and MagicDraw hold."""
+
+from collections.abc import Collection
+
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.identity import derived_id
+from sysmlc.passes.resolve.libraries import split
+from sysmlc.passes.standins import StandIn, libraries
+
+
+def known(target: str, paths: Collection[str], kinds: Collection[Kind]) -> StandIn | None:
+    """The element of a known library that a reference means, or None.
+
+    ``paths`` and ``kinds`` are what all references to it say: their order must not matter.
+    """
+    file, fragment = split(target)
+    return libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
+
+
+def add(graph: Graph, stand_in: StandIn, kinds: Collection[Kind], origin: str) -> Element:
+    """Add the stand-in with its packages, generals and metaclasses, unless it is there.
+
+    Eclipse applies the packages of SysML one by one, as profiles: then they are profiles.
+    """
+    is_profile = stand_in.kind is Kind.PACKAGE and Kind.PROFILE in kinds
+    kind = Kind.PROFILE if is_profile else stand_in.kind
+    owner = _of(graph, stand_in.owner, origin)
+    id = derived_id(stand_in.href, "stub")
+    found = graph.get(id)
+    if found is not None:
+        return found
+    attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": stand_in.href}
+    attrs["origin"] = origin
+    made = graph.add(
+        Element(id, kind, stand_in.name, None if owner is None else owner.id, attrs=attrs)
+    )
+    for edge, names in (
+        (Edge.SPECIALIZES, stand_in.generals),
+        (Edge.EXTENDS, stand_in.metaclasses),
+    ):
+        for name in names:
+            general = _of(graph, name, origin)
+            if general is not None:
+                graph.connect(edge, made, general)
+    return made
+
+
+def _of(graph: Graph, name: str, origin: str) -> Element | None:
+    stand_in = libraries().get(name) if name else None
+    return None if stand_in is None else add(graph, stand_in, (), origin)
