@@ -5,6 +5,7 @@ import pytest
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
+from sysmlc.logic.token_game import State, is_complete
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_rules import sketch
@@ -125,9 +126,25 @@ def test_an_action_waits_for_all_its_pins_and_a_value_takes_no_time():
 
 
 def test_flows_that_reach_one_pin_bring_their_tokens_one_after_the_other():
-    found, sink = tokens(PINS.replace("flow-target w.b", "flow-target w.a"))
-    assert found == []
-    assert "SM454" in codes(sink)
+    """The action runs twice; what comes while it runs waits on the flow."""
+    graph = only(PINS.replace("flow-target w.b", "flow-target w.a"))
+    weigh = graph.node("w")
+    assert [graph.node(edge.source).label for edge in graph.incoming(weigh)] == [
+        "the merge before action 'weigh'"
+    ]
+    assert weigh.queues
+
+
+def test_a_pin_that_needs_as_many_values_as_it_has_flows_waits_for_all_of_them():
+    text = PINS.replace("flow-target w.b", "flow-target w.a")
+    graph = only(text.replace('w.a "a" direction="in"', 'w.a "a" direction="in" multiplicity="2"'))
+    assert len(graph.incoming(graph.node("w"))) == 2
+
+
+def test_an_input_that_may_be_missing_needs_no_flow():
+    text = PINS.replace('w.b "b" direction="in"', 'w.b "b" direction="in" multiplicity="0..1"')
+    _, sink = tokens(text.replace("flow-target w.b", "flow-target w.a"))
+    assert "SM464" not in codes(sink)
 
 
 def test_an_accept_action_without_incoming_flows_listens_again_after_each_event():
@@ -195,12 +212,23 @@ def test_literal_guards_are_compared_with_the_object_that_the_decision_passes_on
     assert [variable.name for variable in graph.inputs] == ["done_x", "done_y", "input_decision_1"]
 
 
-def test_other_literals_than_those_on_the_branches_keep_the_token():
+def test_a_token_with_another_value_than_those_on_the_branches_ends_at_the_decision():
     graph, found = decision(
         'guard="1" guard_literal=true', 'guard="2" guard_literal=true', attrs='decision_input="b"'
     )
-    assert found == ["SM456"]
+    assert found == ["SM476"]
     assert graph.inputs[-1].domain.literals == ("1", "2", "other")
+    *_, rest = graph.outgoing(graph.node("d"))
+    assert (rest.guard.text, graph.node(rest.target).kind) == ("else", "sink")
+    assert graph.node("d").exhaustive
+
+
+def test_a_text_or_a_literal_of_an_enumeration_is_compared_like_a_number():
+    graph, found = decision(
+        'guard="red" guard_literal=true', 'guard="else"', attrs='decision_input="b"'
+    )
+    assert found == []
+    assert graph.inputs[-1].domain.literals == ("red", "other")
 
 
 def test_the_literal_true_that_tools_write_on_control_flows_opens_every_branch():
@@ -257,10 +285,21 @@ def test_the_clauses_of_a_conditional_node_are_tried_in_order():
     ]
     of = "of structured node 'case'"
     assert guarded == [
-        (f"the test 1 {of}", "test 1 is true", f"the body 1 {of}"),
-        (f"the test 1 {of}", "else", f"the test 2 {of}"),
-        (f"the test 2 {of}", "test 2 is true", f"the body 2 {of}"),
-        (f"the test 2 {of}", "else", f"the end {of}"),
+        (f"the decision after test 1 {of}", "test 1 is true", f"the body 1 {of}"),
+        (f"the decision after test 1 {of}", "else", f"the test 2 {of}"),
+        (f"the decision after test 2 {of}", "test 2 is true", f"the body 2 {of}"),
+        (f"the decision after test 2 {of}", "else", f"the end {of}"),
+    ]
+
+
+def test_a_test_that_is_the_literal_true_is_the_else_of_a_conditional_node():
+    graph = only(
+        CONDITIONAL.replace('t2 "t2" subkind="opaque"', 't2 "t2" subkind="value" value=true')
+    )
+    texts = [edge.guard.text for edge in graph.edges if edge.region == "c" and edge.guard]
+    assert texts == ["test 1 is true", "else", "test 2 is true"]
+    assert [variable.name for variable in graph.inputs if "input" in variable.name] == [
+        "input_test_1_case"
     ]
 
 
@@ -270,9 +309,264 @@ def test_the_nodes_of_a_sequence_node_follow_each_other():
     assert edges(graph) == ["at_x_to_y", "*at_start_to_s", "*at_start_x_to_x"]
 
 
-def test_handlers_of_exceptions_do_not_start_by_themselves():
-    graph = only(RULES["SM463"].wrong)
-    assert [node.run for node in graph.workers()] == ["run_work"]
+# -- borders of structured nodes ---------------------------------------------------------------
+
+BORDER = """
+Activity a "a"
+  Control i "" subkind="initial"
+  Control k "" subkind="fork"
+  Structured s "s" subkind="structured"
+    Action x "x" subkind="opaque"
+    Action y "y" subkind="opaque"
+  Action z "z" subkind="opaque"
+  ControlFlow f1
+    -> flow-source i
+    -> flow-target k
+  ControlFlow f2
+    -> flow-source k
+    -> flow-target s
+  ObjectFlow f3
+    -> flow-source k
+    -> flow-target x
+  ObjectFlow f4
+    -> flow-source y
+    -> flow-target z
+"""
+
+
+def test_a_flow_across_a_border_belongs_to_the_region_around_it():
+    graph = only(BORDER)
+    (into,) = [edge for edge in graph.edges if edge.origin == "f3"]
+    (out,) = [edge for edge in graph.edges if edge.origin == "f4"]
+    assert (into.region, graph.enters(into)) == ("", True)
+    assert (out.region, graph.enters(out)) == ("", False)
+
+
+def test_an_action_that_waits_for_a_token_from_outside_keeps_its_region_from_ending():
+    """The region starts it (fUML 1.5, 8.10.2), so that the region waits for what it needs."""
+    graph = only(BORDER)
+    sources = [graph.node(edge.source).label for edge in graph.incoming(graph.node("x"))]
+    assert sources == ["fork 1", "the start"]
+    state = State(frozenset(e.id for e in graph.inside("s")[0] if e.target == "x"), frozenset("s"))
+    assert not is_complete(graph, state, "s")
+    assert is_complete(graph, State(frozenset(), frozenset("s")), "s")
+
+
+def test_the_value_at_an_input_pin_may_pass_through_to_an_output_pin():
+    graph = only("""
+Activity a "a"
+  Structured s "s" subkind="structured"
+    Pin p "p" direction="in" multiplicity="0..1"
+    Pin q "q" direction="out"
+    ObjectFlow f1
+      -> flow-source p
+      -> flow-target q
+  Control e "" subkind="flow-final"
+  ObjectFlow f2
+    -> flow-source q
+    -> flow-target e
+""")
+    inner = [e for e in graph.edges if e.region == "s"]
+    assert [(graph.node(e.source).kind, graph.node(e.target).kind, e.marked) for e in inner] == [
+        ("initial", "sink", True)
+    ]
+
+
+def test_a_structured_node_without_flows_is_a_group_that_nobody_has_to_be_told_of():
+    graph, sink = tokens(RULES["SM471"].right)
+    assert [node.kind for node in graph[0].nodes].count("structured") == 0
+    assert "SM471" not in codes(sink)
+
+
+# -- loops, expansion regions ------------------------------------------------------------------
+
+VARIABLES = """
+Activity a "a"
+  Structured l "count" subkind="loop" tested_first=true test=["t"] body_part=["b"]
+    Pin n "n" direction="out" subkind="result"
+    Control k "k" subkind="fork"
+    Action t "test" subkind="opaque"
+    Action b "body" subkind="opaque"
+    ObjectFlow f1
+      -> flow-source n
+      -> flow-target k
+    ObjectFlow f2
+      -> flow-source k
+      -> flow-target t
+    ObjectFlow f3
+      -> flow-source k
+      -> flow-target b
+"""
+
+
+def test_a_loop_variable_is_there_anew_in_each_round():
+    graph = only(VARIABLES)
+    (given,) = [edge for edge in graph.edges if edge.origin == "f1"]
+    assert graph.node(given.source).label == "the round of structured node 'count'"
+    (rounds,) = graph.interruptibles
+    assert set(rounds.nodes) == {"k", "t", "b", given.source}
+    (back,) = [edge for edge in graph.edges if edge.interrupts]
+    assert graph.node(back.target).label == "the repetition of structured node 'count'"
+
+
+def test_a_fork_between_the_actions_of_a_test_belongs_to_the_test():
+    text = VARIABLES.replace('test=["t"]', 'test=["t", "b"]').replace('body_part=["b"]', "")
+    graph = only(text)
+    assert graph.node("k").region == graph.node("t").region
+
+
+def test_an_iterative_expansion_region_is_a_loop_that_the_environment_decides():
+    graph = only(RULES["SM477"].right)
+    assert [v.name for v in graph.inputs] == ["input_more_e", "done_x"]
+    guards = [edge.guard.text for edge in graph.edges if edge.guard]
+    assert guards == ["there is another element", "else"]
+
+
+EXPANSION = """
+Activity a "a"
+  Action x "x" subkind="opaque"
+    Pin x.out "out" direction="out"
+  ObjectNode in "in" subkind="expansion" region_as_input="e"
+  Structured e "each" subkind="expansion" mode="parallel"
+    Action y "y" subkind="opaque"
+      Pin y.in "in" direction="in"
+  ObjectFlow f1
+    -> flow-source x.out
+    -> flow-target in
+  ObjectFlow f2
+    -> flow-source in
+    -> flow-target y.in
+"""
+
+
+def test_an_expansion_node_is_a_pin_of_its_region():
+    graph = only(EXPANSION)
+    (into,) = [edge for edge in graph.edges if edge.origin == "f1"]
+    (inside,) = [edge for edge in graph.edges if edge.origin == "f2"]
+    assert (into.target, into.region) == ("e", "")
+    assert inside.marked
+    assert graph.node(inside.region).label == "the element of structured node 'each'"
+
+
+# -- data stores -------------------------------------------------------------------------------
+
+STORE = """
+Activity a "a"
+  Control i "" subkind="initial"
+  Action w "write" subkind="opaque"
+  Action r "read" subkind="opaque"
+  DataStore d "value"
+  ControlFlow f1
+    -> flow-source i
+    -> flow-target w
+  ControlFlow f2
+    -> flow-source w
+    -> flow-target r
+  ObjectFlow f3
+    -> flow-source w
+    -> flow-target d
+  ObjectFlow f4
+    -> flow-source d
+    -> flow-target r
+"""
+
+
+def test_a_data_store_keeps_its_value_when_it_is_read():
+    graph = only(STORE)
+    assert [edge.origin for edge in graph.edges if edge.keeps] == ["f4"]
+    assert graph.node("d").kind == "data-store"
+
+
+# -- exceptions --------------------------------------------------------------------------------
+
+PROTECTED = """
+Activity a "a"
+  Structured s "try" subkind="structured" handlers=[[["h"], [], []]]
+    Action x "x" subkind="opaque"
+    Action r "r" subkind="raise"
+    ControlFlow f1
+      -> flow-source x
+      -> flow-target r
+  Structured h "repair" subkind="structured"
+    Action y "y" subkind="opaque"
+  Action z "z" subkind="opaque"
+  ControlFlow f2
+    -> flow-source s
+    -> flow-target z
+"""
+
+
+def sources(graph: TokenGraph, id: str) -> list[str]:
+    return [graph.node(edge.source).label for edge in graph.incoming(graph.node(id))]
+
+
+def test_the_body_of_a_handler_starts_with_an_exception_only():
+    graph = only(PROTECTED)
+    assert sources(graph, "h") == ["the exception of structured node 'try'"]
+    assert "h" in {node.id for node in graph.nodes}
+
+
+def test_what_is_raised_ends_the_protected_node():
+    graph = only(PROTECTED)
+    thrown = [edge for edge in graph.edges if edge.interrupts]
+    assert [graph.node(edge.source).label for edge in thrown] == [
+        "the end of action 'x'",
+        "action 'r'",
+    ]
+    (ended,) = graph.interruptibles
+    assert {"s", "x", "r"} <= set(ended.nodes)
+    assert not {"h", "y", "z"} & set(ended.nodes)
+
+
+def test_when_the_handler_is_done_the_flows_after_the_protected_node_go_on():
+    graph = only(PROTECTED)
+    (after,) = graph.incoming(graph.node("z"))
+    assert sources(graph, after.source) == [
+        "structured node 'repair'",
+        "structured node 'try'",
+    ]
+
+
+def test_a_call_in_a_protected_node_ends_by_itself_or_with_an_exception():
+    graph = only(PROTECTED)
+    assert "raised_x" in [variable.name for variable in graph.inputs]
+
+
+def test_the_first_of_two_handlers_for_one_type_catches_it():
+    text = PROTECTED.replace('[[["h"], [], []]]', '[[["h"], [], ["t"]], [["z"], [], ["t"]]]')
+    graph = only(text + 'Class t "Fault"\n')
+    assert sources(graph, "h") == ["the exception of structured node 'try'"]
+    assert sources(graph, "z")[0] != "the exception of structured node 'try'"
+
+
+def test_handlers_for_several_types_are_told_apart_by_an_input():
+    text = PROTECTED.replace('[[["h"], [], []]]', '[[["h"], [], ["t"]], [["z"], [], ["u"]]]')
+    graph = only(text + 'Class t "Fault"\nClass u "Stop"\n')
+    (types,) = [v for v in graph.inputs if v.name == "exception_try"]
+    assert types.domain.literals == ("Fault", "Stop", "other")
+
+
+def test_an_exception_that_nobody_catches_ends_the_activity():
+    graph = only(RULES["SM475"].wrong)
+    (end,) = graph.outgoing(graph.node("stop"))
+    assert graph.node(end.target).kind == "final"
+
+
+# -- ends --------------------------------------------------------------------------------------
+
+
+def test_an_activity_ends_when_nothing_in_it_can_move():
+    """A join that waits in vain is no reason to go on (fUML 1.5, 8.10.1)."""
+    graph, sink = tokens(RULES["SM453"].wrong)
+    assert graph[0].finishes
+    assert "SM453" in codes(sink)
+
+
+def test_a_long_condition_gets_a_name():
+    chain = "initial i\n" + "".join(f"action a{n}\n" for n in range(9)) + "i -> a0\n"
+    graph = only(sketch(chain + "\n".join(f"a{n} -> a{n + 1}" for n in range(8))))
+    assert graph.quiets == (("", "over"),)
+    assert only(sketch("initial i\naction x\ni -> x")).quiets == ()
 
 
 # -- size --------------------------------------------------------------------------------------

@@ -1,13 +1,15 @@
 """Real activities: each becomes a token graph, or a rule inside it says why not."""
 
 import random
+from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
-from sysmlc.ir import Graph, Kind
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.text import print_text
 from sysmlc.logic import evaluate, token_game
 from sysmlc.logic.activity_contract import derive
@@ -18,22 +20,32 @@ from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
-FILES = {
-    "fUML-Tests.uml": (43, 35),
-    "TankBarrelExample.uml": (4, 4),
-    "moka-master.uml": (2, 2),
-    "tracker.uml": (1, 1),
-    "Factorial.uml": (3, 3),
-}
-"""Drawn activities, and those that become token graphs. The others have data stores, flows
-across structured nodes, or flows that hold several tokens, which is what they were made to test.
+FILES = (
+    "papyrus/fUML-Tests.uml",
+    "magicdraw/fUML-Tests.mdxml",
+    "papyrus/Alf.library.uml",
+    "papyrus/AssertionLibrary.uml",
+    "papyrus/moka-master.uml",
+    "papyrus/TankBarrelExample.uml",
+    "papyrus/TutoFMU.uml",
+    "papyrus/fUML-Exception-Tests.uml",
+    "papyrus/Factorial.uml",
+    "papyrus/tracker.uml",
+    "papyrus/AllDiagrams.uml",
+)
+REASONS = ("SM450", "SM454", "SM455", "SM459", "SM460", "SM467", "SM469", "SM473")
+"""Rules that an activity without token graph has; all but SM454 are absent here or mean that
+nothing is drawn (SM469).
 """
+_SAMPLE = 60
+"""So many contracts of a file are played; of Alf.library every seventh."""
 
 
+@cache
 def refined(corpus: Path, name: str) -> tuple[Graph, Sink]:
-    path = corpus / "xmi" / "papyrus" / name
+    path = corpus / "xmi" / name
     graph, sink = Graph(), Sink()
-    FRONTEND.read([Source(name, path.read_bytes())], graph, Sink(), Coverage())
+    FRONTEND.read([Source(path.name, path.read_bytes())], graph, Sink(), Coverage())
     for pass_name in ("resolve", "inherit", "classify", "ports", "flows"):
         pipeline.load(pass_name).run(graph, Sink())
     before = print_text(graph)
@@ -42,25 +54,41 @@ def refined(corpus: Path, name: str) -> tuple[Graph, Sink]:
     return graph, sink
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_every_activity_is_a_token_graph_or_has_a_rule(corpus, name):
-    graph, sink = refined(corpus, name)
-    drawn = [a for a in graph.of_kind(Kind.ACTIVITY) if not a.subkind and "external" not in a.attrs]
+def drawn(graph: Graph) -> list[Element]:
+    found = graph.of_kind(Kind.ACTIVITY)
+    return [a for a in found if not a.subkind and "external" not in a.attrs]
+
+
+def reasons(graph: Graph, sink: Sink, activity: Element) -> list[str]:
+    """Codes of located findings inside the activity that say why it has no token graph."""
+    inside = {element.id for element in graph.subtree(activity)}
+    found = (d for d in sink if d.subject.id in inside and d.subject.place)
+    return sorted({d.rule.code for d in found} & set(REASONS))
+
+
+def row(name: str, graph: Graph, sink: Sink) -> str:
     made = {tokens.activity for tokens in graph.derived(TokenGraph)}
-    assert (len(drawn), len(made)) == FILES[name]
-    found = {diagnostic.subject.id for diagnostic in sink if diagnostic.subject.place}
-    for activity in drawn:
-        inside = {element.id for element in graph.subtree(activity)}
-        assert activity.id in made or found & inside
+    missing = [activity for activity in drawn(graph) if activity.id not in made]
+    why = Counter(" ".join(reasons(graph, sink, one)) or "no reason" for one in missing)
+    said = ", ".join(f"{count} {codes}" for codes, count in sorted(why.items())) or "none"
+    return f"{name}: {len(drawn(graph))} drawn, {len(made)} token graphs; without: {said}\n"
+
+
+def test_how_many_activities_have_token_graphs(corpus, golden):
+    """A lower number is a loss: look for the reason before the file is written anew."""
+    text = "".join(row(name, *refined(corpus, name)) for name in FILES)
+    golden.check("passes/activities-corpus", {"share.txt": text})
+    assert "no reason" not in text
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name):
     graph, _ = refined(corpus, name)
-    for tokens in graph.derived(TokenGraph):
+    made = graph.derived(TokenGraph)
+    for tokens in made[:: len(made) // _SAMPLE + 1]:
         dice = random.Random(7)
         state, trace = token_game.start(tokens), []
-        for _ in range(80):
+        for _ in range(60):
             inputs = {v.name: dice.choice(values(v.domain)) for v in tokens.inputs}
             trace.append({**inputs, **token_game.values(tokens, state)})
             state = token_game.step(
@@ -72,3 +100,15 @@ def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name)
             )
         for conjunct in derive(tokens).guarantees:
             assert evaluate.violation(conjunct, trace) is None, conjunct.text
+
+
+def test_contracts_grow_with_the_activity_and_not_with_its_square(corpus):
+    """No conjunct of any real activity has more than a few parts a flow."""
+    for name in FILES:
+        for tokens in refined(corpus, name)[0].derived(TokenGraph):
+            sizes = [size(one.formula) for one in derive(tokens).guarantees]
+            assert sum(sizes) < 200 + 75 * len(tokens.edges), tokens.label
+
+
+def size(formula) -> int:
+    return 1 + sum(map(size, getattr(formula, "args", ())))

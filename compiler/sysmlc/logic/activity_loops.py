@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import networkx as nx
 
 from sysmlc.logic.formula import Const, variables
-from sysmlc.logic.tokens import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +58,8 @@ def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ..
     kept = frozenset(nodes)
     view: nx.DiGraph[str] = nx.DiGraph()
     view.add_nodes_from(nodes)
-    view.add_edges_from(
-        (edge.source, edge.target)
-        for edge in graph.edges
-        if edge.source in kept and edge.target in kept
-    )
+    steps = [*((edge.source, edge.target) for edge in graph.edges), *_starts(graph)]
+    view.add_edges_from(pair for pair in steps if kept.issuperset(pair))
     order = {node.id: place for place, node in enumerate(graph.nodes)}
     found = [
         tuple(sorted(part, key=order.__getitem__))
@@ -70,6 +67,13 @@ def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ..
         if len(part) > 1 or view.has_edge(*part, *part)
     ]
     return sorted(found, key=lambda part: order[part[0]])
+
+
+def _starts(graph: TokenGraph) -> Iterator[tuple[str, str]]:
+    """A structured node leads to what starts in it: flows may leave from there."""
+    for edge in graph.edges:
+        if edge.marked and edge.region != ACTIVITY_REGION:
+            yield edge.region, edge.target
 
 
 def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> bool:

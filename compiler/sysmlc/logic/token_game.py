@@ -1,7 +1,11 @@
 """Reference interpreter of token graphs: plays the game on the diagram, not on formulas.
 
-It is the judge of the contracts that ``activity_contract`` derives: a run that it plays must
-satisfy every conjunct, and a changed run must not.
+First the regions that are complete are ended; what is in them does nothing more. All other nodes
+then move what they can move, interrupted nodes lose their tokens, and what has been started gets
+its first ones.
+
+The interpreter is the judge of the contracts that ``activity_contract`` derives: a run that it
+plays must satisfy every conjunct, and a changed run must not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,7 +27,7 @@ Choose = Callable[[TokenNode, Sequence[TokenEdge]], TokenEdge]
 
 
 class NotSafeError(RuntimeError):
-    """A second token reached an edge, or an action was started while it ran."""
+    """A second token reached an edge or a merge, or an action was started while it ran."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +52,8 @@ def start(graph: TokenGraph) -> State:
 def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
     """The value of every variable that the state decides."""
     runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
-    return runs | {edge.variable: edge.id in state.tokens for edge in graph.edges}
+    quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
+    return runs | {edge.variable: edge.id in state.tokens for edge in graph.edges} | quiet
 
 
 def state_of(graph: TokenGraph, valuation: Inputs) -> State:
@@ -75,20 +80,30 @@ def step(
 
 def finishes(graph: TokenGraph, state: State) -> bool:
     """Whether the activity ends in this state, so that the next step starts it anew."""
-    return _complete(graph, state, ACTIVITY_REGION)
+    return is_complete(graph, state, ACTIVITY_REGION)
+
+
+def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
+    """A token is at a final node of the region, or nothing in the region can move."""
+    if any(edge.id in state.tokens for edge in graph.ends(region)):
+        return True
+    return not any(_is_active(graph, state, node) for node in graph.members(region))
+
+
+def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
+    """The node runs, or it has all tokens that it can get from inside its region."""
+    if node.id in state.running:
+        return True
+    if node.firing is Firing.NEVER:
+        return False
+    if node.firing in (Firing.ANY, Firing.END):
+        return any(edge.id in state.tokens for edge in graph.incoming(node))
+    triggers = graph.triggers(node)
+    return bool(triggers) and all(edge.id in state.tokens for edge in triggers)
 
 
 def _marked(graph: TokenGraph, region: str) -> list[str]:
     return [edge.id for edge in graph.edges if edge.marked and edge.region == region]
-
-
-def _complete(graph: TokenGraph, state: State, region: str) -> bool:
-    """A region is complete when a token reached its final node or no token is left in it."""
-    if any(edge.id in state.tokens for edge in graph.ends(region)):
-        return True
-    edges, nodes = graph.inside(region)
-    has_token = any(edge.id in state.tokens for edge in edges)
-    return not has_token and not any(node.id in state.running for node in nodes)
 
 
 class _Step:
@@ -116,8 +131,10 @@ class _Step:
     def play(self) -> State:
         if finishes(self.graph, self.old):
             return start(self.graph)
+        self.ended = [node for node in self.graph.workers() if self._ends(node)]
+        alive = [node for node in self.graph.nodes if self._is_alive(node)]
         # Taking comes before giving: a token may arrive where another has just left.
-        gifts = [edge for node in self.graph.nodes for edge in self._fire(node)]
+        gifts = [edge for node in alive for edge in self._fire(node)]
         for edge in gifts:
             self._give(edge)
         for node in self.ended:
@@ -128,12 +145,22 @@ class _Step:
             self._open(node)
         return State(frozenset(self.tokens), frozenset(self.running))
 
+    def _ends(self, node: TokenNode) -> bool:
+        runs = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
+        return runs and is_complete(self.graph, self.old, node.id)
+
+    def _is_alive(self, node: TokenNode) -> bool:
+        """All regions around it run, and none of them ends in this step."""
+        around = list(self.graph.regions_around(node.region))
+        return all(one.id in self.old.running and one not in self.ended for one in around)
+
     def _fire(self, node: TokenNode) -> Sequence[TokenEdge]:
         incoming, outgoing = self.graph.incoming(node), self.graph.outgoing(node)
         ready = [edge for edge in incoming if edge.id in self.old.tokens]
         match node.firing:
             case Firing.ANY if ready:
                 self._take(ready)
+                self._check_single(node, ready, outgoing)
                 return outgoing
             case Firing.ALL if incoming and len(ready) == len(incoming):
                 self._take(ready)
@@ -144,6 +171,14 @@ class _Step:
                 return self._work(node, incoming, ready, outgoing)
             case _:
                 return ()
+
+    def _check_single(
+        self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
+    ) -> None:
+        # Of several flows that interrupt one region at once, UML lets one pass.
+        apart = {edge.interrupts or edge.id for edge in ready}
+        if len(apart) > 1 and any(not edge.keeps for edge in outgoing):
+            raise NotSafeError(f"two tokens reach {node.label} at once")
 
     def _decide(
         self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
@@ -172,31 +207,31 @@ class _Step:
         ready: list[TokenEdge],
         outgoing: list[TokenEdge],
     ) -> Sequence[TokenEdge]:
-        was_running = node.id in self.old.running
-        if incoming and len(ready) == len(incoming):
-            if was_running:
-                raise NotSafeError(f"{node.label} is started while it runs")
+        is_running = node.id in self.old.running
+        has_all = bool(incoming) and len(ready) == len(incoming)
+        if has_all and is_running and not node.queues:
+            raise NotSafeError(f"{node.label} is started while it runs")
+        if has_all and not is_running:
             self._take(ready)
             self.running.add(node.id)
             self.started.append(node)
-        if not was_running or not self._is_done(node):
+        if not is_running or not self._is_done(node):
             return ()
         self.running.discard(node.id)
-        self.ended.append(node)
         return outgoing
 
     def _is_done(self, node: TokenNode) -> bool:
         if node.kind is NodeKind.STRUCTURED:
-            return _complete(self.graph, self.old, node.id)
+            return node in self.ended
         if node.duration is Duration.PULSE or node.done is None:
             return True
         return self.holds(node.done, self.inputs)
 
     def _take(self, edges: Sequence[TokenEdge]) -> None:
-        self.tokens.difference_update(edge.id for edge in edges)
+        self.tokens.difference_update(edge.id for edge in edges if not edge.keeps)
 
     def _give(self, edge: TokenEdge) -> None:
-        if edge.id in self.tokens:
+        if edge.id in self.tokens and not edge.keeps:
             raise NotSafeError(f"a second token reaches the flow {edge.label}")
         self.tokens.add(edge.id)
         if edge.interrupts:

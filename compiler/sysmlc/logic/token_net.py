@@ -1,9 +1,13 @@
-"""Whether a token graph is 1-safe: Petri net reductions, then a bounded search of the markings.
+"""Whether a region is 1-safe in any order of moves: Petri net reductions, then a bounded search.
 
 The reductions are those of T. Murata, "Petri nets: properties, analysis and applications", Proc.
 IEEE 77(4), 1989, section V: they keep safeness, so that series and parallel parts of a
 well-formed activity vanish before any marking is built. Guards are not looked at: a branch may
 always be taken. Structured nodes are checked on their own and count as one action outside.
+
+A region that passes is 1-safe in the token game, too, where all nodes move at once. Not the other
+way round: what only the speed of the game keeps apart (``token_search``) fails here. Flows across
+borders of regions and data stores are no places of such a net.
 """
 
 from collections.abc import Iterable, Iterator
@@ -19,14 +23,17 @@ _SMALL = 2_000
 class Safety:
     """What the search found in one region.
 
-    ``unsafe`` is the id of an edge (or running node) that may get a second token, ``dead`` holds
-    the ids of nodes that never fire although a path of flows leads to them. ``is_complete`` is
-    false when there were more markings than allowed; nothing is known then beyond ``unsafe``.
+    ``unsafe`` is the id of an edge (or node) that may get a second token, ``dead`` holds
+    the ids of nodes that never fire although a path of flows leads to them. ``finishes`` tells
+    whether the region may be complete, ``rests`` whether it may be so without a final node.
+    ``is_complete`` is false when there were more markings than allowed; nothing is known then
+    beyond ``unsafe``.
     """
 
     unsafe: str = ""
     dead: frozenset[str] = frozenset()
     finishes: bool = True
+    rests: bool = True
     is_complete: bool = True
 
 
@@ -45,7 +52,8 @@ class Move:
 class Net:
     """Places (ids of edges and running nodes), transitions, and the places marked at first.
 
-    ``nodes`` are all nodes that a transition stands for, ``alive`` those known to fire.
+    ``nodes`` are all nodes that a transition stands for, ``alive`` those known to fire. A token on
+    a ``busy`` place can move for ever.
     """
 
     places: dict[str, None]
@@ -53,6 +61,7 @@ class Net:
     marked: set[str]
     nodes: frozenset[str]
     alive: set[str] = field(default_factory=set)
+    busy: set[str] = field(default_factory=set)
 
 
 def check(graph: TokenGraph, region: str, limit: int) -> Safety:
@@ -178,6 +187,7 @@ def _drop_idle(net: Net) -> bool:
     makers = _makers(net)
     for move in idle:
         (place,) = move.takes
+        net.busy.add(place)
         _credit(net, place, move.nodes, (m for m in makers[place] if m is not move))
     net.moves = [move for move in net.moves if not any(move is other for other in idle)]
     return bool(idle)
@@ -205,6 +215,7 @@ def _merge_parallel_places(net: Net) -> bool:
         )
         if seen.setdefault(key, place) != place and takers[place]:
             doomed.append(place)
+            net.busy |= {seen[key]} if place in net.busy else set()
     for place in doomed:
         for move in (*makers[place], *takers[place]):
             move.gives.discard(place)
@@ -216,6 +227,7 @@ def _merge_parallel_places(net: Net) -> bool:
 def _forget(net: Net, place: str) -> None:
     del net.places[place]
     net.marked.discard(place)
+    net.busy.discard(place)
 
 
 def _fuse_places(net: Net) -> bool:
@@ -292,14 +304,16 @@ def search(net: Net, limit: int) -> Safety:
     ends = [(_mask(m.takes, bits), m) for m in net.moves if m.is_end]
     first = _mask(net.marked, bits)
     seen, waiting = {first}, [first]
-    fired, finishes = set(net.alive), not first
+    busy = _mask(net.busy, bits)
+    fired, finishes, rests = set(net.alive), False, False
     for marking in waiting:
         ended = [move for takes, move in ends if marking & takes]
         fired.update(node for move in ended for node in move.nodes)
-        finishes = finishes or bool(ended) or not marking
+        can_move = bool(ended or marking & busy)
         for takes, gives, resets, move in () if ended else moves:
             if marking & takes != takes:
                 continue
+            can_move = True
             fired |= move.nodes
             left = marking & ~takes
             if left & gives & ~resets:
@@ -308,9 +322,11 @@ def search(net: Net, limit: int) -> Safety:
             if after not in seen:
                 seen.add(after)
                 waiting.append(after)
+        rests = rests or not can_move
+        finishes = finishes or bool(ended)
         if len(seen) > limit:
             return Safety(is_complete=False)
-    return Safety(dead=net.nodes - fired, finishes=finishes)
+    return Safety(dead=net.nodes - fired, finishes=finishes or rests, rests=rests)
 
 
 def _mask(places: Iterable[str], bits: dict[str, int]) -> int:

@@ -5,6 +5,11 @@ and 16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends 
 
 One step of the game moves every token that can move by one node: each node looks at the edges as
 they are at the start of the step. What the kinds of nodes do with tokens is in ``FIRING``.
+
+A region is what a structured node owns, or the activity. An edge belongs to the innermost region
+that holds both of its ends. A node moves tokens only while its region runs; a token for a node in
+a region that does not run waits on its edge. A region is complete when a token is at one of its
+final nodes, or when nothing in it can move.
 """
 
 from collections.abc import Iterator
@@ -29,6 +34,7 @@ class NodeKind(StrEnum):
     JOIN = "join"
     MERGE = "merge"
     DECISION = "decision"
+    DATA_STORE = "data-store"
     SINK = "sink"
     FLOW_FINAL = "flow-final"
     ACTIVITY_FINAL = "final"
@@ -42,7 +48,7 @@ class Firing(StrEnum):
     ALL = "all"
     """It takes a token from every incoming edge and gives one to every outgoing edge."""
     ANY = "any"
-    """It takes the tokens of all marked incoming edges and gives one to its outgoing edge."""
+    """It takes the tokens of all marked incoming edges and gives one to every outgoing edge."""
     CHOICE = "choice"
     """It waits for all incoming edges and gives one token to one edge whose guard is open."""
     WORK = "work"
@@ -70,6 +76,7 @@ FIRING: dict[NodeKind, Firing] = {
     NodeKind.JOIN: Firing.ALL,
     NodeKind.MERGE: Firing.ANY,
     NodeKind.DECISION: Firing.CHOICE,
+    NodeKind.DATA_STORE: Firing.ANY,
     NodeKind.SINK: Firing.ANY,
     NodeKind.FLOW_FINAL: Firing.ANY,
     NodeKind.ACTIVITY_FINAL: Firing.END,
@@ -91,6 +98,8 @@ class TokenNode:
     ``region`` is the id of the structured node that owns it. ``run`` is the variable that says
     that it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
     of a decision whose guards never hold together, ``exhaustive`` when one of them always holds.
+    ``queues`` is true of an action that may get tokens while it runs: they wait until it is done
+    (UML 2.5.1, 16.2.3: no action is locally reentrant unless it says so).
     """
 
     id: str
@@ -103,6 +112,7 @@ class TokenNode:
     done: Formula | None = None
     exclusive: bool = False
     exhaustive: bool = False
+    queues: bool = False
 
     @property
     def firing(self) -> Firing:
@@ -118,7 +128,8 @@ class TokenEdge:
 
     ``origins`` are the ids of the drawn flows that it stands for, several after a collapse.
     ``marked`` edges hold a token when their region starts. ``interrupts`` is the id of the
-    interruptible region that loses its tokens when a token enters this edge.
+    interruptible region that loses its tokens when a token enters this edge. ``keeps`` edges
+    leave data stores: their token stays when it is taken.
     """
 
     id: str
@@ -131,6 +142,7 @@ class TokenEdge:
     marked: bool = False
     guard: Guard | None = None
     interrupts: str = ""
+    keeps: bool = False
 
     @property
     def origin(self) -> str:
@@ -140,7 +152,11 @@ class TokenEdge:
 
 @dataclass(frozen=True, slots=True)
 class Interruptible:
-    """An interruptible activity region and the ids of its nodes."""
+    """Nodes (ids) that lose their tokens together.
+
+    They are an interruptible activity region, what an exception ends, or what a loop takes up
+    anew in each round.
+    """
 
     id: str
     label: str
@@ -153,7 +169,9 @@ class TokenGraph:
 
     ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand
     for an event or the end of an action; the others keep their value until they are changed.
-    ``finishes`` is false when no run can end.
+    ``finishes`` is false when no run can end. ``rests`` are the regions that may come to rest
+    before a token is at a final node (None: any of them), ``quiets`` the names of variables that
+    say that a region is complete: formulas that would repeat a long condition name it instead.
     """
 
     activity: str
@@ -165,6 +183,8 @@ class TokenGraph:
     pulses: tuple[str, ...] = ()
     interruptibles: tuple[Interruptible, ...] = ()
     finishes: bool = True
+    rests: frozenset[str] | None = None
+    quiets: tuple[tuple[str, str], ...] = ()
 
     @cached_property
     def _nodes(self) -> dict[str, TokenNode]:
@@ -200,10 +220,50 @@ class TokenGraph:
         """Nodes that run for a while and have a variable for it."""
         return (node for node in self.nodes if node.firing is Firing.WORK)
 
+    @cached_property
+    def _inside(self) -> dict[str, tuple[list[TokenEdge], list[TokenNode]]]:
+        found: dict[str, tuple[list[TokenEdge], list[TokenNode]]] = {}
+        for edge in self.edges:
+            found.setdefault(edge.region, ([], []))[0].append(edge)
+        for node in self.workers():
+            found.setdefault(node.region, ([], []))[1].append(node)
+        return found
+
     def inside(self, region: str) -> tuple[list[TokenEdge], list[TokenNode]]:
         """Edges and running nodes directly in a region."""
-        edges = [edge for edge in self.edges if edge.region == region]
-        return edges, [node for node in self.workers() if node.region == region]
+        return self._inside.get(region, ([], []))
+
+    def regions(self) -> Iterator[str]:
+        """The activity and every structured node."""
+        yield ACTIVITY_REGION
+        yield from (node.id for node in self.nodes if node.kind is NodeKind.STRUCTURED)
+
+    def enters(self, edge: TokenEdge) -> bool:
+        """Whether the edge leads into a region from outside."""
+        return self._nodes[edge.target].region != edge.region
+
+    def reaches_in(self, node: TokenNode) -> bool:
+        """Whether an edge from outside its region leads to the node."""
+        return any(map(self.enters, self._incoming[node.id]))
+
+    def triggers(self, node: TokenNode) -> list[TokenEdge]:
+        """Edges that make the node a reason not to end its region, when all hold a token.
+
+        What has its tokens from inside the region waits for those from outside.
+        """
+        incoming = self._incoming[node.id]
+        return [edge for edge in incoming if edge.region == node.region] or incoming
+
+    @cached_property
+    def _members(self) -> dict[str, list[TokenNode]]:
+        found: dict[str, list[TokenNode]] = {}
+        for node in self.nodes:
+            found.setdefault(node.region, []).append(node)
+        return found
+
+    def members(self, region: str) -> list[TokenNode]:
+        """Nodes directly in a region."""
+        return self._members.get(region, [])
 
     def regions_around(self, region: str) -> Iterator[TokenNode]:
         """The structured node of the region and those around it, innermost first."""
@@ -212,24 +272,22 @@ class TokenGraph:
             yield node
             region = node.region
 
-    def can_empty(self, region: str) -> bool:
-        """Whether the region may end because no token is left in it.
+    def between(self, inner: str, outer: str) -> Iterator[TokenNode]:
+        """Structured nodes from the region ``inner`` up to, not including, the region ``outer``."""
+        for node in self.regions_around(inner):
+            if node.id == outer:
+                return
+            yield node
 
-        Not when every node passes its tokens on to the final node.
-        """
-        if not self.ends(region) or not any(e.marked for e in self.edges if e.region == region):
-            return True
-        return any(
-            not self._outgoing[node.id]
-            for node in self.nodes
-            if node.region == region and node.firing not in (Firing.END, Firing.NEVER)
-        )
+    def can_rest(self, region: str) -> bool:
+        """Whether the region may be complete without a token at a final node."""
+        return self.rests is None or region in self.rests
 
     def ends(self, region: str) -> list[TokenEdge]:
         """Edges whose token ends the region."""
         return [
             edge
-            for node in self.nodes
-            if node.firing is Firing.END and node.region == region
+            for node in self.members(region)
+            if node.firing is Firing.END
             for edge in self._incoming[node.id]
         ]

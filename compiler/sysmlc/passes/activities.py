@@ -12,9 +12,8 @@ from typing import ClassVar
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.tokens import TokenGraph
-from sysmlc.passes import activity_checks, activity_drawing, activity_tokens
+from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
-from sysmlc.passes.activity_collapse import collapse
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 
@@ -53,8 +52,10 @@ class Activities:
             raise activity_drawing.CannotPlayError
         inputs = Inputs(graph, Scope(graph, activity, sink), sink)
         tokens = activity_tokens.build(graph, drawing, inputs, sink)
-        checked = activity_checks.check(graph, tokens, self.max_markings, sink)
-        return collapse(checked) if len(checked.edges) > self.collapse_over else checked
+        tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
+        if len(tokens.edges) > self.collapse_over:
+            tokens = activity_search.collapsed(tokens, self.max_markings)
+        return activity_search.named(tokens, inputs.names)
 
 
 def _is_drawn_elsewhere(activity: Element) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
-from sysmlc.logic import domains, evaluate, token_net
+from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.logic.tokens import (
@@ -17,6 +17,7 @@ from sysmlc.logic.tokens import (
     TokenNode,
 )
 from sysmlc.passes import activity_rules as rules
+from sysmlc.passes import activity_search
 from sysmlc.passes.activity_drawing import CannotPlayError
 
 _MOST_VALUATIONS = 20_000
@@ -32,8 +33,7 @@ def check(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGrap
     checker.check_start()
     checker.check_guards()
     reached = checker.check_reached()
-    finishes = checker.check_tokens(limit, reached)
-    return replace(checker.tokens, finishes=finishes)
+    return checker.check_tokens(limit, reached)
 
 
 class _Checker:
@@ -146,28 +146,24 @@ class _Checker:
 
     # -- tokens --------------------------------------------------------------------------------
 
-    def check_tokens(self, limit: int, reached: set[str]) -> bool:
-        """Whether the activity may finish. Raises CannotPlayError unless it is 1-safe."""
-        regions = [ACTIVITY_REGION]
-        regions += [n.id for n in self.tokens.nodes if n.kind is NodeKind.STRUCTURED]
-        found = {region: token_net.check(self.tokens, region, limit) for region in regions}
-        for safety in found.values():
-            self._require_safe(safety, limit)
-        for node in self._stuck(found.values(), reached):
+    def check_tokens(self, limit: int, reached: set[str]) -> TokenGraph:
+        """The graph with what a search found. Raises CannotPlayError unless it is 1-safe."""
+        found = activity_search.search(self.tokens, limit)
+        self._require_safe(found, limit)
+        for node in self._stuck(found.dead, reached):
             subject = self.graph.subject(self.graph[node.origin])
             self.sink.report(rules.NEVER_FIRES, subject, node=node.label)
-        finishes = found[ACTIVITY_REGION].finishes
-        if not finishes:
+        if not found.finishes:
             subject = self.graph.subject(self.activity)
             self.sink.report(rules.ENDLESS, subject, activity=self.activity.name)
-        return finishes
+        return activity_search.noted(self.tokens, found)
 
-    def _require_safe(self, safety: token_net.Safety, limit: int) -> None:
-        if safety.unsafe:
-            label, origin = self._place(safety.unsafe)
+    def _require_safe(self, found: activity_search.Found, limit: int) -> None:
+        if found.unsafe:
+            label, origin = self._place(found.unsafe)
             self.sink.report(rules.UNSAFE, self.graph.subject(self.graph[origin]), flow=label)
             raise CannotPlayError
-        if not safety.is_complete:
+        if not found.is_complete:
             subject = self.graph.subject(self.activity)
             name = self.activity.name
             self.sink.report(rules.TOO_LARGE, subject, activity=name, limit=limit)
@@ -180,13 +176,13 @@ class _Checker:
         node = self.tokens.node(id)
         return node.label, node.origin
 
-    def _stuck(self, found: Iterable[token_net.Safety], reached: set[str]) -> Iterator[TokenNode]:
+    def _stuck(self, dead: frozenset[str], reached: set[str]) -> Iterator[TokenNode]:
         """Dead nodes that are to blame: tokens reach them, but not all of their edges."""
-        dead = {id for safety in found for id in safety.dead}
         for id in sorted(dead & reached, key=[n.id for n in self.tokens.nodes].index):
             node = self.tokens.node(id)
             sources = [edge.source for edge in self.tokens.incoming(node)]
-            if len(sources) > 1 and any(source not in dead for source in sources):
+            is_joined = len(sources) > 1 and node.firing not in (Firing.ANY, Firing.END)
+            if is_joined and any(source not in dead for source in sources):
                 yield node
 
 

@@ -34,13 +34,22 @@ def collapse(graph: TokenGraph) -> TokenGraph:
 
 
 def _is_plain(graph: TokenGraph, node: TokenNode) -> bool:
-    """It only moves tokens, and no interruption depends on where they are."""
+    """It only moves tokens inside its region, and no interruption depends on where they are."""
     edges = [*graph.incoming(node), *graph.outgoing(node)]
     is_interruptible = any(node.id in region.nodes for region in graph.interruptibles)
+    is_inside = all(
+        not edge.keeps
+        and graph.node(edge.source).region == edge.region == graph.node(edge.target).region
+        for edge in edges
+    )
     has_guard = any(edge.guard for edge in graph.outgoing(node))
     passes = node.firing in (Firing.ALL, Firing.ANY, Firing.CHOICE)
     return (
-        passes and not has_guard and not is_interruptible and not any(e.interrupts for e in edges)
+        passes
+        and is_inside
+        and not has_guard
+        and not is_interruptible
+        and not any(e.interrupts for e in edges)
     )
 
 

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.identity import derived_id
 from sysmlc.logic.names import identifier
 from sysmlc.logic.tokens import Guard, NodeKind, TokenEdge, TokenNode
@@ -14,8 +14,11 @@ from sysmlc.passes.activity_inputs import Answer, Inputs
 class Draft:
     """Nodes and edges so far; ``short`` has the name of each node inside variables.
 
-    ``chained`` holds nodes that start after another one of a sequence node, ``takers`` the
-    accept actions by event, ``answers`` the inputs of decisions.
+    ``chained`` holds nodes that do not start by themselves, ``takers`` the accept actions by
+    event, ``answers`` the inputs of decisions. ``exits`` leads from a node to the one that its
+    drawn flows leave when they wait for handlers of exceptions, ``rounds`` from a loop to the
+    edges that begin another round. ``ended`` holds the structured nodes that exceptions end,
+    ``failing`` the calls that may end with an exception.
     """
 
     def __init__(self, graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> None:
@@ -28,6 +31,10 @@ class Draft:
         self.short: dict[str, str] = {}
         self.answers: dict[str, Answer] = {}
         self.chained: set[str] = set()
+        self.exits: dict[str, str] = {}
+        self.rounds: dict[str, list[str]] = {}
+        self.ended: dict[str, Element] = {}
+        self.failing: set[str] = set()
         self._used: set[str] = set()
         self.takers: dict[str, list[Element]] = {}
         self.incoming: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
@@ -62,6 +69,7 @@ class Draft:
         marked: bool = False,
         guard: Guard | None = None,
         interrupts: str = "",
+        keeps: bool = False,
     ) -> TokenEdge:
         """Add an edge; the first one of a flow has the flow's id."""
         label = flow_label(origin, self.nodes[source].label, self.nodes[target].label)
@@ -69,18 +77,38 @@ class Draft:
         id = origin.id if self._is_free(origin) else derived_id(origin.id, variable)
         self._used.add(id)
         edge = TokenEdge(
-            id, variable, label, source, target, (origin.id,), region, marked, guard, interrupts
+            id,
+            variable,
+            label,
+            source,
+            target,
+            (origin.id,),
+            region,
+            marked,
+            guard,
+            interrupts,
+            keeps,
         )
         self.edges.append(edge)
         return edge
 
     def path(
         self, node: Element, *path: str, marked: bool = False, guard: Guard | None = None
-    ) -> None:
+    ) -> list[TokenEdge]:
         """Edges along the nodes; mark and guard belong to the first one."""
+        made = []
         for source, target in pairwise(path):
-            self.link(source, target, node, node.id, marked=marked, guard=guard)
+            made.append(self.link(source, target, node, node.id, marked=marked, guard=guard))
             marked, guard = False, None
+        return made
+
+    def exit(self, node: Element) -> str:
+        """The node that the drawn flows of ``node`` leave."""
+        return self.exits.get(node.id, node.id)
+
+    def reaching(self, id: str) -> list[TokenEdge]:
+        """Edges so far that reach a node."""
+        return [edge for edge in self.edges if edge.target == id]
 
     def primary(self, node: Element) -> list[Flow]:
         """Incoming flows without the flow that only brings a decision's input."""
@@ -95,3 +123,9 @@ class Draft:
     def _is_free(self, origin: Element) -> bool:
         is_flow = origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
         return is_flow and origin.id not in self._used
+
+
+def least(pin: Element) -> int:
+    """The lower bound of the pin's multiplicity; 1 when it is no number."""
+    bounds = query.bounds(pin.attrs.get("multiplicity"))
+    return 1 if bounds is None else bounds[0]

@@ -11,16 +11,17 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.tokens import ACTIVITY_REGION
 from sysmlc.passes import activity_rules as rules
-from sysmlc.passes.activity_regions import FLOWS, Part, groups_of, handlers_of, parts_of
-
-_NODES = (
-    Kind.ACTION,
-    Kind.STRUCTURED,
-    Kind.CONTROL,
-    Kind.ACTIVITY_PARAMETER,
-    Kind.OBJECT_NODE,
-    Kind.DATA_STORE,
+from sysmlc.passes.activity_parts import NODES, Part, parts_of
+from sysmlc.passes.activity_regions import (
+    FLOWS,
+    Handler,
+    count_handlers,
+    expansion_nodes,
+    groups_of,
+    handlers_of,
+    is_entered_again,
 )
+
 _WORDS = {
     Kind.STRUCTURED: "structured node",
     Kind.ACTIVITY_PARAMETER: "parameter",
@@ -39,8 +40,8 @@ class CannotPlayError(Exception):
 class Flow:
     """One drawn flow; pins are None where it is attached to the node itself.
 
-    ``region`` is where its token is; ``enters`` and ``leaves`` say that it starts or ends at the
-    border of that region.
+    ``region`` is the innermost region that holds both ends. ``enters`` and ``leaves`` say that
+    it starts or ends at the border of that region, at a structured node or one of its pins.
     """
 
     element: Element
@@ -63,6 +64,7 @@ class Drawing:
     region: dict[str, str] = field(default_factory=dict)
     parts: dict[str, list[Part]] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
+    handlers: dict[str, list[Handler]] = field(default_factory=dict)
 
     def incoming(self, node: Element) -> list[Flow]:
         """Flows that reach the node or one of its pins from outside."""
@@ -72,18 +74,26 @@ class Drawing:
         """Flows that leave the node or one of its pins to the outside."""
         return [flow for flow in self.flows if flow.source is node and not flow.enters]
 
+    def around(self, region: str) -> Iterator[str]:
+        """The region and those around it, innermost first; the activity's is the last."""
+        owners = {part.id: part.owner.id for parts in self.parts.values() for part in parts}
+        while region != ACTIVITY_REGION:
+            yield region
+            region = owners[region] if region in owners else self.region[region]
+        yield ACTIVITY_REGION
+
 
 def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """The drawing of an activity. Raises CannotPlayError after it has reported why."""
     drawing = Drawing(activity)
-    handlers = handlers_of(graph, activity)
     groups = groups_of(graph, activity)
-    _collect(graph, drawing, activity, ACTIVITY_REGION, handlers, frozenset(groups))
+    borders = expansion_nodes(graph, activity)
+    _collect(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
     _name_nodes(drawing)
-    for group in groups.values():
+    for group in filter(lambda one: is_entered_again(graph, one), groups.values()):
         label = f"structured node '{group.name}'" if group.name else "a structured node"
         sink.report(rules.GROUPING, graph.subject(group), node=label)
-    reader = _Reader(graph, drawing, sink, handlers)
+    reader = _Reader(graph, drawing, sink, borders)
     reader.check_nodes()
     reader.read_flows()
     if reader.has_failed:
@@ -92,28 +102,23 @@ def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
 
 
 def _collect(
-    graph: Graph,
-    drawing: Drawing,
-    owner: Element,
-    region: str,
-    left_out: frozenset[str],
-    groups: frozenset[str],
+    graph: Graph, drawing: Drawing, owner: Element, region: str, dissolved: frozenset[str]
 ) -> None:
-    parts = parts_of(owner) if owner.kind is Kind.STRUCTURED else []
+    parts = parts_of(graph, owner) if owner.kind is Kind.STRUCTURED else []
     if parts:
         drawing.parts[owner.id] = parts
     home = {id: part.id for part in parts for id in part.nodes}
     for element in graph.owned(owner):
-        if element.kind not in _NODES or element.id in left_out:
+        if element.kind not in NODES:
             continue
         inside = home.get(element.id, region)
-        if element.subkind == "interruptible" or element.id in groups:
-            _collect(graph, drawing, element, inside, left_out, groups)
+        if element.subkind == "interruptible" or element.id in dissolved:
+            _collect(graph, drawing, element, inside, dissolved)
             continue
         drawing.nodes.append(element)
         drawing.region[element.id] = inside
         if element.kind is Kind.STRUCTURED:
-            _collect(graph, drawing, element, element.id, left_out, groups)
+            _collect(graph, drawing, element, element.id, dissolved)
 
 
 def _name_nodes(drawing: Drawing) -> None:
@@ -138,40 +143,47 @@ class _Reader:
     """Finds the ends of flows, and reports what has no token graph."""
 
     def __init__(
-        self, graph: Graph, drawing: Drawing, sink: Sink, left_out: frozenset[str]
+        self, graph: Graph, drawing: Drawing, sink: Sink, borders: dict[str, Element]
     ) -> None:
         self.graph = graph
         self.drawing = drawing
         self.sink = sink
-        self.left_out = left_out
+        self.borders = borders
         self.has_failed = False
         self.known = {node.id for node in drawing.nodes}
 
     def check_nodes(self) -> None:
         for node in self.drawing.nodes:
             label = self.drawing.labels[node.id]
-            if "handlers" in node.attrs:
-                self.sink.report(rules.HANDLER, self.graph.subject(node), node=label)
-            if node.kind is Kind.DATA_STORE:
-                self.sink.report(
-                    rules.UNSUPPORTED, self._failed(node), node=label, what="a data store"
-                )
-            elif node.subkind == "expansion":
-                self.sink.report(
-                    rules.UNSUPPORTED, self._failed(node), node=label, what="an expansion region"
-                )
-            elif _is_special_join(node):
+            self._read_handlers(node, label)
+            if node.subkind == "expansion" and node.attrs.get("mode") != "iterative":
+                mode = str(node.attrs.get("mode") or "parallel")
+                subject = self.graph.subject(node)
+                self.sink.report(rules.AT_ONCE, subject, node=label, mode=mode)
+            if _is_special_join(node):
                 text = str(node.attrs["join_spec"])
                 self.sink.report(rules.JOIN_SPEC, self._failed(node), node=label, text=text)
             self._check_parts(node, label)
 
+    def _read_handlers(self, node: Element, label: str) -> None:
+        found = [h for h in handlers_of(self.graph, node) if h.body.id in self.known]
+        if found:
+            self.drawing.handlers[node.id] = found
+        if len(found) < count_handlers(node):
+            self.sink.report(rules.NO_HANDLER_BODY, self.graph.subject(node), node=label)
+
     def _check_parts(self, node: Element, label: str) -> None:
-        parts = self.drawing.parts.get(node.id, ())
-        inside = {id for part in parts for id in part.nodes}
-        loose = [n for n in self.drawing.nodes if self.drawing.region[n.id] == node.id]
-        if node.subkind in ("loop", "conditional") and (loose or not inside):
-            what = f"a {node.subkind} node with nodes outside its tests and bodies"
-            self.sink.report(rules.UNSUPPORTED, self._failed(node), node=label, what=what)
+        if node.subkind not in ("loop", "conditional"):
+            return
+        inside = {id for part in self.drawing.parts.get(node.id, ()) for id in part.nodes}
+        works = (Kind.ACTION, Kind.STRUCTURED)
+        loose = [
+            one
+            for one in self.drawing.nodes
+            if self.drawing.region[one.id] == node.id and one.kind in works
+        ]
+        if loose or not inside:
+            self.sink.report(rules.LOOSE_NODES, self._failed(node), node=label, kind=node.subkind)
 
     def read_flows(self) -> None:
         for element in self._flow_elements():
@@ -185,8 +197,7 @@ class _Reader:
             owner = stack.pop()
             owned = self.graph.owned(owner)
             yield from (element for element in owned if element.kind in FLOWS)
-            inner = [e for e in owned if e.kind is Kind.STRUCTURED and e.id not in self.left_out]
-            stack.extend(reversed(inner))
+            stack.extend(reversed([e for e in owned if e.kind is Kind.STRUCTURED]))
 
     def _flow(self, element: Element) -> Flow | None:
         ends = [self._end(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
@@ -200,51 +211,45 @@ class _Reader:
                 rules.WEIGHT, self._failed(element), flow=self._flow_label(element), weight=weight
             )
             return None
-        return self._placed(element, *source, *target)
+        return self._placed(Flow(element, source[0], target[0], source[1], target[1]))
 
     def _end(self, element: Element, edge: Edge) -> tuple[Element, Element | None] | None:
-        """The node at an end and its pin; None for what was reported or left out."""
+        """The node at an end and its pin; None for what was reported."""
         found = self.graph.target(element, edge)
         node = found
-        while node is not None and node.id not in self.known and node.id not in self.left_out:
-            node = self.graph.owner(node)
+        while node is not None and node.id not in self.known:
+            node = self.borders.get(node.id) or self.graph.owner(node)
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
             self.sink.report(
                 rules.LOOSE_FLOW, self._failed(element), flow=self._flow_label(element), end=end
             )
-        if node is None or node.id in self.left_out or self._is_left_out(node):
             return None
         return node, None if found is node else found
 
-    def _is_left_out(self, node: Element) -> bool:
-        return any(above.id in self.left_out for above in self.graph.ancestors(node))
+    def _placed(self, flow: Flow) -> Flow:
+        source, target = flow.source, flow.target
+        if source is target:
+            return self._from_pin_to_pin(flow)
+        before = list(self.drawing.around(self.drawing.region[source.id]))
+        after = list(self.drawing.around(self.drawing.region[target.id]))
+        if source.id in after:
+            return _with_region(flow, self._part(after, source), enters=True)
+        if target.id in before:
+            return _with_region(flow, self._part(before, target), leaves=True)
+        return _with_region(flow, next(region for region in before if region in after))
 
-    def _placed(
-        self,
-        element: Element,
-        source: Element,
-        source_pin: Element | None,
-        target: Element,
-        target_pin: Element | None,
-    ) -> Flow | None:
-        flow = Flow(element, source, target, source_pin, target_pin)
-        here, there = self.drawing.region[source.id], self.drawing.region[target.id]
-        if here == there and source is not target:
-            return _with_region(flow, here)
-        if self._is_border(source, there):
-            return _with_region(flow, there, enters=True)
-        if self._is_border(target, here):
-            return _with_region(flow, here, leaves=True)
-        if here == there:
-            return _with_region(flow, here)
-        self.sink.report(rules.CROSSING, self._failed(element), flow=self._flow_label(element))
-        return None
+    def _part(self, around: list[str], node: Element) -> str:
+        """The part of the structured node that the regions go through, or the node itself."""
+        parts = {part.id for part in self.drawing.parts.get(node.id, ())}
+        return next((region for region in around if region in parts), node.id)
 
-    def _is_border(self, node: Element, region: str) -> bool:
-        """Whether the region is inside the structured node: the node, or one of its parts."""
-        parts = (part.id for part in self.drawing.parts.get(node.id, ()))
-        return node.kind is Kind.STRUCTURED and region in (node.id, *parts)
+    def _from_pin_to_pin(self, flow: Flow) -> Flow:
+        """From an input pin to an output pin of one structured node the value passes through."""
+        pins = (flow.source_pin, flow.target_pin)
+        if flow.source.kind is Kind.STRUCTURED and None not in pins and _passes_through(*pins):
+            return _with_region(flow, flow.source.id, enters=True, leaves=True)
+        return _with_region(flow, self.drawing.region[flow.source.id])
 
     def _flow_label(self, element: Element) -> str:
         return flow_label(
@@ -269,6 +274,14 @@ def flow_label(element: Element, source: str, target: str) -> str:
     """What a flow is called in messages."""
     ends = f" from {source}" * bool(source) + f" to {target}" * bool(target)
     return f"the flow{ends}" if ends else f"flow '{element.name}'"
+
+
+def _passes_through(source: Element | None, target: Element | None) -> bool:
+    return _leads(source, "region_as_input", "in") and _leads(target, "region_as_output", "out")
+
+
+def _leads(pin: Element | None, side: str, direction: str) -> bool:
+    return pin is not None and (side in pin.attrs or pin.attrs.get("direction") == direction)
 
 
 def _with_region(flow: Flow, region: str, enters: bool = False, leaves: bool = False) -> Flow:

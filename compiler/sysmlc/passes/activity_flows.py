@@ -5,9 +5,10 @@ from sysmlc.ir.identity import derived_id
 from sysmlc.logic import formula as f
 from sysmlc.logic.tokens import Guard, NodeKind
 from sysmlc.passes import activity_rules as rules
-from sysmlc.passes.activity_draft import Draft
+from sysmlc.passes.activity_draft import Draft, least
 from sysmlc.passes.activity_drawing import Flow, flow_label
 from sysmlc.passes.activity_inputs import Answer
+from sysmlc.passes.activity_structured import ROUND
 
 
 def add_flow(draft: Draft, flow: Flow) -> None:
@@ -29,11 +30,18 @@ def _connect(
         source,
         target,
         flow.element,
-        flow.region,
+        _region(draft, flow, target),
         marked=marked,
         guard=guard,
         interrupts=_interrupted(draft, flow),
+        keeps=flow.source.kind is Kind.DATA_STORE and source == flow.source.id,
     )
+
+
+def _region(draft: Draft, flow: Flow, target: str) -> str:
+    """The flow's region, or the one around it that the merge before its target is in."""
+    reached = draft.nodes[target].region
+    return reached if reached in list(draft.drawing.around(flow.region))[1:] else flow.region
 
 
 def _interrupted(draft: Draft, flow: Flow) -> str:
@@ -56,9 +64,14 @@ def _entry(draft: Draft, flow: Flow) -> str:
         return _entry_merge(draft, flow, node, draft.primary(node))
     if flow.target_pin is not None:
         same = [g for g in draft.incoming[node.id] if g.target_pin is flow.target_pin]
-        if len(same) > 1:
+        if len(same) > 1 and not _needs_all(flow.target_pin, len(same)):
             return _entry_merge(draft, flow, flow.target_pin, same)
     return node.id
+
+
+def _needs_all(pin: Element, flows: int) -> bool:
+    """Whether the pin asks for as many values as it has flows (UML 2.5.1, 16.2.3)."""
+    return least(pin) == flows
 
 
 def _entry_merge(draft: Draft, flow: Flow, base: Element, flows: list[Flow]) -> str:
@@ -67,41 +80,62 @@ def _entry_merge(draft: Draft, flow: Flow, base: Element, flows: list[Flow]) -> 
     owner = flow.target
     is_new = derived_id(base.id, "merge") not in draft.nodes
     label = f"the merge before {draft.drawing.labels[owner.id]}"
-    merge = draft.extra(base, "merge", NodeKind.MERGE, label, flow.region)
+    region = _common_region(draft, owner, flows)
+    merge = draft.extra(base, "merge", NodeKind.MERGE, label, region)
     if is_new:
-        draft.link(merge.id, owner.id, base, flow.region)
+        draft.link(merge.id, owner.id, base, region)
     return merge.id
+
+
+def _common_region(draft: Draft, owner: Element, flows: list[Flow]) -> str:
+    """The node's region; when all flows come from outside of it, the one that holds them all.
+
+    There the merge is no part of the region, which waits for what the merge brings.
+    """
+    around = list(draft.drawing.around(draft.drawing.region[owner.id]))
+    found = {flow.region for flow in flows}
+    return around[0] if around[0] in found else [one for one in around if one in found][-1]
 
 
 def _exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
     """Source node, whether its token is there at the start, and the deciding node if any."""
     node = flow.source
     if flow.enters:
-        start = _extra_start(draft, flow)
-        return start, True, None
+        return _inner_exit(draft, flow)
     kind = draft.nodes[node.id].kind
     if kind is NodeKind.DECISION:
         return node.id, False, node.id
     marked = kind is NodeKind.INITIAL
     same = [g for g in draft.outgoing[node.id] if g.source_pin is flow.source_pin]
-    competes = kind in (NodeKind.INITIAL, NodeKind.MERGE) or flow.source_pin is not None
-    if competes and len(same) > 1:
-        return node.id, marked, _exit_choice(draft, flow, flow.source_pin or node, marked)
-    return node.id, marked, None
+    holds = kind in (NodeKind.INITIAL, NodeKind.MERGE) and node.kind is not Kind.DATA_STORE
+    if (holds or flow.source_pin is not None) and len(same) > 1:
+        region = draft.drawing.region[node.id]
+        source = draft.exit(node)
+        choice = _exit_choice(draft, flow, flow.source_pin or node, source, region, marked)
+        return source, marked, choice
+    return draft.exit(node), marked, None
 
 
-def _extra_start(draft: Draft, flow: Flow) -> str:
-    label = f"the start of {draft.drawing.labels[flow.source.id]}"
-    role = draft.role("input", flow.source, flow.region)
-    return draft.extra(flow.source, role, NodeKind.INITIAL, label, flow.region).id
+def _inner_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
+    """The start of the region, or the start of each round of a loop."""
+    node = flow.source
+    rounds = derived_id(node.id, ROUND)
+    if flow.region == node.id and rounds in draft.nodes:
+        return rounds, False, None
+    label = f"the start of {draft.drawing.labels[node.id]}"
+    role = draft.role("input", node, flow.region)
+    return draft.extra(node, role, NodeKind.INITIAL, label, flow.region).id, True, None
 
 
-def _exit_choice(draft: Draft, flow: Flow, base: Element, marked: bool) -> str:
-    is_new = derived_id(base.id, "choice") not in draft.nodes
+def _exit_choice(
+    draft: Draft, flow: Flow, base: Element, source: str, region: str, marked: bool
+) -> str:
+    role = draft.role("choice", flow.source, region)
+    is_new = derived_id(base.id, role) not in draft.nodes
     label = f"the choice after {draft.drawing.labels[flow.source.id]}"
-    choice = draft.extra(base, "choice", NodeKind.DECISION, label, flow.region)
+    choice = draft.extra(base, role, NodeKind.DECISION, label, region)
     if is_new:
-        draft.link(flow.source.id, choice.id, base, flow.region, marked=marked)
+        draft.link(source, choice.id, base, region, marked=marked)
     return choice.id
 
 
@@ -115,8 +149,9 @@ def _waiting(draft: Draft, flow: Flow, source: str, marked: bool) -> str:
     """A decision with one branch, for a guard on a flow that leaves no decision."""
     made = draft.nodes[source].label
     label = f"the guard after {made}"
-    node = draft.extra(flow.element, "guard", NodeKind.DECISION, label, flow.region)
-    draft.link(source, node.id, flow.element, flow.region, marked=marked)
+    region = draft.nodes[source].region
+    node = draft.extra(flow.element, "guard", NodeKind.DECISION, label, region)
+    draft.link(source, node.id, flow.element, region, marked=marked)
     target = draft.drawing.labels[flow.target.id]
     name = flow_label(flow.element, made, target)
     subject = draft.graph.subject(flow.element)
@@ -156,6 +191,24 @@ def _answer(draft: Draft, node: Element, decision: str) -> Answer | None:
     made = draft.inputs.answer(f"input_{draft.short[node.id]}", literals, node)
     draft.answers[decision] = made
     return made
+
+
+def add_rest(draft: Draft, node: Element) -> None:
+    """Let a token end at a decision that has no branch for its value, as in fUML.
+
+    Its value never changes: by UML it would wait there for ever.
+    """
+    answer = draft.answers.get(node.id)
+    flows = draft.outgoing[node.id]
+    texts = list(dict.fromkeys(_text(flow) for flow in flows))
+    is_literal = all(flow.element.attrs.get("guard_literal") is True for flow in flows)
+    if answer is None or not is_literal or answer.is_covered(texts):
+        return
+    label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
+    rest = draft.extra(node, "rest", NodeKind.SINK, "no branch", region)
+    draft.link(node.id, rest.id, node, region, guard=Guard("else", None))
+    subject, guards = draft.graph.subject(node), ", ".join(texts)
+    draft.sink.report(rules.OTHER_VALUES, subject, node=label, guards=guards)
 
 
 def _passes_objects(draft: Draft, node: Element) -> bool:

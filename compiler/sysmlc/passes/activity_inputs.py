@@ -92,6 +92,10 @@ class Answer:
             return self._variable if literal == "true" else f.negate(self._variable)
         return f.eq(self._variable, f.const(literal))
 
+    def is_covered(self, literals: list[str]) -> bool:
+        """Whether the input is always one of the literals."""
+        return self._is_boolean and {"true", "false"} <= set(literals)
+
 
 def events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
     """What ends an accept action, and the names of the events."""

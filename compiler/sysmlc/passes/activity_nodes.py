@@ -6,7 +6,7 @@ from sysmlc.ir import Edge, Element, Kind
 from sysmlc.logic.names import identifier
 from sysmlc.logic.tokens import Duration, NodeKind, TokenNode
 from sysmlc.passes import activity_rules as rules
-from sysmlc.passes.activity_draft import Draft
+from sysmlc.passes.activity_draft import Draft, least
 from sysmlc.passes.activity_inputs import events
 from sysmlc.passes.activity_structured import ACCEPTS, add_parts
 
@@ -62,6 +62,8 @@ def _kind(draft: Draft, node: Element) -> NodeKind:
         return NodeKind.STRUCTURED
     if not draft.incoming[node.id]:
         return NodeKind.INITIAL
+    if node.kind is Kind.DATA_STORE:
+        return NodeKind.DATA_STORE
     return NodeKind.MERGE if draft.outgoing[node.id] else NodeKind.SINK
 
 
@@ -96,9 +98,12 @@ def _called_name(draft: Draft, node: Element) -> str:
 
 def _check_pins(draft: Draft, node: Element) -> None:
     fed = {flow.target_pin.id for flow in draft.incoming[node.id] if flow.target_pin}
+    if node.id in draft.chained:
+        return
     for pin in draft.graph.owned(node):
-        is_open = pin.kind is Kind.PIN and pin.attrs.get("direction") == "in"
-        if is_open and pin.id not in fed and "value" not in pin.attrs:
+        is_input = pin.kind is Kind.PIN and pin.attrs.get("direction") == "in"
+        is_open = is_input and "value" not in pin.attrs and least(pin) != 0
+        if is_open and pin.id not in fed:
             subject = draft.graph.subject(pin)
             label = draft.drawing.labels[node.id]
             draft.sink.report(rules.OPEN_PIN, subject, pin=pin.name or pin.subkind, node=label)

@@ -1,48 +1,43 @@
-"""Regions of activities: parts of loops and conditionals, groups, handlers, interruptible ones."""
+"""Regions of activities: mere groups, interruptible regions, expansion nodes, handlers."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.identity import derived_id
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """Test, body or set-up of a loop or conditional node; ``owner`` is that node."""
+class Handler:
+    """An exception handler: its body, and the ids of the types that it catches."""
 
-    id: str
-    owner: Element
-    word: str
-    nodes: tuple[str, ...]
+    body: Element
+    types: tuple[str, ...]
 
 
-def handlers_of(graph: Graph, activity: Element) -> frozenset[str]:
-    """Ids of the bodies of exception handlers, with their pins and exception types."""
-    ids = [id for element in graph.subtree(activity) for id in _ids(element.attrs.get("handlers"))]
-    return frozenset(ids)
-
-
-def groups_of(graph: Graph, activity: Element) -> dict[str, Element]:
-    """Plain structured nodes that no flow starts or ends at, but whose border flows cross."""
-    found: dict[str, Element] = {}
-    for node in graph.subtree(activity):
-        if node.kind is not Kind.STRUCTURED or node.subkind not in ("structured", ""):
-            continue
-        own = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
-        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
-            continue
-        inside = {element.id for element in graph.subtree(node)}
-        if any(_crosses(graph, e, inside) for e in graph.subtree(activity) if e.kind in FLOWS):
-            found[node.id] = node
+def handlers_of(graph: Graph, node: Element) -> list[Handler]:
+    """Handlers of a protected node, in order, as far as they have a body in the graph."""
+    value = node.attrs.get("handlers")
+    found = []
+    for bodies, _, types in _triples(value):
+        body = graph.get(next(_ids(bodies), None))
+        if body is not None:
+            found.append(Handler(body, tuple(_ids(types))))
     return found
 
 
-def _crosses(graph: Graph, flow: Element, inside: set[str]) -> bool:
-    ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    return len({end.id in inside for end in ends if end is not None}) == 2
+def count_handlers(node: Element) -> int:
+    """How many handlers the node was given, with a body or without."""
+    value = node.attrs.get("handlers")
+    return len(value) if isinstance(value, tuple) else int(value is not None)
+
+
+def _triples(value: object) -> Iterator[tuple[object, object, object]]:
+    for handler in value if isinstance(value, tuple) else (value,) if value else ():
+        parts = handler if isinstance(handler, tuple) else (handler,)
+        body, inputs, types, *_ = (*parts, (), (), ())
+        yield body, inputs, types
 
 
 def _ids(value: object) -> Iterator[str]:
@@ -53,23 +48,76 @@ def _ids(value: object) -> Iterator[str]:
             yield from _ids(part)
 
 
-def parts_of(node: Element) -> list[Part]:
-    """Parts in the order in which they run first."""
-    if node.subkind == "loop":
-        words = ("setup_part", "test", "body_part")
-        found = [(word.removesuffix("_part"), node.attrs.get(word)) for word in words]
-    elif node.subkind == "conditional":
-        clauses = node.attrs.get("clauses") or ()
-        found = [
-            (f"{word} {number}", ids)
-            for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1)
-            if isinstance(clause, tuple)
-            for word, ids in zip(("test", "body"), clause, strict=False)
-        ]
-    else:
-        found = []
-    listed = [(word, tuple(_ids(ids))) for word, ids in found]
-    return [Part(derived_id(node.id, word), node, word, ids) for word, ids in listed if ids]
+def expansion_nodes(graph: Graph, activity: Element) -> dict[str, Element]:
+    """Expansion nodes, by id, with the expansion region on whose border they are."""
+    found: dict[str, Element] = {}
+    for element in graph.subtree(activity):
+        if element.subkind != "expansion":
+            continue
+        if element.kind is Kind.STRUCTURED:
+            ends = (element.attrs.get("input_element"), element.attrs.get("output_element"))
+            found |= dict.fromkeys(_ids(ends), element)
+        else:
+            names = ("region_as_input", "region_as_output")
+            regions = (graph.get(id) for name in names for id in _ids(element.attrs.get(name)))
+            region = next(filter(None, regions), None)
+            found |= {} if region is None else {element.id: region}
+    return found
+
+
+# -- groups ------------------------------------------------------------------------------------
+
+
+def groups_of(graph: Graph, activity: Element) -> dict[str, Element]:
+    """Plain structured nodes that no flow starts or ends at, but whose border flows cross.
+
+    They start with what is around them and nothing follows them, so that only their nodes count.
+    """
+    bodies = {h.body.id for e in graph.subtree(activity) for h in handlers_of(graph, e)}
+    found: dict[str, Element] = {}
+    for node in graph.subtree(activity):
+        if node.kind is not Kind.STRUCTURED or node.subkind not in ("structured", ""):
+            continue
+        if node.id in bodies or "handlers" in node.attrs or _ends_itself(graph, node):
+            continue
+        own = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
+        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
+            continue
+        inside = {element.id for element in graph.subtree(node)}
+        if any(_crosses(graph, e, inside) for e in graph.subtree(activity) if e.kind in FLOWS):
+            found[node.id] = node
+    return found
+
+
+def _ends_itself(graph: Graph, node: Element) -> bool:
+    return any(e.kind is Kind.CONTROL and e.subkind == "final" for e in graph.owned(node))
+
+
+def _crosses(graph: Graph, flow: Element, inside: set[str]) -> bool:
+    ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    return len({end.id in inside for end in ends if end is not None}) == 2
+
+
+def is_entered_again(graph: Graph, group: Element) -> bool:
+    """Whether flows lead out of the group and back into it."""
+    inside = {element.id for element in graph.subtree(group)}
+    outside: dict[str, Element] = {}
+    waiting = list(graph.subtree(group))
+    while waiting:
+        for after in _after(graph, waiting.pop()):
+            if after.id not in inside and after.id not in outside:
+                outside[after.id] = after
+                waiting.append(after)
+    return any(after.id in inside for one in outside.values() for after in _after(graph, one))
+
+
+def _after(graph: Graph, element: Element) -> Iterator[Element]:
+    """What the flows lead to from a node, whichever of its pins they reach and leave."""
+    owner = graph.owner(element) if element.kind is Kind.PIN else element
+    own = [] if owner is None else [e for e in graph.owned(owner) if e.kind is Kind.PIN]
+    for end in (element, *own, *([owner] if owner is not None else ())):
+        for flow in query.outgoing(graph, end):
+            yield from graph.targets(flow, Edge.FLOW_TARGET)
 
 
 def interruptible_regions(

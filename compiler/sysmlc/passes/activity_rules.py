@@ -1,4 +1,4 @@
-"""Rules about activities (SM450 to SM470), each with a small model that has it and one that nearly
+"""Rules about activities (SM450 to SM477), each with a small model that has it and one that nearly
 has it.
 """
 
@@ -16,8 +16,11 @@ _KINDS = {
     "action": 'Action {0} "{0}" subkind="opaque"',
     "accept": 'Action {0} "{0}" subkind="accept"',
     "raise": 'Action {0} "{0}" subkind="raise"',
-    "guarded-by-handler": 'Action {0} "{0}" subkind="opaque" handlers=["repair"]',
-    "data-store": 'DataStore {0} "{0}"',
+    "protected": 'Action {0} "{0}" subkind="opaque" handlers=[[["repair"], [], []]]',
+    "question": 'Control {} "" subkind="decision" decision_input="b"',
+    "loop": 'Structured {0} "{0}" subkind="loop" body_part=["work"]',
+    "expansion": 'Structured {0} "{0}" subkind="expansion" mode="parallel"',
+    "iteration": 'Structured {0} "{0}" subkind="expansion" mode="iterative"',
     "structured": 'Structured {0} "{0}" subkind="structured"',
     "pin": 'Pin {0} "{0}" direction="in" subkind="argument"',
     "on-pallet": 'Trigger {0} "pallet" subkind="signal"',
@@ -113,7 +116,7 @@ UNSAFE = _rule(
     Severity.WARNING,
     "{flow} may get a second token while it still holds one; the activity gets no contract",
     "Contracts have one Boolean for each flow. Two tokens at one place usually mean that parallel "
-    "branches run into a merge node, or that something is started faster than it is finished.",
+    "branches run into a merge node, or that something is asked for faster than it is done.",
     "Bring parallel branches together in a join node.",
     "initial i\nfork k\naction x\naction y\nmerge m\naction z\ni -> k\nk -> x\nk -> y\nx -> m\n"
     "y -> m\nm -> z",
@@ -185,37 +188,6 @@ LOOSE_FLOW = _rule(
     "Connect both ends of the flow, or delete it.",
     "initial i\naction x\ni -> x\nx -> nothing",
     "initial i\naction x\nfinal end\ni -> x\nx -> end",
-)
-CROSSING = _rule(
-    "SM461",
-    "flow-across-structured-node",
-    Severity.WARNING,
-    "{flow} crosses the border of a structured node; the activity gets no contract",
-    "A structured node is treated as one action from outside: it starts and ends as a whole.",
-    "Lead the flow to the structured node or to one of its pins.",
-    "initial i\nstructured s\n  action x\naction y\ni -> s\nx -> y",
-    "initial i\nstructured s\n  action x\naction y\ni -> s\ns -> y",
-)
-UNSUPPORTED = _rule(
-    "SM462",
-    "activity-node-without-token-meaning",
-    Severity.WARNING,
-    "{node} is {what}; the activity gets no contract",
-    "Data stores keep their tokens and expansion regions multiply them, which one Boolean for "
-    "each flow can't say.",
-    "Keep the value in a property of the block, or call an activity for each element.",
-    "initial i\naction x\ndata-store d\ni -> x\nx -> d",
-    "initial i\naction x\nfinal end\ni -> x\nx -> end",
-)
-HANDLER = _rule(
-    "SM463",
-    "exception-not-followed",
-    Severity.WARNING,
-    "{node} has exception handlers; they are left out",
-    "The token game has no exceptions: handlers never start, and what is raised ends nothing.",
-    "Model the exceptional case as a branch of a decision after the action.",
-    "initial i\nguarded-by-handler work\naction repair\ni -> work",
-    "initial i\naction work\naction repair\ni -> work\nwork -> repair",
 )
 OPEN_PIN = _rule(
     "SM464",
@@ -296,12 +268,13 @@ GROUPING = _rule(
     "SM471",
     "structured-node-as-group",
     Severity.WARNING,
-    "{node} has no flows of its own, but flows cross its border; it is taken as a mere group",
-    "A structured node starts and ends as a whole. Taken at its word it would start with the "
-    "activity and end at once, before the flows from outside bring a token.",
+    "{node} has no flows of its own, but flows lead into it again; it is taken as a mere group",
+    "A structured node starts and ends as a whole. Taken at its word it would start once, with "
+    "the activity, and do nothing when flows from outside come back to it.",
     "Lead the flows to the structured node itself, or use a partition to group actions.",
+    "initial i\nmerge m\nstructured s\n  action x\n  action z\naction y\ni -> m\nm -> x\n"
+    "x -> z\nz -> y\ny -> m",
     "initial i\nstructured s\n  action x\nfinal end\ni -> x\nx -> end",
-    "initial i\nstructured s\n  action x\nfinal end\ni -> s\ns -> end",
 )
 ODD_END = _rule(
     "SM472",
@@ -312,4 +285,61 @@ ODD_END = _rule(
     "Lead the flow to a merge node after the initial node, or delete it.",
     "initial i\naction x\ni -> x\nx -> i",
     "initial i\nmerge m\naction x\ni -> m\nm -> x\nx -> m",
+)
+LOOSE_NODES = _rule(
+    "SM473",
+    "action-outside-test-and-body",
+    Severity.WARNING,
+    "{node} is a {kind} node with actions that are in none of its tests and bodies; the activity "
+    "gets no contract",
+    "The tests, bodies and the set-up of a loop or conditional node hold all its actions between "
+    "them (UML 2.5.1, 16.11.4); when the others would run is not defined.",
+    "Add the action to the body, or move it out of the node.",
+    "initial i\nloop l\n  action work\n  action more\ni -> l",
+    "initial i\nloop l\n  action work\ni -> l",
+)
+NO_HANDLER_BODY = _rule(
+    "SM474",
+    "exception-handler-without-body",
+    Severity.WARNING,
+    "{node} has an exception handler without a body in the activity; the handler is left out",
+    "The body of a handler is what runs instead of the rest of the protected node "
+    "(UML 2.5.1, 15.5.3).",
+    "Draw the body beside the protected node, and connect it to the handler.",
+    "initial i\nprotected work\ni -> work",
+    "initial i\nprotected work\naction repair\ni -> work",
+)
+UNCAUGHT = _rule(
+    "SM475",
+    "exception-without-handler",
+    Severity.INFO,
+    "no handler in the activity catches what {node} raises; it ends the activity",
+    "An exception ends everything around it up to a node with a handler "
+    "(UML 2.5.1, 15.5.3); what calls the activity may have one.",
+    "Add a handler to the action, or to a structured node around it.",
+    "initial i\nraise stop\ni -> stop",
+    "initial i\naction stop\ni -> stop",
+)
+OTHER_VALUES = _rule(
+    "SM476",
+    "decision-drops-other-values",
+    Severity.INFO,
+    "{node} has branches for the values {guards} only; a token with another value ends there",
+    "The value of a token never changes, so that waiting for a branch to open would be in vain. "
+    "fUML 1.5, 8.10.3 drops such tokens.",
+    "Give one of the branches the guard else if the others matter.",
+    'initial i\nquestion d\naction x\ni -> d\nd -> x guard="1" guard_literal=true',
+    "initial i\nquestion d\naction x\naction y\ni -> d\n"
+    'd -> x guard="true" guard_literal=true\nd -> y guard="false" guard_literal=true',
+)
+AT_ONCE = _rule(
+    "SM477",
+    "elements-taken-at-once",
+    Severity.INFO,
+    "{node} takes the elements of its collection in {mode}; it is one step for all of them",
+    "Contracts have one Boolean for each flow, so that what is inside stands for all elements at "
+    "once, as if there were one of them.",
+    "Make the region iterative if the order of the elements matters.",
+    "initial i\nexpansion e\n  action x\ni -> e",
+    "initial i\niteration e\n  action x\ni -> e",
 )

@@ -3,13 +3,16 @@
 from itertools import pairwise
 
 from sysmlc.ir import Element, Kind
+from sysmlc.logic import formula as f
 from sysmlc.logic.names import identifier
-from sysmlc.logic.tokens import Guard, NodeKind, TokenNode
+from sysmlc.logic.tokens import Firing, Guard, NodeKind, TokenNode
 from sysmlc.passes.activity_draft import Draft
-from sysmlc.passes.activity_regions import Part
+from sysmlc.passes.activity_parts import Part
 
 ACCEPTS = ("accept", "accept-call")
 """Actions that wait for an event."""
+ROUND = "round"
+"""Role of the node that gives the values of loop variables to what no part of the loop lists."""
 
 
 def add_parts(draft: Draft, node: Element) -> None:
@@ -21,10 +24,13 @@ def add_parts(draft: Draft, node: Element) -> None:
         run = draft.inputs.names.new(f"run_{short}")
         made = TokenNode(part.id, NodeKind.STRUCTURED, label, node.id, node.id, run=run)
         draft.put(made, short)
+    words = {part.word: part for part in parts}
     if parts and node.subkind == "loop":
-        _add_loop(draft, node, {part.word: part for part in parts})
+        _add_loop(draft, node, words)
+    elif parts and node.subkind == "expansion":
+        _add_expansion(draft, node, parts[0])
     elif parts:
-        _add_clauses(draft, node, parts)
+        _add_clauses(draft, node, words)
 
 
 def _inner(draft: Draft, node: Element, role: str, kind: NodeKind) -> str:
@@ -32,41 +38,78 @@ def _inner(draft: Draft, node: Element, role: str, kind: NodeKind) -> str:
     return draft.extra(node, role, kind, label, node.id).id
 
 
-def _test(draft: Draft, node: Element, role: str) -> tuple[str, Guard]:
-    """A decision after a test, and the guard that the test is true."""
-    decision = _inner(draft, node, role, NodeKind.DECISION)
+def _answer(draft: Draft, node: Element, role: str, text: str) -> Guard:
+    """The guard that an input of the environment is true."""
     name = identifier(f"{role}_{draft.short[node.id]}")
-    answer = draft.inputs.answer(f"input_{name}", ["true"], node)
-    return decision, Guard(f"{role} is true", answer.equals("true"))
+    return Guard(text, draft.inputs.answer(f"input_{name}", ["true"], node).equals("true"))
+
+
+def _test(draft: Draft, node: Element, part: Part | None, role: str) -> tuple[str, Guard]:
+    """A decision after a test, and the guard that the test is true."""
+    text = f"{role} is true"
+    decision = _inner(draft, node, f"decision after {role}", NodeKind.DECISION)
+    value = None if part is None else _constant(draft, part)
+    if value is not None:
+        return decision, Guard(text, f.TRUE if value else f.FALSE)
+    return decision, _answer(draft, node, role, text)
+
+
+def _constant(draft: Draft, part: Part) -> bool | None:
+    """The value of a test that is nothing but a literal: ``else``, ``while (true)``."""
+    found = [draft.graph[id] for id in part.nodes if id in draft.graph]
+    works = [one for one in found if one.kind in (Kind.ACTION, Kind.STRUCTURED)]
+    values = [one.attrs.get("value") for one in works if one.subkind == "value"]
+    is_literal = len(works) == len(values) == 1
+    return {"true": True, "false": False}.get(str(values[0]).lower()) if is_literal else None
 
 
 def _add_loop(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
     start = _inner(draft, node, "begin", NodeKind.INITIAL)
     end = _inner(draft, node, "end", NodeKind.SINK)
     again = _inner(draft, node, "repetition", NodeKind.MERGE)
-    decision, guard = _test(draft, node, "test")
+    decision, guard = _test(draft, node, parts.get("test"), "test")
     setup, test, body = (
         [parts[word].id] if word in parts else [] for word in ("setup", "test", "body")
     )
+    loose = [g for g in draft.drawing.flows if g.enters and g.region == g.source.id == node.id]
+    given = [_inner(draft, node, ROUND, NodeKind.FORK)] if loose else []
     is_first = node.attrs.get("tested_first") is not False
     draft.path(node, start, *setup, again, marked=True)
-    draft.path(node, again, *(test if is_first else [*body, *test]), decision)
-    draft.path(node, decision, *(body if is_first else []), again, guard=guard)
+    draft.path(node, again, *given, *(test if is_first else [*body, *test]), decision)
+    back = draft.path(node, decision, *(body if is_first else []), again, guard=guard)
+    draft.rounds[node.id] = [back[-1].id]
+    if guard.condition != f.TRUE:
+        draft.path(node, decision, end, guard=Guard("else", None))
+
+
+def _add_expansion(draft: Draft, node: Element, part: Part) -> None:
+    """One round for each element, or one for all of them at once."""
+    start = _inner(draft, node, "begin", NodeKind.INITIAL)
+    end = _inner(draft, node, "end", NodeKind.SINK)
+    if node.attrs.get("mode") != "iterative":
+        draft.path(node, start, part.id, end, marked=True)
+        return
+    again = _inner(draft, node, "repetition", NodeKind.MERGE)
+    decision = _inner(draft, node, "more", NodeKind.DECISION)
+    guard = _answer(draft, node, "more", "there is another element")
+    draft.path(node, start, again, decision, marked=True)
+    draft.path(node, decision, part.id, again, guard=guard)
     draft.path(node, decision, end, guard=Guard("else", None))
 
 
-def _add_clauses(draft: Draft, node: Element, parts: list[Part]) -> None:
+def _add_clauses(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
     before = _inner(draft, node, "begin", NodeKind.INITIAL)
     end = _inner(draft, node, "end", NodeKind.SINK)
     marked, otherwise = True, None
-    words = {part.word: part for part in parts}
-    for number in dict.fromkeys(part.word.split()[1] for part in parts):
-        test, body = words.get(f"test {number}"), words.get(f"body {number}")
-        decision, guard = _test(draft, node, f"test {number}")
+    for number in dict.fromkeys(word.split()[1] for word in parts):
+        test, body = parts.get(f"test {number}"), parts.get(f"body {number}")
+        decision, guard = _test(draft, node, test, f"test {number}")
         steps = [test.id] if test else []
         draft.path(node, before, *steps, decision, marked=marked, guard=otherwise)
         draft.path(node, decision, *([body.id] if body else []), end, guard=guard)
         before, marked, otherwise = decision, False, Guard("else", None)
+        if guard.condition == f.TRUE:
+            return
     draft.path(node, before, end, guard=otherwise)
 
 
@@ -77,20 +120,27 @@ def add_order(draft: Draft, node: Element) -> None:
     inside = [
         n
         for n in draft.drawing.nodes
-        if draft.drawing.region[n.id] == node.id and n.kind in (Kind.ACTION, Kind.STRUCTURED)
+        if draft.drawing.region[n.id] == node.id
+        and n.kind in (Kind.ACTION, Kind.STRUCTURED)
+        and n.id not in draft.chained
     ]
     for before, after in pairwise(inside):
-        draft.link(before.id, after.id, after, node.id)
+        draft.link(draft.exit(before), after.id, after, node.id)
         draft.chained.add(after.id)
 
 
 def add_start(draft: Draft, node: Element) -> None:
-    """Let an action without incoming flows start with its region."""
-    made = draft.nodes[node.id]
+    """Let a node start with its region when no flow from inside the region starts it.
+
+    It still waits for what flows from outside and from data stores bring (fUML 1.5, 8.10.2).
+    """
+    made, reaching = draft.nodes[node.id], draft.reaching(node.id)
     works = made.kind in (NodeKind.ACTION, NodeKind.STRUCTURED)
-    if not works or draft.incoming[node.id] or node.id in draft.chained:
+    waits = made.firing in (Firing.ALL, Firing.CHOICE, Firing.WORK)
+    is_started = any(edge.region == made.region and not edge.keeps for edge in reaching)
+    if is_started or node.id in draft.chained or not (works or (waits and reaching)):
         return
-    if node.subkind in ACCEPTS:
+    if node.subkind in ACCEPTS and not reaching:
         draft.link(node.id, node.id, node, made.region, marked=True)
         return
     start = draft.extra(node, "start", NodeKind.INITIAL, "the start", made.region)

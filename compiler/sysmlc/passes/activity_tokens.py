@@ -5,29 +5,37 @@ each event), the fork after an action, the join before it, the merge at a pin th
 reach, the choice at an object node that several flows leave, and the order of a sequence node.
 """
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
+from sysmlc.ir.identity import derived_id
 from sysmlc.logic.tokens import Interruptible, TokenGraph
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft
 from sysmlc.passes.activity_drawing import Drawing
-from sysmlc.passes.activity_flows import add_flow
+from sysmlc.passes.activity_exceptions import add_exceptions, keep_handlers
+from sysmlc.passes.activity_flows import add_flow, add_rest
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_nodes import add_node
-from sysmlc.passes.activity_regions import interruptible_regions
+from sysmlc.passes.activity_regions import FLOWS, interruptible_regions
 from sysmlc.passes.activity_structured import add_order, add_start
 
 
 def build(graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> TokenGraph:
     """The token graph of a drawing; reports shapes that UML asks to be drawn otherwise."""
     draft = Draft(graph, drawing, inputs, sink)
+    keep_handlers(draft)
     for node in drawing.nodes:
         add_node(draft, node)
+    add_exceptions(draft)
     for node in drawing.nodes:
         add_order(draft, node)
     for flow in drawing.flows:
         add_flow(draft, flow)
     for node in drawing.nodes:
+        add_rest(draft, node)
         add_start(draft, node)
     _check_events(draft)
     return _result(draft)
@@ -43,20 +51,32 @@ def _check_events(draft: Draft) -> None:
 
 def _result(draft: Draft) -> TokenGraph:
     activity = draft.drawing.activity
-    regions = interruptible_regions(draft.graph, activity, draft.drawing.nodes)
+    rounds = list(_rounds(draft))
+    again = {edge: round.id for edges, round in rounds for edge in edges}
+    edges = (
+        replace(edge, interrupts=again[edge.id]) if edge.id in again else edge
+        for edge in draft.edges
+    )
     return TokenGraph(
         activity=activity.id,
         component=query.component_name(draft.graph, activity),
         label=f"activity '{activity.name}'" if activity.name else "the activity",
         nodes=tuple(draft.nodes.values()),
-        edges=tuple(draft.edges),
+        edges=tuple(edges),
         inputs=tuple(draft.inputs.variables.values()),
         pulses=tuple(draft.inputs.pulses),
-        interruptibles=tuple(
-            Interruptible(region.id, region.name, _members(draft, members))
-            for region, members in regions
+        interruptibles=(
+            *_regions(draft),
+            *_exceptions(draft),
+            *(round for _, round in rounds),
         ),
     )
+
+
+def _regions(draft: Draft) -> Iterator[Interruptible]:
+    activity = draft.drawing.activity
+    for region, members in interruptible_regions(draft.graph, activity, draft.drawing.nodes):
+        yield Interruptible(region.id, region.name, _members(draft, members))
 
 
 def _members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
@@ -67,3 +87,24 @@ def _members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
         for node in draft.nodes.values()
         if node.origin in owners or draft.graph[node.origin].owner in owners
     )
+
+
+def _exceptions(draft: Draft) -> Iterator[Interruptible]:
+    """What loses its tokens when an exception ends a structured node."""
+    for id, catcher in draft.ended.items():
+        members = (
+            node.id
+            for node in draft.nodes.values()
+            if node.id == catcher.id or catcher.id in draft.drawing.around(node.region)
+        )
+        yield Interruptible(id, catcher.name, tuple(members))
+
+
+def _rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
+    """What is left over between the parts of a loop when it begins another round."""
+    for id, back in draft.rounds.items():
+        drawn = [e for e in draft.edges if e.region == id and draft.graph[e.origin].kind in FLOWS]
+        members = dict.fromkeys(end for edge in drawn for end in (edge.source, edge.target))
+        if members:
+            name = draft.drawing.labels[id]
+            yield back, Interruptible(derived_id(id, "rounds"), name, tuple(members))

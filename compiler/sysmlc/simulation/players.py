@@ -6,13 +6,12 @@ from typing import Protocol
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic import evaluate, step, token_game
+from sysmlc.logic import activity_contract, evaluate, step, token_game
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
     EnumerationDomain,
     IntegerDomain,
-    Owner,
     Variable,
 )
 from sysmlc.logic.domains import contains, values
@@ -109,10 +108,7 @@ class ActivityPlayer:
 
     @property
     def variables(self) -> tuple[Variable, ...]:
-        tokens = self.tokens
-        runs = [Variable(n.run, Owner.SYSTEM, BooleanDomain(), n.origin) for n in tokens.workers()]
-        at = [Variable(e.variable, Owner.SYSTEM, BooleanDomain(), e.origin) for e in tokens.edges]
-        return (*tokens.inputs, *runs, *at)
+        return activity_contract.variables(self.tokens)
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
         return [{**inputs, **token_game.values(self.tokens, token_game.start(self.tokens))}]

@@ -199,14 +199,25 @@ def _renamed(formula, mark):
     return formula.map(lambda part: _renamed(part, mark))
 
 
-def differ(known, found, expected):
-    """Whether two formulas about one step differ where the axioms hold."""
+def differ(known, found, expected, names=()):
+    """Whether two formulas about one step differ where the axioms hold.
+
+    Diagrams are small when what stands together in a formula is close in their order: ``names``
+    are the variables as the formula has them.
+    """
     owner = spot.make_twa_graph(spot.make_bdd_dict())
-    k, f, e = (
-        spot.formula_to_bdd(one_step(one), owner.get_dict(), owner)
-        for one in (known, found, expected)
-    )
+    steps = [one_step(one) for one in (known, found, expected)]
+    place = {name: number for number, name in enumerate(names)}
+    propositions = {ap.ap_name() for step in steps for ap in spot.atomic_prop_collect(step)}
+    for name in sorted(propositions, key=lambda one: (place.get(_variable(one), 0), one)):
+        owner.register_ap(name)
+    k, f, e = (spot.formula_to_bdd(step, owner.get_dict(), owner) for step in steps)
     return buddy.bdd_and(k, buddy.bdd_xor(f, e)) != buddy.bddfalse
+
+
+def _variable(proposition):
+    """The variable that a proposition is about: ``x==3``, ``x.0`` and ``x'`` are about ``x``."""
+    return re.split(r"==|\.|'", proposition)[0]
 
 
 @pytest.mark.parametrize("model", sorted(EXAMPLES.glob("*/*.uml")), ids=lambda path: path.stem)
@@ -214,8 +225,20 @@ def test_conjuncts_of_the_shipped_examples(model):
     assert_contracts_are_the_same(model)
 
 
+REAL = (
+    "TankBarrelExample",
+    "fUML-Tests",
+    "moka-master",
+    "TutoFMU",
+    "AssertionLibrary",
+    "fUML-Exception-Tests",
+    "Alf.library",
+)
+"""Of Alf.library, which has hundreds of contracts, every eighth."""
+
+
 @pytest.mark.corpus
-@pytest.mark.parametrize("name", ["TankBarrelExample", "fUML-Tests", "moka-master", "TutoFMU"])
+@pytest.mark.parametrize("name", REAL)
 def test_conjuncts_of_real_models(corpus, name):
     assert_contracts_are_the_same(corpus / "xmi" / "papyrus" / f"{name}.uml")
 
@@ -223,14 +246,14 @@ def test_conjuncts_of_real_models(corpus, name):
 def assert_contracts_are_the_same(model):
     found = compile_model(Request((model,))).graph.derived(Contract)
     assert found
-    for contract in found:
+    for contract in found[:: len(found) // 50 + 1]:
         domains = {v.name: v.domain for v in contract.variables}
         for conjunct in (*contract.assumptions, *contract.guarantees):
-            names = {v.name for v in variables(conjunct.formula)}
+            names = dict.fromkeys(v.name for v in variables(conjunct.formula))
             known = spot.formula(axioms(domains, names))
             expected = spot.formula(translated(domains, conjunct.formula))
             text = spin_conjunct(conjunct, domains)
-            assert not differ(known, below(conjunct, domains), expected), text
+            assert not differ(known, below(conjunct, domains), expected, names), text
 
 
 def test_decision_diagrams_see_a_difference_only_where_the_axioms_hold():
