@@ -11,7 +11,8 @@ class Drawing:
 
     ``type`` is what the tool calls it, ``diagram`` our word (docs/ir.md). ``source`` and
     ``ordinal`` say where it is written. ``paths`` are the elements that are drawn inside
-    others, outermost first; ``relations`` those lines that are no elements of the graph.
+    others, outermost first; ``listed`` those that are only named in a compartment of another
+    one; ``relations`` those lines that are no elements of the graph.
     """
 
     id: str
@@ -25,4 +26,5 @@ class Drawing:
     context: str = ""
     shown: tuple[str, ...] = ()
     paths: tuple[tuple[str, ...], ...] = ()
+    listed: tuple[str, ...] = ()
     relations: tuple[tuple[Edge, str, str], ...] = ()

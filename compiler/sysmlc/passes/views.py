@@ -114,9 +114,10 @@ def _attributes(drawing: Drawing, known: _Known) -> Iterator[tuple[str, AttrValu
     nested = tuple(dict.fromkeys(path for path in paths if len(path) > 1))
     if nested:
         yield "nesting", nested
-    relations = tuple(_relations(drawing, known))
-    if relations:
-        yield "relations", relations
+    listed = known.ids(drawing.file, drawing.listed)
+    if listed:
+        yield "listed", listed
+    yield "relations", tuple(_relations(drawing, known))
 
 
 def _relations(drawing: Drawing, known: _Known) -> Iterator[AttrValue]:

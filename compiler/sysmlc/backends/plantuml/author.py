@@ -20,6 +20,7 @@ from sysmlc.backends.plantuml.text import plain
 from sysmlc.backends.plantuml.views import BoxView, Diagram, GraphView, InternalView, View
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.query import CLASSIFIERS
 
 NOT_DRAWN = rule(
     "SM702",
@@ -177,7 +178,7 @@ def _report_not_drawn(choice: Choice, word: str, sink: Sink) -> None:
 
 def _report_left_out(choice: Choice, diagram: Diagram, sink: Sink) -> None:
     drawn = set(diagram.trace())
-    missing = [one for one in choice.shown if one.id not in drawn and not _is_implied(one)]
+    missing = [one for one in choice.shown if one.id not in drawn and not _is_said(choice, one)]
     if missing:
         names = [one.name or str(one.kind) for one in missing[:_NAMES_SHOWN]]
         names += ["..."] if len(missing) > _NAMES_SHOWN else []
@@ -191,5 +192,7 @@ def _report_left_out(choice: Choice, diagram: Diagram, sink: Sink) -> None:
         )
 
 
-def _is_implied(one: Element) -> bool:
-    return one.kind is Kind.APPLICATION
+def _is_said(choice: Choice, one: Element) -> bool:
+    """Whether another element says it: a classifier that is only named types what is drawn."""
+    is_named = one.id in choice.listed and one.kind in CLASSIFIERS
+    return one.kind is Kind.APPLICATION or is_named

@@ -63,6 +63,11 @@ class Choice:
         return tuple(_texts(path) for path in found)
 
     @cached_property
+    def listed(self) -> frozenset[str]:
+        """Ids of what is only named in a compartment of something that is drawn."""
+        return frozenset(_texts(self.view.attrs.get("listed", ())))
+
+    @cached_property
     def relations(self) -> frozenset[tuple[str, ...]] | None:
         """Lines that are edges of the graph (edge, from, to); None when the tool lists none."""
         found = self.view.attrs.get("relations")

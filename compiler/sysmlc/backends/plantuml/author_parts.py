@@ -63,15 +63,24 @@ class _Drawing:
 
     def _part(self, path: _Ids) -> PartView:
         graph, part = self.choice.graph, self._element(path)
-        words = small(plain(labels.guillemets(labels.applied(graph, part))))
+        words = (word for word in labels.applied(graph, part) if word not in _SAID)
+        listed = list(self._listed(part))
+        rows = [label(labels.typed(graph, part)), *(small(_row(graph, one)) for one in listed)]
         return PartView(
             self._alias(path),
-            stack([words, label(labels.typed(graph, part))]),
+            stack([small(plain(labels.guillemets(words))), *rows]),
             "part" if part.attrs.get("aggregation") == "composite" else "reference",
             tuple(self._ports(path)),
             tuple(self._parts(path)),
-            (part.id,),
+            (part.id, *(one.id for one in listed)),
         )
+
+    def _listed(self, part: Element) -> Iterator[Element]:
+        """Features of the part's type that a compartment of the part names."""
+        type_ = type_of(self.choice.graph, part)
+        if type_ is not None and self.choice.listed:
+            every = (*self.choice.graph.owned(type_), *features(self.choice.graph, type_))
+            yield from dict.fromkeys(one for one in every if one.id in self.choice.listed)
 
     def _ports(self, path: _Ids) -> Iterator[PortView]:
         """Ports on the border, and ports of these ports."""
@@ -149,6 +158,14 @@ class _Drawing:
                     yield Line(source, "..>", target, text, shows=(item.id,))
 
 
+_SAID = frozenset(["partProperty", "referenceProperty"])
+"""Stereotypes that every part has."""
+
+
+def _row(graph: Graph, feature: Element) -> str:
+    return label(labels.feature(graph, feature))
+
+
 _CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
 
 
@@ -168,7 +185,8 @@ def _is_typed(graph: Graph, part: Element, classifier: Element) -> bool:
 def paths(choice: Choice) -> dict[_Ids, None]:
     """A path to each part and port: as it is drawn, else as the types of the parts say."""
     graph = choice.graph
-    wanted = [one for one in choice.shown if one.kind in (*_PARTS, *_PORTS)]
+    every = (one for one in choice.shown if one.id not in choice.listed)
+    wanted = [one for one in every if one.kind in (*_PARTS, *_PORTS)]
     drawn = [_inside(graph, path) for path in choice.nesting]
     deeper = {path[-1] for path in drawn if len(path) > 1}
     found: dict[_Ids, None] = {(one.id,): None for one in wanted if one.id not in deeper}

@@ -49,10 +49,10 @@ def _of_model(model: Source, files: Mapping[str, Source], sink: Sink) -> Iterato
         yield from drawings_ea.drawings(model)
     for name in companions(model.name):
         if name in files:
-            yield from _notation(files[name], model.name, sink)
+            yield from _notation(files[name], model, sink)
 
 
-def _notation(notation: Source, model: str, sink: Sink) -> list[Drawing]:
+def _notation(notation: Source, model: Source, sink: Sink) -> list[Drawing]:
     nothing: list[Drawing] = []
     return _told(lambda: list(drawings_papyrus.drawings(notation, model)), nothing, sink)
 

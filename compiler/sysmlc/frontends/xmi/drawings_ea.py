@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from sysmlc.frontends.xmi import drawing_relations
 from sysmlc.frontends.xmi.drawing_types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
@@ -23,6 +24,7 @@ def drawings(model: Source) -> Iterator[Drawing]:
     made.StartElementHandler = reader.start
     made.EndElementHandler = reader.end
     parse(model, made)
+    relations = drawing_relations.relations(model)
     for draft in reader.drafts:
         yield Drawing(
             draft.id,
@@ -34,6 +36,7 @@ def drawings(model: Source) -> Iterator[Drawing]:
             draft.ordinal,
             draft.owner,
             shown=tuple(draft.shown),
+            relations=drawing_relations.shown(relations, draft.shown),
         )
 
 

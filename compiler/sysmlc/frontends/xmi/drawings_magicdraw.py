@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.drawing_shapes import Shapes, target_of
+from sysmlc.frontends.xmi import drawing_relations
+from sysmlc.frontends.xmi.drawing_relations import Relation, Relations
+from sysmlc.frontends.xmi.drawing_shapes import Shapes
 from sysmlc.frontends.xmi.drawing_types import diagram_word
-from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES
-from sysmlc.ir import Edge
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
@@ -33,7 +33,7 @@ class _Found:
 
     drafts: list[_Draft] = field(default_factory=list)
     shapes: dict[str, Shapes] = field(default_factory=dict)
-    relations: dict[str, tuple[Edge, str, str]] = field(default_factory=dict)
+    relations: Mapping[str, Relation] = field(default_factory=dict)
 
 
 def drawings(model: Source, shapes_of: Callable[[str], Shapes]) -> Iterator[Drawing]:
@@ -50,10 +50,10 @@ def drawings(model: Source, shapes_of: Callable[[str], Shapes]) -> Iterator[Draw
 
 
 def _drawing(
-    file: str, draft: _Draft, shapes: Shapes, relations: Mapping[str, tuple[Edge, str, str]]
+    file: str, draft: _Draft, shapes: Shapes, relations: Mapping[str, Relation]
 ) -> Drawing:
     id = _id(draft.attributes)
-    drawn = (path[-1] for path in shapes.paths)
+    drawn = {path[-1]: None for path in shapes.paths}
     shown = [one for one in dict.fromkeys((*drawn, *draft.used)) if one != id]
     return Drawing(
         id,
@@ -67,7 +67,8 @@ def _drawing(
         draft.attributes.get("context", ""),
         tuple(shown),
         tuple(path for path in shapes.paths if len(path) > 1),
-        tuple(relations[one] for one in shown if one in relations),
+        tuple(one for one in shown if drawn and one not in drawn),
+        drawing_relations.shown(relations, shown),
     )
 
 
@@ -100,13 +101,13 @@ class _Reader:
     """Told of everything in a model file, it keeps what concerns diagrams."""
 
     def __init__(self) -> None:
-        self.found = _Found()
+        self._relations = Relations()
+        self.found = _Found(relations=self._relations.found)
         self._ordinal = -1
-        self._open: list[tuple[str, str]] = []
+        self._open: list[str] = []
         self._draft: _Draft | None = None
         self._shapes: Shapes | None = None
         self._used = ""
-        self._folded: tuple[str, str] = ("", "")
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self._ordinal += 1
@@ -120,8 +121,8 @@ class _Reader:
             self.found.drafts.append(self._draft)
         elif self._draft is not None:
             _fill(self._draft, name, attributes)
-        self._relate(name, attributes)
-        self._open.append((name, _id(attributes)))
+        self._relations.start(name, attributes)
+        self._open.append(name)
 
     def end(self, name: str) -> None:
         if name == "filePart":
@@ -130,6 +131,7 @@ class _Reader:
             self._shapes.end(name)
             return
         self._open.pop()
+        self._relations.end()
         if name == "ownedDiagram":
             self._draft = None
         elif name == "usedElements" and self._draft is not None:
@@ -137,28 +139,13 @@ class _Reader:
             self._used = ""
 
     def text(self, data: str) -> None:
-        if self._open and self._open[-1][0] == "usedElements":
+        if self._open and self._open[-1] == "usedElements":
             self._used += data
 
     def _begin_shapes(self, attributes: Mapping[str, str]) -> None:
         entry = attributes.get("name", "")
         if entry.startswith(ENTRY):
             self._shapes = self.found.shapes[entry] = Shapes()
-
-    def _relate(self, name: str, attributes: Mapping[str, str]) -> None:
-        """A line that is an edge of the graph: ``generalization`` with ``general``."""
-        edge = FOLDED_REFERENCES.get(name)
-        if edge is not None and len(self._open) > 1:
-            target = target_of(attributes)
-            self._note(edge, self._open[-2][1], self._open[-1][1], target)
-        for feature in FOLDED_REFERENCES.keys() & attributes.keys() if self._open else ():
-            target = attributes[feature]
-            owner = self._open[-1][1]
-            self._note(FOLDED_REFERENCES[feature], owner, _id(attributes), target)
-
-    def _note(self, edge: Edge, owner: str, id: str, target: str) -> None:
-        if owner and id and target:
-            self.found.relations[id] = (edge, owner, target)
 
 
 def _fill(draft: _Draft, name: str, attributes: Mapping[str, str]) -> None:

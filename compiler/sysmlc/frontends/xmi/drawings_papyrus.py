@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from sysmlc.frontends.xmi import drawing_relations
 from sysmlc.frontends.xmi.drawing_shapes import target_of
 from sysmlc.frontends.xmi.drawing_types import diagram_word
 from sysmlc.ir.drawing import Drawing
@@ -16,26 +17,29 @@ _LABELS = ("StereotypeLabel", "StereotypeBrace", "StereotypeCompartment", "Stere
 """Nodes that name a stereotype; a stereotype that is drawn itself is a ``Stereotype_Shape``."""
 
 
-def drawings(notation: Source, model: str) -> Iterator[Drawing]:
-    """The diagrams in a notation file of the model with this name. Raises SourceError."""
+def drawings(notation: Source, model: Source) -> Iterator[Drawing]:
+    """The diagrams in the notation file of a model. Raises SourceError."""
+    relations = drawing_relations.relations(model)
     reader = _Reader()
     made = plain_parser()
     made.StartElementHandler = reader.start
     made.EndElementHandler = reader.end
     parse(notation, made)
     for draft in reader.drafts:
+        shown = tuple(dict.fromkeys(path[-1] for path in draft.paths))
         yield Drawing(
             draft.id,
             draft.name,
             draft.type,
             diagram_word(draft.kind, draft.type),
-            model,
+            model.name,
             notation.name,
             draft.ordinal,
             draft.owner or draft.context,
             draft.context,
-            tuple(dict.fromkeys(path[-1] for path in draft.paths)),
+            shown,
             tuple(path for path in draft.paths if len(path) > 1),
+            relations=drawing_relations.shown(relations, shown),
         )
 
 
