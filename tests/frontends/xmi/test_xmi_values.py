@@ -32,6 +32,20 @@ def test_an_expression_is_written_with_its_operands():
     )
 
 
+@pytest.mark.parametrize(
+    ("type_name", "feature"), [("InstanceValue", "instance"), ("ElementValue", "element")]
+)
+def test_a_slot_may_refer_to_an_element(type_name, feature):
+    graph = read(
+        papyrus(
+            '<packagedElement xmi:type="uml:InstanceSpecification" xmi:id="i"><slot xmi:id="s">'
+            f'<value xmi:type="uml:{type_name}" xmi:id="v"><{feature} xmi:idref="k"/></value>'
+            '</slot></packagedElement><packagedElement xmi:type="uml:Class" xmi:id="k" name="K"/>'
+        )
+    ).graph
+    assert [(r.source, r.edge, r.target) for r in graph.pending] == [("s", "references", "k")]
+
+
 @pytest.mark.parametrize("depth", [10, 490])
 def test_expressions_may_nest_as_deep_as_a_file_may(depth):
     inside = '<operand xmi:type="uml:Expression" symbol="not">' * depth + "</operand>" * depth

@@ -29,6 +29,8 @@ _LEGIBLE = (
 _OF_TIME = ("TimeExpression", "Duration")
 _INTERVALS = ("Interval", "TimeInterval", "DurationInterval")
 _EXPRESSIONS = ("Expression", "StringExpression")
+_NAMES = {"InstanceValue": "instance", "ElementValue": "element"}
+"""Values that name an element, and the feature that leads to it; the second is MagicDraw's own."""
 _NESTING = frozenset((*_OF_TIME, *_INTERVALS, *_EXPRESSIONS))
 _INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
 
@@ -66,8 +68,8 @@ def _value(document: Document, row: int, inner: _Inner) -> ValueText:
     type_name = document.types[row]
     if type_name in _LITERALS:
         return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
-    if type_name == "InstanceValue":
-        return _instance(document, row)
+    if type_name in _NAMES:
+        return _instance(document, row, _NAMES[type_name])
     if type_name in _EXPRESSIONS:
         return ValueText(_expression(document, row, inner), language="UML")
     if type_name in _OF_TIME:
@@ -189,9 +191,9 @@ def _elsewhere(document: Document, row: int) -> ValueText:
     )
 
 
-def _instance(document: Document, row: int) -> ValueText:
-    targets = document.targets(row, "instance")
-    hrefs = [document.attributes[c].get("href", "") for c in document.children(row, "instance")]
+def _instance(document: Document, row: int, feature: str) -> ValueText:
+    targets = document.targets(row, feature)
+    hrefs = [document.attributes[c].get("href", "") for c in document.children(row, feature)]
     target = next((t for t in [*targets, *hrefs] if t), "")
     known = document.ids.get(target)
     name = name_of_instance(document, known) if known is not None else ""
