@@ -18,6 +18,7 @@ Class line "Line"
   Property line.b "b" aggregation="composite"
     -> typed-by gate
 """
+_LIT_STATION = "lamp".join(_STATION.rsplit("gate", 1))
 
 
 def _connector(*roles: str) -> str:
@@ -66,17 +67,17 @@ FLOW_ITEM = rule(
     why="What flows over a connector must fit flow properties of the ports at both of its ends "
     "(SysML 1.6 clause 9.3.2.5).",
     help="add a flow property of type '{item}' to the port's type, or convey what it passes",
-    wrong=_STATION
-    + """\
+    wrong="""\
 Class oil "Oil"
 """
+    + _STATION
     + _connector("out", "in")
     + _FLOW.format(source="out", target="in", item="oil"),
-    right=_STATION
-    + """\
+    right="""\
 Class heavy "Heavy pallet"
   -> specializes pallet
 """
+    + _STATION
     + _connector("out", "in")
     + _FLOW.format(source="out", target="in", item="heavy"),
 )
@@ -172,8 +173,7 @@ CONNECTOR_TYPES = rule(
     why="Neither type specialises the other, they have no general type in common, and no flow "
     "property of the one fits one of the other: nothing can pass.",
     help="type both ports with the same interface block, one of them conjugated",
-    wrong=_STATION
-    + """\
+    wrong="""\
 Class plug "Plug"
   FlowProperty plug.u "u" direction="in"
     -> typed-by track
@@ -181,9 +181,9 @@ Class lamp "Lamp"
   Port lamp.in "in"
     -> typed-by plug
 """
+    + _LIT_STATION
     + _connector("out", "in").replace("gate.in", "lamp.in"),
-    right=_STATION
-    + """\
+    right="""\
 Class rail "Rail"
   FlowProperty rail.p "p" direction="in"
     -> typed-by pallet
@@ -191,6 +191,7 @@ Class lamp "Lamp"
   Port lamp.in "in"
     -> typed-by rail
 """
+    + _LIT_STATION
     + _connector("out", "in").replace("gate.in", "lamp.in"),
 )
 MIXED_DOMAINS = rule(

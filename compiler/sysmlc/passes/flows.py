@@ -21,6 +21,7 @@ from sysmlc.ir.query import (
     tag,
     type_of,
 )
+from sysmlc.passes.connector_paths import check_paths
 from sysmlc.passes.flow_rules import (
     CONNECTOR_DIRECTIONS,
     CONNECTOR_TYPES,
@@ -57,6 +58,7 @@ class Flows:
         for connector in graph.of_kind(Kind.CONNECTOR):
             _settle_domain(graph, sink, connector)
             _check_connector(graph, sink, connector)
+            check_paths(graph, sink, connector)
 
 
 # -- item flows --------------------------------------------------------------------------------
