@@ -5,9 +5,9 @@ project that is saved as one XML file it is the content of a ``filePart``.
 """
 
 from collections.abc import Mapping
-from itertools import groupby
 
 _BORDER = "DiagramFrame"
+_DEEPEST = 40
 
 
 class Shapes:
@@ -19,29 +19,36 @@ class Shapes:
 
     def __init__(self) -> None:
         self.paths: dict[tuple[str, ...], None] = {}
-        self._open: list[str] = []
-        self._is_border: list[bool] = []
+        self._open: list[tuple[str, ...]] = [()]
+        self._is_shown: list[bool] = [True]
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
         """An element begins."""
         if name == "mdElement":
-            self._open.append("")
-            self._is_border.append(attributes.get("elementClass") == _BORDER)
-        elif name == "elementID" and self._open and not self._open[-1]:
-            self._show(attributes)
+            self._open.append(self._open[-1])
+            self._is_shown.append(attributes.get("elementClass") == _BORDER)
+        elif name == "elementID" and not self._is_shown[-1]:
+            self._is_shown[-1] = True
+            self._show(target_of(attributes).rpartition("#")[2])
 
     def end(self, name: str) -> None:
         """An element ends."""
-        if name == "mdElement" and self._open:
+        if name == "mdElement":
             self._open.pop()
-            self._is_border.pop()
+            self._is_shown.pop()
 
-    def _show(self, attributes: Mapping[str, str]) -> None:
-        id = target_of(attributes).rpartition("#")[2]
-        if id and not self._is_border[-1]:
-            self._open[-1] = id
-            path = (one for one in self._open if one)
-            self.paths[tuple(one for one, _ in groupby(path))] = None
+    def _show(self, id: str) -> None:
+        if id:
+            self._open[-1] = path = inside(self._open[-1], id)
+            self.paths[path] = None
+
+
+def inside(path: tuple[str, ...], id: str) -> tuple[str, ...]:
+    """The path of what is drawn at ``path`` and shows ``id``; some symbols are two of a kind.
+
+    What is nested deeper than any drawing stands beside the last one that counts.
+    """
+    return path if path[-1:] == (id,) else (*path[: _DEEPEST - 1], id)
 
 
 def target_of(attributes: Mapping[str, str]) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.frontends.xmi import drawing_relations
-from sysmlc.frontends.xmi.drawing_shapes import target_of
+from sysmlc.frontends.xmi.drawing_shapes import inside, target_of
 from sysmlc.frontends.xmi.drawing_types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
@@ -26,7 +26,8 @@ def drawings(notation: Source, model: Source) -> Iterator[Drawing]:
     made.EndElementHandler = reader.end
     parse(notation, made)
     for draft in reader.drafts:
-        shown = tuple(dict.fromkeys(path[-1] for path in draft.paths))
+        paths = draft.paths()
+        shown = tuple(dict.fromkeys(path[-1] for path in paths))
         yield Drawing(
             draft.id,
             draft.name,
@@ -38,9 +39,19 @@ def drawings(notation: Source, model: Source) -> Iterator[Drawing]:
             draft.owner or draft.context,
             draft.context,
             shown,
-            tuple(path for path in draft.paths if len(path) > 1),
+            tuple(path for path in paths if len(path) > 1),
             relations=drawing_relations.shown(relations, shown),
         )
+
+
+@dataclass(slots=True)
+class _Node:
+    """A node of a diagram: where it is, whether it can be seen, and what it shows."""
+
+    above: "_Node | None"
+    is_seen: bool
+    shows: str = ""
+    path: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -54,20 +65,23 @@ class _Draft:
     kind: str = ""
     owner: str = ""
     context: str = ""
-    paths: dict[tuple[str, ...], None] = field(default_factory=dict)
+    nodes: list[_Node] = field(default_factory=list)
 
-
-@dataclass(slots=True)
-class _Node:
-    """A node that is open: what it shows, and whether it can be seen."""
-
-    is_seen: bool
-    is_label: bool
-    shows: str = ""
+    def paths(self) -> list[tuple[str, ...]]:
+        """What is seen, outermost first; a node says what it shows after what is inside it."""
+        found: dict[tuple[str, ...], None] = {}
+        for node in self.nodes:
+            above = node.above
+            node.path = above.path if above else ()
+            node.is_seen = node.is_seen and (above is None or above.is_seen)
+            if node.is_seen and node.shows:
+                node.path = inside(node.path, node.shows)
+                found[node.path] = None
+        return list(found)
 
 
 class _Reader:
-    """Told of everything in a notation file; ids of what is not seen are left out."""
+    """Told of everything in a notation file, it keeps the diagrams."""
 
     def __init__(self) -> None:
         self.drafts: list[_Draft] = []
@@ -97,20 +111,18 @@ class _Reader:
     def _inside(self, local: str, above: str, attributes: dict[str, str]) -> None:
         draft = self.drafts[-1]
         if local in _NODES:
-            is_seen = attributes.get("visible") != "false"
-            is_label = attributes.get("type", "").startswith(_LABELS)
-            self._nodes.append(_Node(is_seen, is_label))
+            self._node(draft, attributes)
         elif local == "element" and above in _NODES:
-            self._show(target_of(attributes))
+            self._nodes[-1].shows = target_of(attributes)
         elif local == "element" and above == _DIAGRAM:
             draft.context = target_of(attributes)
         elif local == "owner":
             draft.owner = target_of(attributes)
         draft.kind = attributes.get("diagramKindId", draft.kind)
 
-    def _show(self, target: str) -> None:
-        if not target or self._nodes[-1].is_label or not all(node.is_seen for node in self._nodes):
-            return
-        self._nodes[-1].shows = target
-        path = [node.shows for node in self._nodes if node.shows]
-        self.drafts[-1].paths[tuple(path)] = None
+    def _node(self, draft: _Draft, attributes: dict[str, str]) -> None:
+        is_label = attributes.get("type", "").startswith(_LABELS)
+        is_seen = attributes.get("visible") != "false" and not is_label
+        node = _Node(self._nodes[-1] if self._nodes else None, is_seen)
+        self._nodes.append(node)
+        draft.nodes.append(node)
