@@ -1,0 +1,231 @@
+"""``sysmlc watch`` as a process of its own, beside tools that save in all the ways they do.
+
+Pauses are what the tools do between two writes. What is waited for is always an output, with a
+bound; no test asserts how long something takes.
+"""
+
+import io
+import os
+import signal
+import subprocess
+import sys
+import time
+import zipfile
+
+import pytest
+
+from sysmlc.cli import settling
+
+BOUND = 60
+HEAD = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n<uml:Model xmi:version="20131001"'
+    ' xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
+    ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmi:id="{id}" name="M">\n'
+)
+ENTRY = "com.nomagic.magicdraw.uml_model.model"
+
+
+def model(name, more="", id="m"):
+    one = f'<packagedElement xmi:type="uml:Class" xmi:id="{id}c" name="{name}">{more}'
+    return (HEAD.format(id=id) + one + "</packagedElement>\n</uml:Model>\n").encode()
+
+
+def mdzip(name):
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as opened:
+        opened.writestr(ENTRY, model(name))
+    return made.getvalue()
+
+
+class Watching:
+    """A running ``sysmlc watch`` in a folder."""
+
+    def __init__(self, folder, *args):
+        self.folder = folder
+        (folder / ".git").mkdir()
+        command = [sys.executable, "-m", "sysmlc", "watch", *args, "--emit", "graph"]
+        self.errors = (folder / "errors.txt").open("w+")
+        self.lines = (folder / "lines.txt").open("w+")
+        self.process = subprocess.Popen(
+            [*command, "--settle", "200"],
+            cwd=folder,
+            stdout=self.lines,
+            stderr=self.errors,
+            env={**os.environ, "SYSMLC_CACHE": "off", "PYTHONUNBUFFERED": "1"},
+        )
+
+    def until(self, what):
+        """Wait until something holds; fail when it does not."""
+        end = time.monotonic() + BOUND
+        while not what():
+            assert self.process.poll() is None, self.said()
+            assert time.monotonic() < end, f"{self.built()} {self.said()}"
+            time.sleep(0.02)
+
+    def until_built(self, name):
+        """Wait until the outputs show a class of this name."""
+        self.until(lambda: f'"{name}"' in self.graph())
+
+    def graph(self):
+        path = self.folder / "out" / "graph.json"
+        return path.read_text() if path.exists() else ""
+
+    def built(self):
+        """The lines that say that something was written or kept."""
+        return (self.folder / "lines.txt").read_text().splitlines()
+
+    def said(self):
+        """Findings so far."""
+        return (self.folder / "errors.txt").read_text()
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(BOUND)
+        self.errors.close()
+        self.lines.close()
+
+
+@pytest.fixture
+def watch(tmp_path):
+    """Starts ``sysmlc watch`` with files and waits until they are built."""
+    started = []
+
+    def start(files, *args):
+        for name, data in files.items():
+            (tmp_path / name).write_bytes(data)
+        made = Watching(tmp_path, *args)
+        started.append(made)
+        made.until(lambda: made.built())
+        return made
+
+    yield start
+    for made in started:
+        made.end()
+
+
+def in_pieces(path, data, pause, count=4):
+    """Save as a tool that empties the file and writes bit by bit."""
+    size = len(data) // count + 1
+    with path.open("wb") as stream:
+        for start in range(0, len(data), size):
+            stream.write(data[start : start + size])
+            stream.flush()
+            time.sleep(pause)
+
+
+@pytest.mark.parametrize("pause", [0.05, 0.35])
+def test_a_file_that_is_written_in_pieces_is_no_error(watch, pause):
+    """The longer pause is longer than the settling time: half a file is compiled, and not told."""
+    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+    in_pieces(watched.folder / "plant.uml", model("New"), pause)
+    watched.until_built("New")
+    assert watched.said() == ""
+
+
+def test_a_file_that_is_replaced_or_gone_for_a_moment_is_no_error(watch):
+    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+    path = watched.folder / "plant.uml"
+    path.rename(watched.folder / "plant.uml.bak")
+    time.sleep(0.4)
+    path.write_bytes(model("Back"))
+    watched.until_built("Back")
+    (watched.folder / "new.tmp").write_bytes(model("Renamed"))
+    (watched.folder / "new.tmp").replace(path)
+    watched.until_built("Renamed")
+    assert watched.said() == ""
+
+
+def test_an_archive_that_is_saved_in_place_is_no_error(watch):
+    watched = watch({"plant.mdzip": mdzip("Old")}, "plant.mdzip")
+    in_pieces(watched.folder / "plant.mdzip", mdzip("New"), 0.3)
+    watched.until_built("New")
+    (watched.folder / "x.tmp").write_bytes(mdzip("Renamed"))
+    (watched.folder / "x.tmp").replace(watched.folder / "plant.mdzip")
+    watched.until_built("Renamed")
+    assert watched.said() == ""
+
+
+def test_layout_files_of_papyrus_start_no_run(watch):
+    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+    for name in ("plant.notation", "plant.di", "plant.sash"):
+        (watched.folder / name).write_bytes(b"<notation/>")
+    time.sleep(1.5)
+    (watched.folder / "plant.notation").write_bytes(b"<other/>")
+    (watched.folder / "plant.uml").write_bytes(model("New"))
+    (watched.folder / "plant.di").write_bytes(b"<other/>")
+    watched.until_built("New")
+    watched.until(lambda: len(watched.built()) > 1)
+    assert len(watched.built()) == 2
+
+
+def test_files_that_refer_to_one_another_are_saved_one_after_the_other(watch):
+    """Between the two saves a reference leads nowhere; that is not told."""
+    refers = '<generalization xmi:id="g" general="{}"/>'
+    files = {
+        "a.uml": model("A", refers.format("bc"), "a"),
+        "b.uml": model("B", id="b"),
+    }
+    watched = watch(files, "a.uml", "b.uml")
+    (watched.folder / "a.uml").write_bytes(model("A2", refers.format("dc"), "a"))
+    time.sleep(0.5)
+    (watched.folder / "b.uml").write_bytes(model("D", id="d"))
+    watched.until_built("D")
+    watched.until_built("A2")
+    assert watched.said() == ""
+
+
+def test_a_checkout_that_changes_many_files_is_built_whole(watch):
+    files = {f"f{n}.uml": model(f"Old{n}", id=f"i{n}") for n in range(20)}
+    watched = watch(files, ".")
+    (watched.folder / "f3.uml").unlink()
+    for n in range(20):
+        if n != 3:
+            (watched.folder / f"f{n}.uml").write_bytes(model(f"New{n}", id=f"i{n}"))
+            time.sleep(0.01)
+    (watched.folder / "more.uml").write_bytes(model("More", id="more"))
+    watched.until_built("More")
+    watched.until_built("New19")
+    assert "Old" not in watched.graph()
+    assert watched.said() == ""
+
+
+def test_the_last_of_many_saves_is_built(watch):
+    """Saves come faster than compilations end."""
+    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+    for number in range(30):
+        (watched.folder / "plant.uml").write_bytes(model(f"Save{number}"))
+        time.sleep(0.05)
+    watched.until_built("Save29")
+    assert watched.said() == ""
+
+
+def test_a_true_error_is_told_and_the_outputs_kept_until_it_is_mended(watch):
+    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+    kept = watched.graph()
+    (watched.folder / "plant.uml").write_bytes(model("New")[:-20])
+    watched.until(lambda: "malformed-file" in watched.said())
+    watched.until(lambda: watched.built()[-1] == "out: kept as it is, the model has errors")
+    assert watched.graph() == kept
+    (watched.folder / "plant.uml").write_bytes(model("Mended"))
+    watched.until_built("Mended")
+    assert watched.said().count("malformed-file") == 1
+
+
+def test_the_configuration_is_watched_too(watch):
+    files = {"plant.uml": model("Old"), "sysmlc.toml": b'output = "out"\n'}
+    watched = watch(files, "plant.uml")
+    (watched.folder / "sysmlc.toml").write_bytes(b'output = "made"\n')
+    watched.until(lambda: (watched.folder / "made" / "graph.json").exists())
+
+
+def test_rest_is_told_by_size_and_time(tmp_path):
+    path, missing = tmp_path / "a", tmp_path / "b"
+    path.write_bytes(b"x")
+    os.utime(path, (0, 0))
+    seen = settling.rested([path, missing, tmp_path], 0)
+    assert seen == {path: (1, 0), missing: None, tmp_path: (0, 0)}
+    assert not settling.is_fresh({path: (1, 0)}, 1)
+    assert settling.is_fresh({missing: None}, 1)
+    path.write_bytes(b"xy")
+    assert settling.stamps([path]) != {path: (1, 0)}
+    assert settling.is_fresh(settling.stamps([path]), 3600)
