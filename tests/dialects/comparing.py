@@ -16,9 +16,12 @@ WRITERS = {
 
 _IDS = {"xmi": enterprise_architect.ids_of}
 
-OF_THE_DIALECT = frozenset({"href", "namespace", "tag.Id", "tag.id", "tag.Text", "tag.text"})
-"""Attributes in which the dialects differ by their nature: where the standard's files are, and
-how the tools' SysML profiles are called and spelt. What they mean is in roles and attributes."""
+OF_THE_DIALECT = frozenset(
+    {"href", "namespace", "qualified_name", "tag.Id", "tag.id", "tag.Text", "tag.text"}
+)
+"""Attributes in which the dialects differ by their nature: where the standard's files are, how the
+tools' SysML profiles are called and spelt, and the path that MagicDraw writes beside a reference.
+What they mean is in roles and attributes."""
 
 
 def compile_both(

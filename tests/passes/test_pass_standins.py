@@ -93,8 +93,8 @@ def test_dialects_in_one_unit_share_the_stand_in():
         ("http://www.omg.org/spec/SysML/20150709/SysML.xmi#_SysML__0", "Profile", "SysML"),
         ("pathmap://SysML16_PROFILES/SysML.profile.uml#SysML", "Profile", "SysML"),
         ("pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Ports_u0026Flows",
-         "Package", "SysML::Ports&Flows"),
-        ("http://www.eclipse.org/papyrus/0.7.0/SysML#//portandflows", "Package",
+         "Profile", "SysML::Ports&Flows"),
+        ("http://www.eclipse.org/papyrus/0.7.0/SysML#//portandflows", "Profile",
          "SysML::Ports&Flows"),
         ("pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML.package_packagedElement_"
          "Libraries.package_packagedElement_PrimitiveValueTypes.dataType_packagedElement_Complex",

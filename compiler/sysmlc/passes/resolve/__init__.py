@@ -185,7 +185,7 @@ class _Answers:
     def _add(self, href: str, uses: list[_Use]) -> None:
         if href in self.known and not href.startswith(PRIMITIVE_TYPES):
             origin = min(uses, key=_Use.place).holder.id
-            add(self.graph, self.known[href], {use.kind for use in uses}, origin)
+            add(self.graph, self.known[href], origin)
         else:
             _stand_in(self.graph, href, uses)
 

@@ -17,13 +17,12 @@ def known(target: str, paths: Collection[str], kinds: Collection[Kind]) -> Stand
     return libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
 
 
-def add(graph: Graph, stand_in: StandIn, kinds: Collection[Kind], origin: str) -> Element:
+def add(graph: Graph, stand_in: StandIn, origin: str) -> Element:
     """Add the stand-in with its packages, generals and metaclasses, unless it is there.
 
-    Eclipse applies the packages of SysML one by one, as profiles: then they are profiles.
+    The packages of SysML are profiles, for Eclipse applies them one by one: what a stand-in is
+    must not depend on the dialect that uses it.
     """
-    is_profile = stand_in.kind is Kind.PACKAGE and Kind.PROFILE in kinds
-    kind = Kind.PROFILE if is_profile else stand_in.kind
     owner = _of(graph, stand_in.owner, origin)
     id = derived_id(stand_in.href, "stub")
     found = graph.get(id)
@@ -32,7 +31,7 @@ def add(graph: Graph, stand_in: StandIn, kinds: Collection[Kind], origin: str) -
     attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": stand_in.href}
     attrs["origin"] = origin
     made = graph.add(
-        Element(id, kind, stand_in.name, None if owner is None else owner.id, attrs=attrs)
+        Element(id, stand_in.kind, stand_in.name, None if owner is None else owner.id, attrs=attrs)
     )
     for edge, names in (
         (Edge.SPECIALIZES, stand_in.generals),
@@ -47,4 +46,4 @@ def add(graph: Graph, stand_in: StandIn, kinds: Collection[Kind], origin: str) -
 
 def _of(graph: Graph, name: str, origin: str) -> Element | None:
     stand_in = libraries().get(name) if name else None
-    return None if stand_in is None else add(graph, stand_in, (), origin)
+    return None if stand_in is None else add(graph, stand_in, origin)
