@@ -18,6 +18,8 @@ MODELS = (
     "papyrus/CraneModel.uml",
     "papyrus/TankBarrelExample.uml",
     "papyrus/fUML-Tests.uml",
+    "papyrus/fUML-Exception-Tests.uml",
+    "papyrus/AssertionLibrary.uml",
     "magicdraw/Tank_control_2.mdzip",
     "magicdraw/Wired_Camera_Example.mdzip",
 )

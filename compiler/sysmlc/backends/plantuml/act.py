@@ -16,6 +16,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"
 _OBJECT_FLOW = "-->"
+_INTERRUPTING = "-[bold]->"
 _LABEL = 30
 _FRAME = 60
 
@@ -52,7 +53,7 @@ class _Drawing:
         self.tints = self._tints()
         drawn = (*self._empty_lanes(), *map(self._node, nodes))
         said = notes(self.graph, self.activity, self.aliases, not self.signature())
-        return GraphView(drawn, tuple(self._lines()), said)
+        return GraphView(drawn, (*self._lines(), *self._handlers()), said)
 
     def signature(self) -> str:
         """Parameters for the frame; nothing when they are too long for it."""
@@ -150,10 +151,18 @@ class _Drawing:
             if source.id in self.homes and target.id in self.homes:
                 yield self._line(flow, source, target)
 
+    def _handlers(self) -> Iterator[Line]:
+        """From each protected node to the bodies of its exception handlers."""
+        for node in self.graph.subtree(self.activity):
+            for body, types in actions.handlers(self.graph, node):
+                if node.id in self.homes and body in self.homes:
+                    text = label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
+                    yield Line(self.homes[node.id], _INTERRUPTING, self.homes[body], text)
+
     def _line(self, flow: Element, source: Element, target: Element) -> Line:
         arrow = _CONTROL_FLOW if flow.kind is Kind.CONTROL_FLOW else _OBJECT_FLOW
         if flow.attrs.get("interrupts"):
-            arrow = "-[bold]->"
+            arrow = _INTERRUPTING
         text = label(self._flow_text(flow, source, target), _LABEL)
         owned = [item.id for item in self._owned(flow) if item.kind is not Kind.APPLICATION]
         shows = (flow.id, *owned)
@@ -167,10 +176,21 @@ class _Drawing:
             "⚡" if flow.attrs.get("interrupts") else "",
             "«decisionInputFlow»" if target.attrs.get("decision_input_flow") == flow.id else "",
             " → ".join(dict.fromkeys(pins)),
-            guard_text(self.graph, flow),
-            f"{{weight = {labels.literal(weight)}}}" if weight is not None else "",
+            "" if _is_default_guard(flow, source) else guard_text(self.graph, flow),
+            f"{{weight = {labels.literal(weight)}}}" if _is_weighted(weight) else "",
         ]
         return " ".join(part for part in parts if part)
+
+
+def _is_default_guard(flow: Element, source: Element) -> bool:
+    """Tools write the literal true by themselves; it says something after a decision only."""
+    is_literal = flow.attrs.get("guard_literal") is True and flow.attrs.get("guard") == "true"
+    return is_literal and source.subkind != "decision"
+
+
+def _is_weighted(weight: AttrValue) -> bool:
+    """Whether someone set the weight: 1 is the default, and Papyrus writes 0 by itself."""
+    return weight is not None and str(weight) not in ("0", "1")
 
 
 def _in_sections(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
 from sysmlc.backends.plantuml.text import label, lines
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 
 _CONTROL = {
     "initial": "start",
@@ -52,6 +52,20 @@ def look(graph: Graph, node: Element) -> Look:
     return _object(graph, node)
 
 
+def handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]]:
+    """Exception handlers of a protected node: id of the body, names of the types."""
+    value = node.attrs.get("handlers")
+    for handler in value if isinstance(value, tuple) else ():
+        parts = handler if isinstance(handler, tuple) else ()
+        body, types = (_ids(parts[place]) if len(parts) > place else () for place in (0, 2))
+        named = (graph.get(id) for id in types)
+        yield next(iter(body), ""), [labels.name(one) for one in named if one is not None]
+
+
+def _ids(value: AttrValue) -> tuple[str, ...]:
+    return tuple(map(str, value)) if isinstance(value, tuple) else (str(value),)
+
+
 def _control(graph: Graph, node: Element) -> Look:
     shape = _CONTROL.get(node.subkind, "control")
     if shape == "flowfinal":
@@ -72,6 +86,8 @@ def _control_note(graph: Graph, node: Element) -> str:
 
 def _object(graph: Graph, node: Element) -> Look:
     words = {Kind.DATA_STORE: ("datastore",), Kind.OBJECT_NODE: ("centralBuffer",)}
+    if node.subkind == "expansion":
+        words[Kind.OBJECT_NODE] = ("expansionNode",)
     direction = node.attrs.get("direction")
     applied = labels.applied(graph, node)
     typed = next((t for t in (node, *graph.targets(node, Edge.REFERENCES)) if t.name), node)
@@ -118,6 +134,8 @@ def _title(node: Element, called: list[Element]) -> str:
 
 def _words(graph: Graph, node: Element) -> tuple[str, ...]:
     applied = labels.applied(graph, node)
+    if node.subkind == "expansion":
+        return (str(node.attrs.get("mode") or "parallel"), *applied)
     if node.kind is Kind.STRUCTURED:
         return (node.subkind or "structured", *applied)
     kind = _WORDS.get(node.subkind, node.subkind.replace("-", " "))
