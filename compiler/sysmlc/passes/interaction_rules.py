@@ -219,3 +219,41 @@ Interaction feed "Feed"
     -> calls gate.open
 """,
 )
+CREATED_LATE = rule(
+    "SM447",
+    "created-after-its-first-occurrence",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' creates lifeline '{lifeline}', on which something has "
+    "happened before",
+    why="UML 2.5.1, 17.4.5: no occurrence stands above the reception of a creating message on the "
+    "lifeline that it creates. The diagram shows the lifeline as there from the beginning.",
+    help="move the message up, or choose another sort of message",
+    wrong=_LIFELINES
+    + """\
+  Occurrence o
+    -> covers b
+  Occurrence s
+    -> covers g
+  Occurrence r
+    -> covers b
+  Message m "new" subkind="create-message"
+    -> send-event s
+    -> receive-event r
+    -> flow-source g
+    -> flow-target b
+""",
+    right=_LIFELINES
+    + """\
+  Occurrence s
+    -> covers g
+  Occurrence r
+    -> covers b
+  Occurrence o
+    -> covers b
+  Message m "new" subkind="create-message"
+    -> send-event s
+    -> receive-event r
+    -> flow-source g
+    -> flow-target b
+""",
+)

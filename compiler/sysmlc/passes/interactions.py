@@ -36,6 +36,7 @@ class Interactions:
                 elif item.kind is Kind.EXECUTION:
                     _execution(graph, sink, interaction, item, places)
             _destructions(graph, sink, interaction)
+            _creations(graph, sink, interaction)
 
 
 def _places(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
@@ -164,6 +165,20 @@ def _destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
                     _report_destroyed(graph, sink, interaction, item, lifeline)
                 elif item.subkind == "destruction":
                     destroyed[lifeline.id] = lifeline
+
+
+def _creations(graph: Graph, sink: Sink, interaction: Element) -> None:
+    begun: set[str] = set()
+    for item in graph.subtree(interaction):
+        if item.kind is not Kind.OCCURRENCE:
+            continue
+        message = sequence.received(graph, item)
+        for lifeline in sequence.covered(graph, item):
+            is_created = message is not None and message.subkind == "create-message"
+            if message is not None and is_created and lifeline.id in begun:
+                name = lifeline.name or "without name"
+                _report(graph, sink, rules.CREATED_LATE, interaction, message, lifeline=name)
+            begun.add(lifeline.id)
 
 
 def _report_destroyed(

@@ -25,7 +25,7 @@ def message_steps(walk: Walk, message: Element) -> Iterator[Step]:
     ends = [*graph.targets(message, Edge.SEND_EVENT), *graph.targets(message, Edge.RECEIVE_EVENT)]
     about = [message, *(end for end in ends if end.kind is Kind.OCCURRENCE)]
     text, times = walk.text(about, message_text(graph, message))
-    if message.subkind == "create-message" and target:
+    if message.subkind == "create-message" and target != source:
         yield Step("create", source=target)
     yield Step(
         "message",

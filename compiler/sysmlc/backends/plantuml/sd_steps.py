@@ -20,6 +20,16 @@ def steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step
     """The steps in their order; ``aliases`` has the lifelines."""
     walk = Walk(graph, aliases)
     walk.begin(interaction)
+    seen: set[str] = set()
+    for step in _every(walk, interaction):
+        if step.word != "create" or (step.source and step.source not in seen):
+            yield step
+        seen.update((step.source, step.target, *step.over))
+
+
+def _every(walk: Walk, interaction: Element) -> Iterator[Step]:
+    """All steps; PlantUML cannot create what is there already (SM447 reports it)."""
+    graph, aliases = walk.graph, walk.aliases
     yield from walk.notes(interaction)
     for lifeline in sequence.lifelines(graph, interaction):
         yield from walk.notes(lifeline, [aliases[lifeline.id]])
