@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query import tag
+from sysmlc.ir.query import CLASSIFIERS, tag
 from sysmlc.passes.classify.allocations import add_allocations
 from sysmlc.passes.classify.bindings import add_bindings
 from sysmlc.passes.classify.constraints import check_constraints
@@ -19,7 +19,7 @@ from sysmlc.passes.classify.lineage import (
 )
 from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, give_requirement
-from sysmlc.passes.classify.roles import by_stereotype, by_structure
+from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
 from sysmlc.passes.classify.tags import give_tags, optional_with_value
 from sysmlc.passes.classify.units import give_units
@@ -131,11 +131,12 @@ def _report(graph: Graph, sink: Sink, name: str, alike: str, applications: list[
 
 
 def _give_roles(graph: Graph, known: _Meanings) -> None:
-    for element in graph:
-        role = by_stereotype(element, known.get(element.id, ()))
+    for id, names in known.items():
+        role = by_stereotype(graph[id], names)
         if role:
-            graph.set(element, role=role)
-    for element in graph:
+            graph.set(graph[id], role=role)
+    # Most elements of a large model are of behaviour, to which structure gives no role.
+    for element in graph.of_kind(*STRUCTURED):
         if not element.role:
             graph.set(element, role=by_structure(graph, element) or None)
 
@@ -175,10 +176,11 @@ def _levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
 
 
 def _give_values(graph: Graph) -> None:
-    for element in graph:
+    for element in graph.of_kind(*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION):
         if element.role == "requirement":
             give_requirement(graph, element)
-        elif element.role == "flow property":
+    for element in graph.of_kind(Kind.PROPERTY, Kind.FLOW_PROPERTY):
+        if element.role == "flow property":
             given = element.attrs.get("direction") or tag(graph, element, "direction")
             # SysML 1.6 clause 9.3.2.7: the default direction is inout.
             graph.set(element, direction=given or "inout")

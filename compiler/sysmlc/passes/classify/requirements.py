@@ -4,9 +4,10 @@ from html.parser import HTMLParser
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import tag
+from sysmlc.ir.query import CLASSIFIERS, tag
 from sysmlc.passes.classify.requirement_rules import COPY_DIFFERS, NO_ID, REPEATED_ID
 
+_KINDS = (*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION)
 _BLOCKS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul", "ol", "table"])
 _SILENT = frozenset(["head", "style", "script"])
 
@@ -58,7 +59,7 @@ class _Words(HTMLParser):
 def check_requirements(graph: Graph, sink: Sink) -> None:
     """Report missing and repeated ids, and copies whose text is not their master's."""
     known: dict[str, list[Element]] = {}
-    for requirement in (one for one in graph if one.role == "requirement"):
+    for requirement in (one for one in graph.of_kind(*_KINDS) if one.role == "requirement"):
         id = str(requirement.attrs.get("req_id", "")).strip()
         if id:
             known.setdefault(id, []).append(requirement)

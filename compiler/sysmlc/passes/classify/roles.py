@@ -53,6 +53,9 @@ _BY_KIND = {
     Kind.VIEW: "view",
     Kind.FLOW_PROPERTY: "flow property",
 }
+STRUCTURED = (Kind.PROPERTY, Kind.CLASS, *_BY_KIND)
+"""Kinds to which ``by_structure`` may give a role."""
+
 _SYSML_PORTS = frozenset(PORT_ROLES.values())
 _VALUES = frozenset({Kind.DATA_TYPE, Kind.ENUMERATION})
 _OBJECTS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})

@@ -16,6 +16,7 @@ _QUANTITY_KIND = re.compile(r"(Simple|Derived|Specialized)?QuantityKind")
 _UNIT = re.compile(
     r"(Simple|Derived|Prefixed|ConversionBased|(Linear|Affine|General)Conversion)?Unit"
 )
+_KINDS = (Kind.UNIT, Kind.QUANTITY_KIND, Kind.INSTANCE, Kind.DATA_TYPE)
 _LIBRARY = re.compile(r"UnitAndQuantityKind|QUDV")
 _TEXTS = {"symbol": "symbol", "description": "description", "definitionURI": "definition_uri"}
 _NAMED = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
@@ -25,8 +26,9 @@ _NAMED = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
 def give_units(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> None:
     """Find units and quantity kinds, and lead each value type to its own; see docs/ir.md."""
     _give_library_roles(graph)
-    for unit in [one for one in graph if is_unit(one) or is_quantity_kind(one)]:
-        _describe(graph, unit)
+    for unit in graph.of_kind(*_KINDS):
+        if is_unit(unit) or is_quantity_kind(unit):
+            _describe(graph, unit)
     for id in (id for id, names in known.items() if "ValueType" in names or "Unit" in names):
         for subject in graph.targets(graph[id], Edge.SUBJECT):
             _refer(graph, graph[id], subject)
