@@ -1,5 +1,7 @@
 """The node of the graph."""
 
+from typing import TYPE_CHECKING
+
 from sysmlc.ir.kinds import Kind
 
 AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
@@ -14,6 +16,8 @@ class Element:
     """
 
     __slots__ = ("attrs", "id", "kind", "name", "ordinal", "owner", "source")
+
+    attrs: dict[str, AttrValue]
 
     def __init__(
         self,
@@ -31,7 +35,17 @@ class Element:
         self.owner = owner
         self.ordinal = ordinal
         self.source = source
-        self.attrs: dict[str, AttrValue] = {} if attrs is None else attrs
+        if attrs is not None:
+            self.attrs = attrs
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> dict[str, AttrValue]:
+            # Most elements of a large model have no attributes: they get a dict when asked.
+            if name != "attrs":
+                raise AttributeError(name, name=name, obj=self)
+            self.attrs = {}
+            return self.attrs
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or self.id}>"

@@ -152,6 +152,25 @@ class Graph:
             put(self._out[Edge.OWNS], element.owner, element)
         return element
 
+    def new(
+        self, id: str, kind: Kind, name: str, owner: str | None, ordinal: int, source: str
+    ) -> Element | None:
+        """Add a new element below an owner that is there; None when the id is empty or taken.
+
+        The way for front ends that make hundreds of thousands of elements.
+        """
+        if not id or id in self._elements:
+            return None
+        made = self._elements[id] = Element(id, kind, name, owner, ordinal, source)
+        self._fresh.append(made)
+        if owner is not None:
+            owned = self._out[Edge.OWNS]
+            if owner in owned:
+                put(owned, owner, made)
+            else:
+                owned[owner] = made
+        return made
+
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Add an edge unless it is there. Use ``move`` for ownership."""
         if edge is Edge.OWNS:
@@ -162,16 +181,17 @@ class Graph:
         self, edges: Iterable[Edge], sources: Iterable[str], targets: Iterable[Element | None]
     ) -> None:
         """Add many edges; those without a target, or from an element that is not there, are not."""
-        starts = map(self._elements.get, sources)
-        for edge, source, target in zip(edges, starts, targets, strict=True):
+        get, indexes, drawn = self._elements.get, self._out, self._drawn
+        for edge, id, target in zip(edges, sources, targets, strict=True):
+            source = get(id)
             if source is None or target is None:
                 continue
-            out = self._out[edge]
-            if source.id in out or edge in self._in:
+            out = indexes[edge]
+            if id in out or edge not in drawn:
                 self._link(edge, source, target)
             else:
-                out[source.id] = target
-                self._drawn[edge] += (source, target)
+                out[id] = target
+                drawn[edge] += (source, target)
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Remove an edge if it is there. Use ``move`` for ownership."""

@@ -36,6 +36,10 @@ def note_namespaces(context: Context) -> None:
 
 def _application(context: Context, row: int) -> None:
     document = context.document
+    plain = _plain_bases(context, row)
+    if plain:
+        _plain(context, row, plain)
+        return
     bases = _bases(context, row)
     if f"{_BASE}Diagram" in document.attributes[row] or (bases and not _meaningful(context, bases)):
         context.subtree(row, Verdict.IGNORED_NOTATION)
@@ -55,6 +59,38 @@ def _application(context: Context, row: int) -> None:
         context.link(Edge.SUBJECT, element.id, target, at, "subject", is_href)
     _tags(context, element, row)
     _specialities(context, element, row, kept)
+
+
+def _plain_bases(context: Context, row: int) -> dict[str, int]:
+    """Bases of an application that is only attributes: ids and rows; empty for any other."""
+    document, own = context.document, context.lowered.own
+    found: dict[str, int] = {}
+    if document.ends[row] != row + 1:
+        return found
+    for name, value in document.attributes[row].items():
+        if name.startswith(_BASE):
+            at = document.ids.get(value, -1)
+            if at < 0 or not own[at] or name == f"{_BASE}Diagram":
+                return {}
+            found[value] = at
+        elif name.startswith("__EA"):
+            return {}
+    return found
+
+
+def _plain(context: Context, row: int, bases: dict[str, int]) -> None:
+    """What ``_application`` does, for nearly all applications of a large model."""
+    values = context.document.attributes[row]
+    context.verdicts[row] = Verdict.MAPPED
+    places = list(bases.values())
+    element = _element(context, row, context.gids[places[0]])
+    for target in bases:
+        context.link(Edge.SUBJECT, element.id, target, row, "subject")
+    for name, value in values.items():
+        if "}" not in name and not name.startswith(_BASE):
+            element.attrs[f"tag.{name}"] = _tag(context, value)
+    if element.name == "ItemFlow" or "propertyPath" in values:
+        _specialities(context, element, row, [(context.lowered, at) for at in places])
 
 
 def _bases(context: Context, row: int) -> list[_Target]:
@@ -118,12 +154,15 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
     name, namespace = stereotype_of(context, row)
     id = document.id(row)
     known = context.unit.graph_id(document.name, id) if id else ""
-    if not known or known in context.graph:
-        known = derived_id(owner or document.name, f"{name}[{document.ordinals[row]}]")
-    element = Element(known, Kind.APPLICATION, name, owner, document.ordinals[row], document.name)
+    ordinal = document.ordinals[row]
+    add = context.graph.new
+    element = add(known, Kind.APPLICATION, name, owner, ordinal, document.name)
+    if element is None:
+        derived = derived_id(owner or document.name, f"{name}[{ordinal}]")
+        element = Element(derived, Kind.APPLICATION, name, owner, ordinal, document.name)
+        context.graph.add(element)
     element.attrs["stereotype"] = name
     element.attrs["namespace"] = namespace
-    context.graph.add(element)
     context.gids[row] = element.id
     written = document.namespace(row), document.features[row]
     stereotype = context.unit.profiles.find(context.graph, *written)

@@ -163,8 +163,8 @@ def _condition(element: Element, key: str, value: ValueText) -> None:
 
 def references(document: Document, row: int, feature: str) -> list[tuple[str, int, bool]]:
     """Targets of a feature, each with the row that names it and whether it is an href."""
-    written = document.tokens(document.attributes[row].get(feature, ""))
-    found = [(target, row, False) for target in written]
+    written = document.attributes[row].get(feature)
+    found = [(target, row, False) for target in document.tokens(written)] if written else []
     for child in document.children(row, feature):
         href = document.attributes[child].get("href", "")
         target = href or document.idref(child)

@@ -6,6 +6,7 @@ from itertools import islice
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import details, metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.shapes import PASSED_OVER
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -82,7 +83,7 @@ class Context:
         """Add the row's element with its attributes; False where it cannot stand."""
         document = self.document
         owner = self.gids[row]
-        if kind in metaclasses.OWNERS and not self._may_own(owner, kind):
+        if kind in metaclasses.OWNERS and not self.may_own(owner, kind):
             return False
         values = document.attributes[row]
         id = self._id(row, owner, feature)
@@ -101,11 +102,12 @@ class Context:
         if len(values) > DEFAULT_LIMITS.attributes:
             values = self._first_attributes(row, values)
         for name, value in values.items():
-            if name not in _PASSED_OVER and "}" not in name:
+            if name not in PASSED_OVER and "}" not in name:
                 self.attribute(element, row, name, value)
         return True
 
-    def _may_own(self, owner: str, kind: Kind) -> bool:
+    def may_own(self, owner: str, kind: Kind) -> bool:
+        """Whether elements of the kind can stand below the owner."""
         above = self.graph.get(owner)
         return above is not None and above.kind in metaclasses.OWNERS[kind]
 
@@ -189,10 +191,10 @@ class Context:
             self.conditions(value.split(), name)
         elif name in _BOUNDS:
             self.bound(row, _BOUNDS.index(name), bound(value))
-        elif name == "kind" and element.kind in _KINDS:
-            if value != _KINDS[element.kind]:
+        elif name == "kind" and element.kind in _DIVIDED:
+            if value != _DIVIDED[element.kind]:
                 element.attrs["subkind"] = metaclasses.hyphenated(value)
-        elif name not in _PASSED_OVER and name not in v.REDUNDANT and value != v.default(name):
+        elif name not in PASSED_OVER and name not in v.REDUNDANT and value != v.default(name):
             self.keep(element, v.snake(name), value)
 
     def keep(self, element: Element, key: str, value: str) -> None:
@@ -234,9 +236,13 @@ class Context:
         is_reversed: bool = False,
     ) -> None:
         """Leave a reference from an element to an id or href."""
-        self.unit.links.append(
-            Link(edge, source, self.lowered, target, row, feature, is_href, is_reversed)
-        )
+        links = self.unit.links
+        links.begin(self.lowered)
+        if is_href or is_reversed or self.gids[row] != source:
+            lowered = self.lowered
+            links.append(Link(edge, source, lowered, target, row, feature, is_href, is_reversed))
+        else:
+            links.add(edge, target, row)
 
     def link_from(
         self,
@@ -249,7 +255,12 @@ class Context:
         is_href: bool,
     ) -> None:
         """Leave a reference that a row of another document makes."""
-        self.unit.links.append(Link(edge, source, holder, target, row, feature, is_href))
+        links = self.unit.links
+        links.begin(holder)
+        if is_href or holder.gids[row] != source:
+            links.append(Link(edge, source, holder, target, row, feature, is_href))
+        else:
+            links.add(edge, target, row)
 
     def approximate(self, row: int, lost: str) -> None:
         """The row is in the graph without part of its meaning."""
@@ -292,17 +303,8 @@ def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
     return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
 
 
-_HANDLED = frozenset(
-    {"partWithPort", "guard", "event", "value"}
-    | {"firstEvent", "interactionOperator", "messageKind", "messageSort"}
-)
-"""Attributes that the readers of single kinds take themselves."""
-
-_PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}
-"""Attributes that never need a look at the other tables; most of a large file's."""
-
 _BOUNDS = ("lower", "upper")
 """Derived attributes, which Enterprise Architect writes."""
 
-_KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
+_DIVIDED = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
 """Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""

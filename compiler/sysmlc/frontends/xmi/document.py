@@ -2,13 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterator
+from typing import cast
 
 from sysmlc.frontends.xmi import namespaces
-from sysmlc.sources import DEFAULT_LIMITS, Source
-from sysmlc.sources.xml import Parser, parse, parser, too_deep
-
-_DRAWINGS = frozenset({"diagramRepresentation", "filePart"})
-"""Elements of MagicDraw's extensions whose content is only counted: up to 87 % of a file."""
+from sysmlc.frontends.xmi.columns import fill
+from sysmlc.sources import Source
 
 
 class Document:
@@ -104,72 +102,10 @@ class Document:
 def read(source: Source) -> Document:
     """The columns of the file. Raises SourceError."""
     document = Document(source.name)
-    made = parser()
-    declared: dict[str, None] = {}
-    made.StartNamespaceDeclHandler = lambda _prefix, uri: declared.setdefault(uri or "")
-    _fill(document, made, source)
-    parse(source, made)
+    declared = fill(document, source)
     document.declared = tuple(declared)
     _index(document, [uri for uri in declared if namespaces.is_xmi(uri)])
     return document
-
-
-def _fill(document: Document, made: Parser, source: Source) -> None:
-    """Set the handlers that fill the columns; they are called for every element."""
-    tags, attributes, parents = document.tags, document.attributes, document.parents
-    ends, ordinals, texts, drawn = document.ends, document.ordinals, document.texts, document.drawn
-    stack = [-1]
-    limit = DEFAULT_LIMITS.depth
-    skipped = 0
-    hidden: list[str] = []
-
-    def start(tag: str, values: dict[str, str]) -> None:
-        row = len(tags)
-        tags.append(tag)
-        attributes.append(values)
-        parents.append(stack[-1])
-        ends.append(0)
-        ordinals.append(row + skipped)
-        stack.append(row)
-        if len(stack) > limit:
-            too_deep(source, made)
-        if tag in _DRAWINGS:
-            hide(tag)
-
-    def end(_tag: str) -> None:
-        ends[stack.pop()] = len(tags)
-
-    def text(data: str) -> None:
-        if not data.isspace():
-            row = stack[-1]
-            texts[row] = texts[row] + data if row in texts else data
-
-    def hide(tag: str) -> None:
-        hidden.append(tag)
-        made.StartElementHandler = start_hidden
-        made.EndElementHandler = end_hidden
-        made.CharacterDataHandler = None
-
-    def start_hidden(tag: str, _values: dict[str, str]) -> None:
-        nonlocal skipped
-        skipped += 1
-        hidden.append(tag)
-        if len(hidden) > limit:
-            too_deep(source, made)
-
-    def end_hidden(tag: str) -> None:
-        hidden.pop()
-        if hidden:
-            drawn[hidden[0]] += 1
-            return
-        made.StartElementHandler = start
-        made.EndElementHandler = end
-        made.CharacterDataHandler = text
-        end(tag)
-
-    made.StartElementHandler = start
-    made.EndElementHandler = end
-    made.CharacterDataHandler = text
 
 
 def _index(document: Document, spaces: list[str]) -> None:
@@ -181,19 +117,41 @@ def _index(document: Document, spaces: list[str]) -> None:
     document.id_key, document.type_key = f"{xmi}}}id", f"{xmi}}}type"
     document.idref_key = f"{xmi}}}idref"
     _index_types(document)
-    key, ids = document.id_key, document.ids
-    for row, values in enumerate(document.attributes):
-        if key in values:
-            first = ids.setdefault(values[key], row)
-            if first != row:
-                document.repeated.setdefault(values[key], [first]).append(row)
+    _index_ids(document)
 
 
 def _index_types(document: Document) -> None:
     key = document.type_key
-    written = [values.get(key, "") for values in document.attributes]
-    short = {name: name.rpartition(":")[2] for name in dict.fromkeys(written)}
-    document.types = [short[name] for name in written]
+    short = _Short()
+    document.types = [short[values.get(key, "")] for values in document.attributes]
+
+
+class _Short(dict[str, str]):
+    """Names of types without prefix, one string for each name."""
+
+    def __missing__(self, name: str) -> str:
+        short = self[name] = name.rpartition(":")[2]
+        return short
+
+
+def _index_ids(document: Document) -> None:
+    key = document.id_key
+    written = [values.get(key) for values in document.attributes]
+    rows = dict(zip(written, range(len(written)), strict=True))
+    rows.pop(None, None)
+    document.ids = cast("dict[str, int]", rows)
+    if len(rows) < len(written) - written.count(None):
+        _index_repeated(document, written)
+
+
+def _index_repeated(document: Document, written: list[str | None]) -> None:
+    """Of several elements with one id the first has it."""
+    document.ids = {}
+    for row, id in enumerate(written):
+        if id is not None:
+            first = document.ids.setdefault(id, row)
+            if first != row:
+                document.repeated.setdefault(id, [first]).append(row)
 
 
 def _rename(document: Document, namespace: str, to: str) -> None:

@@ -5,6 +5,7 @@ here follows the pattern of its other profiles.
 """
 
 import re
+from functools import cache
 
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.unit import Link
@@ -42,6 +43,7 @@ def _namespace(context: Context, prefix: str) -> str:
     return next((uri for uri in context.document.declared if uri.startswith(start)), start)
 
 
+@cache
 def _spelt(name: str, namespace: str) -> str:
     is_lower = _SYSML.match(namespace) and not name.endswith("Requirement")
     return name[:1].upper() + name[1:] if is_lower else name

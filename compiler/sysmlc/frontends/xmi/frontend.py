@@ -92,13 +92,18 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Hold the cyclic garbage collector: nothing that is made here dies before the end."""
+    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
+
+    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
+    over a large graph again and again costs more than many passes.
+    """
     was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if was_enabled:
+            gc.freeze()
             gc.enable()
 
 

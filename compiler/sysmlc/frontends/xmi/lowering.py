@@ -16,6 +16,7 @@ from sysmlc.frontends.xmi import (
     vocabulary,
 )
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.swift import Swift
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 
 _Reader = Callable[[Context, int], None]
@@ -36,29 +37,31 @@ _TYPES: dict[str, _Reader] = (
 def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
     """Lower one document; stereotype applications and references are left for later."""
     context = Context(unit, lowered, sink)
-    document = lowered.document
-    roots = _roots(context)
     row = 0
-    end = len(document)
-    while row < end:
-        row = _root(context, row) if row in roots else _row(context, row)
+    if namespaces.is_xmi(lowered.document.namespace(0)):
+        context.verdicts[0] = Verdict.MAPPED
+        row = 1
+    _walk(context, row)
     return context
 
 
-def _roots(context: Context) -> frozenset[int]:
-    document = context.document
-    if namespaces.is_xmi(document.namespace(0)):
-        context.verdicts[0] = Verdict.MAPPED
-        return frozenset({0, *document.children(0)})
-    return frozenset({0})
+def _walk(context: Context, row: int) -> None:
+    """All rows from here on; roots are the first row and what is right below ``xmi:XMI``."""
+    parents, above_roots = context.document.parents, row - 1
+    swift = Swift(context, _FEATURES, _TYPES)
+    end = len(parents)
+    while row < end:
+        if parents[row] == above_roots:
+            row = _root(context, row)
+            continue
+        following = swift.rows(row, above_roots)
+        row = following if following > row else _row(context, row)
 
 
 def _root(context: Context, row: int) -> int:
     document = context.document
     namespace = document.namespace(row)
     feature = document.features[row]
-    if row == 0 and context.verdicts[0] is not None:
-        return 1
     if namespaces.is_uml(namespace):
         return _element(context, row, document.types[row] or feature, feature)
     if namespaces.is_settings(namespace) and not _names_package(context, row):

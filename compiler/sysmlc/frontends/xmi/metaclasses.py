@@ -1,6 +1,7 @@
 """Tables: what the metaclasses of UML become in the graph (docs/ir.md)."""
 
 import re
+from functools import cache
 
 from sysmlc.ir import Kind
 
@@ -225,7 +226,6 @@ DEFAULT_TYPES = {
     "roleBinding": "Dependency",
     "substitution": "Substitution",
     "ownedParameterSet": "ParameterSet",
-    "variable": "Variable",
     "ownedTemplateSignature": "TemplateSignature",
     "templateBinding": "TemplateBinding",
     "parameterSubstitution": "TemplateParameterSubstitution",
@@ -326,6 +326,7 @@ def _action(type_name: str) -> str:
     return _ACTIONS.get(type_name) or hyphenated(type_name.removesuffix("Action"))
 
 
+@cache
 def hyphenated(name: str) -> str:
     """``camelCase`` as ``camel-case``."""
     return _CAPITAL.sub(r"-\1", name).lower()

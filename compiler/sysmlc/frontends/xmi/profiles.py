@@ -1,6 +1,7 @@
 """From the namespace of a stereotype application to the stereotype that it applies."""
 
 import re
+from functools import cache
 
 from sysmlc.ir import Element, Graph, Kind
 
@@ -37,6 +38,7 @@ class Profiles:
         return found
 
 
+@cache
 def mangled(name: str) -> str:
     """A stereotype's name as XML element names can hold it."""
     return re.sub(r"\W", "_", name)

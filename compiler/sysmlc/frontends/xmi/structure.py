@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.shapes import may_be_value
 from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
@@ -17,15 +18,11 @@ _Reader = Callable[[Context, int], None]
 
 def is_value(context: Context, row: int, feature: str) -> bool:
     """Whether the row holds a value, not an element of the same feature (a pin, a constraint)."""
-    type_name = context.document.types[row]
-    if feature in _ALWAYS:
-        return True
-    if type_name:
-        return type_name in metaclasses.VALUE_TYPES
-    if feature == "value":
+    told = may_be_value(feature, context.document.types[row])
+    if told is None:
         owner = context.owner(row)
         return owner is not None and (owner.kind is Kind.SLOT or owner.subkind == "value")
-    return feature not in metaclasses.DEFAULT_TYPES
+    return told
 
 
 def is_text(context: Context, row: int, feature: str) -> bool:
@@ -286,20 +283,6 @@ def _argument(context: Context, row: int) -> None:
 _BOUNDS: dict[str, AttrValue] = {"": 0, "0": 0, "1": 1, "*": "*"}
 _WHOLE = frozenset({"LiteralInteger", "LiteralUnlimitedNatural"})
 """Nearly all bounds are these: a fifth of the elements of a large activity model."""
-
-_ALWAYS = frozenset(
-    {
-        "lowerValue",
-        "upperValue",
-        "lower",
-        "upper",
-        "defaultValue",
-        "joinSpec",
-        "upperBound",
-        "specification",
-    }
-    | {"clause", "handler", "endData", "weight", "nameExpression"}
-)
 
 FEATURES: dict[str, _Reader] = {
     "lowerValue": _lower,

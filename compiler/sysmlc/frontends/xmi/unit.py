@@ -1,5 +1,7 @@
 """All files of one compile unit: ids that are the same for every order of files, references."""
 
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
@@ -40,13 +42,84 @@ class Link(NamedTuple):
     is_reversed: bool = False
 
 
+class Links:
+    """Links in the order in which they were found.
+
+    Nearly all lead from the element of a row to a local id: they are columns of edge, target
+    and row, and ``files`` says where the links of another file begin. Those that lead to an
+    href or backwards, or leave another element, are in ``rare``, by number.
+    """
+
+    __slots__ = ("edges", "files", "rare", "rows", "targets")
+
+    def __init__(self) -> None:
+        self.edges: list[Edge] = []
+        self.targets: list[str] = []
+        self.rows: list[int] = []
+        self.files: list[tuple[int, Lowered]] = []
+        self.rare: dict[int, Link] = {}
+
+    def begin(self, lowered: Lowered) -> None:
+        """What is added from here on is in this file, unless it is rare."""
+        if not self.files or self.files[-1][1] is not lowered:
+            self.files.append((len(self.edges), lowered))
+
+    def __iter__(self) -> Iterator[Link]:
+        return map(self.__getitem__, range(len(self.edges)))
+
+    def __getitem__(self, number: int) -> Link:
+        rare = self.rare.get(number)
+        if rare is not None:
+            return rare
+        lowered = next(file for start, file in reversed(self.files) if start <= number)
+        edge, target, row = self.edges[number], self.targets[number], self.rows[number]
+        feature = _feature(lowered.document, row, target)
+        return Link(edge, lowered.gids[row], lowered, target, row, feature)
+
+    def __setitem__(self, number: int, link: Link) -> None:
+        self.rare[number] = link
+
+    def add(self, edge: Edge, target: str, row: int) -> None:
+        """Add a link from the element of a row of the file that was begun to a local id."""
+        self.edges.append(edge)
+        self.targets.append(target)
+        self.rows.append(row)
+
+    def append(self, link: Link) -> None:
+        """Add a link, whatever it is."""
+        self.rare[len(self.edges)] = link
+        self.edges.append(link.edge)
+        self.targets.append(link.target)
+        self.rows.append(link.row)
+
+    def runs(self) -> Iterator[tuple[int, int, Lowered]]:
+        """First and last number of each run of links in one file."""
+        last = (len(self.edges), None)
+        for (start, lowered), (end, _) in pairwise([*self.files, last]):
+            if lowered is not None:
+                yield start, end, lowered
+
+    def clear(self) -> None:
+        """Forget all links."""
+        for column in (self.edges, self.targets, self.rows, self.files, self.rare):
+            column.clear()
+
+
+def _feature(document: Document, row: int, target: str) -> str:
+    """The attribute of the row that names the target; without one the row is the reference."""
+    for name, value in document.attributes[row].items():
+        if value == target and "}" not in name:
+            return name
+    return document.features[row]
+
+
 class Unit:
     """The documents of a compile unit, and the references between their elements."""
 
     def __init__(self, documents: list[Document], graph: Graph) -> None:
         self.graph = graph
         self.files = [Lowered(document) for document in documents]
-        self.links: list[Link] = []
+        self.links = Links()
         self.profiles = Profiles()
         self.library: dict[str, str] = {}
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
@@ -54,12 +127,12 @@ class Unit:
         for file in self.files if len(self.files) > 1 else ():
             for id in file.document.ids:
                 self._holders.setdefault(id, []).append(file)
-        self._clashes = {id for id, holders in self._holders.items() if len(holders) > 1}
-        self._clashes.update(e.id for e in graph if any(e.id in d.ids for d in documents))
+        self.clashes = {id for id, holders in self._holders.items() if len(holders) > 1}
+        self.clashes.update(e.id for e in graph if any(e.id in d.ids for d in documents))
 
     def graph_id(self, file: str, id: str) -> str:
         """Id in the graph of an element with the id ``id`` in the file."""
-        return f"{file}#{id}" if id in self._clashes else id
+        return f"{file}#{id}" if id in self.clashes else id
 
     def find(self, lowered: Lowered, target: str, is_href: bool) -> tuple[Lowered, int] | None:
         """File and row that an id or href means, if a file of the unit has it."""
@@ -113,18 +186,39 @@ class Unit:
 
     def flush(self) -> None:
         """Give all references to the graph, in the order in which they were found."""
-        for link in self.links:
-            edge, source, lowered, written, row, _, is_href, is_reversed = link
-            at = lowered.document.ids.get(written, -1)
-            if at >= 0 and lowered.own[at] and not is_href and not is_reversed:
-                ordinal = self._ordinal(source, lowered, row)
-                found = Reference(edge, source, lowered.gids[at], Kind.CLASS, "", ordinal)
-                self.graph.refer(found)
-                continue
-            target = self.target_id(lowered, written, is_href)
-            if target is not None and not self._is_loose(link, target):
-                self.graph.refer(self._reference(link, target))
+        for start, end, lowered in self.links.runs():
+            self._flush(start, end, lowered)
         self.links.clear()
+
+    def _flush(self, start: int, end: int, lowered: Lowered) -> None:
+        links, pending = self.links, self.graph.pending
+        rare, edges, targets, rows = links.rare, links.edges, links.targets, links.rows
+        row_of, ordinals = lowered.document.ids.get, lowered.document.ordinals
+        own, gids = lowered.own, lowered.gids
+        add_edge, add_source = pending.edges.append, pending.sources.append
+        add_target, add_ordinal = pending.targets.append, pending.ordinals.append
+        for number in range(start, end):
+            at = row_of(targets[number], -1)
+            if at >= 0 and own[at] and number not in rare:
+                row = rows[number]
+                add_edge(edges[number])
+                add_source(gids[row])
+                add_target(gids[at])
+                add_ordinal(ordinals[row])
+                continue
+            link = links[number]
+            if at >= 0 and own[at] and link.is_reversed and not link.is_href:
+                add_edge(link.edge)
+                add_source(gids[at])
+                add_target(link.source)
+                add_ordinal(ordinals[link.row])
+            else:
+                self._refer(link)
+
+    def _refer(self, link: Link) -> None:
+        target = self.target_id(link.lowered, link.target, link.is_href)
+        if target is not None and not self._is_loose(link, target):
+            self.graph.refer(self._reference(link, target))
 
     def _is_loose(self, link: Link, target: str) -> bool:
         """Whether it leads nowhere inside what a tool keeps beside the model."""
