@@ -214,6 +214,28 @@ def test_uml_before_2_4_says_in_events_what_is_sent_and_destroyed():
     assert reading.graph["x"].subkind == "destruction"
 
 
+def test_uml_2_0_had_other_names():
+    reading = read(
+        papyrus(
+            """
+  <packagedElement xmi:type="uml:Interaction" xmi:id="sd"><lifeline xmi:id="l"/>
+    <fragment xmi:type="uml:EventOccurrence" xmi:id="o" covered="l"/>
+    <fragment xmi:type="uml:ExecutionOccurrence" xmi:id="x" covered="l" start="o" finish="s"/>
+    <fragment xmi:type="uml:InteractionOccurrence" xmi:id="u" refersTo="sd" covered="l"/>
+    <fragment xmi:type="uml:Stop" xmi:id="s" covered="l"/></packagedElement>"""
+        )
+    )
+    graph = reading.graph
+    assert reading.findings == []
+    assert [(e.kind, e.subkind) for e in graph.owned(graph["sd"])] == [
+        (Kind.LIFELINE, ""),
+        (Kind.OCCURRENCE, "message"),
+        (Kind.EXECUTION, "behavior"),
+        (Kind.FRAGMENT, "ref"),
+        (Kind.OCCURRENCE, "destruction"),
+    ]
+
+
 def test_an_operand_without_a_fragment_is_not_read():
     reading = read(
         papyrus(

@@ -153,6 +153,22 @@ def test_a_template_of_another_file_is_bound_by_its_signature():
     assert targets(reading, "s3", Edge.INSTANCE_OF) == ["t"]
 
 
+def test_a_name_is_put_together_of_expressions():
+    """UML 2.5.1, 7.4.3: in templates the name depends on what the parameters stand for."""
+    reading = read(
+        papyrus(
+            """
+  <packagedElement xmi:type="uml:Class" xmi:id="k" name="K">
+    <nameExpression xmi:type="uml:StringExpression" xmi:id="e">
+      <operand xmi:type="uml:LiteralString" xmi:id="o1" value="SetOf"/>
+      <subExpression xmi:type="uml:StringExpression" xmi:id="s">
+        <operand xmi:type="uml:LiteralString" xmi:id="o2" value="Pallet"/></subExpression>
+    </nameExpression></packagedElement>"""
+        )
+    )
+    assert reading.graph["k"].attrs["name_expression"] == "SetOfPallet"
+
+
 def test_connection_points_protocols_and_parameter_sets():
     reading = read(
         papyrus(

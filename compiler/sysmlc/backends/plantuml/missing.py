@@ -79,6 +79,8 @@ OTHER_KINDS = (
     Kind.QUANTITY_KIND,
     Kind.VIEW,
     Kind.GENERAL_ORDERING,
+    Kind.GENERALIZATION_SET,
+    Kind.PARAMETER_SET,
     Kind.STEREOTYPE,
     Kind.DOCUMENT,
 )
