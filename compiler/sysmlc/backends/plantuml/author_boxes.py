@@ -52,7 +52,7 @@ def is_inside(choice: Choice, relation: Relation, boxes: set[str]) -> bool:
     edge = _ARROWS.get(relation.arrow)
     if edge is not None and not relation.shows:
         return choice.shows_edge(edge, relation.source, relation.target)
-    return not relation.shows or not choice.ids.isdisjoint(relation.shows)
+    return not relation.shows or relation.shows[0] in choice.ids
 
 
 def _anchors(graph: Graph) -> Iterator[Relation]:

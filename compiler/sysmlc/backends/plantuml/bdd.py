@@ -259,8 +259,9 @@ def box(
             rows.setdefault(title, []).extend(_rows(graph, feature))
             shows += [part.id for part in _all(graph, feature)]
             shows += in_rows.get(feature.id, ())
-    rows["allocations"], allocations = allocated.of_block(graph, item)
-    shows += allocations
+    if features is None:
+        rows["allocations"], allocations = allocated.of_block(graph, item)
+        shows += allocations
     compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if rows.get(t))
     measures = measured.rows(graph, item)
     if measures:
