@@ -16,7 +16,7 @@ from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, compile_text, outputs
 from sysmlc.driver import Request, compile_model, select_backends
 
-DEFAULT = ("contracts", "recipe", "plantuml")
+DEFAULT = ("contracts", "recipe", "plantuml", "reqtable")
 
 
 @pytest.mark.parametrize("dialect", WRITERS)
