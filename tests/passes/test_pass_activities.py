@@ -303,6 +303,21 @@ def test_a_test_that_is_the_literal_true_is_the_else_of_a_conditional_node():
     ]
 
 
+def test_the_pin_that_decides_tells_which_action_of_a_test_says_whether_it_is_true():
+    decided = """    Action t3 "t3" subkind="value" value=true
+      Pin p "p" direction="out"
+"""
+    clauses = 'clauses=[[["t1", "t3"], ["b1"]], [["t2"], ["b2"]]] clause_outputs=[{}, [[], []]]'
+    text = CONDITIONAL.replace('clauses=[[["t1"], ["b1"]], [["t2"], ["b2"]]]', clauses) + decided
+    known = only(text.replace("{}", '[["p"], []]'))
+    assert not any("input" in variable.name for variable in known.inputs)
+    free = only(text.replace("{}", "[[], []]"))
+    assert [v.name for v in free.inputs if "input" in v.name] == [
+        "input_test_1_case",
+        "input_test_2_case",
+    ]
+
+
 def test_the_nodes_of_a_sequence_node_follow_each_other():
     text = sketch("initial i\nstructured s\n  action x\n  action y\ni -> s")
     graph = only(text.replace('subkind="structured"', 'subkind="sequence"'))

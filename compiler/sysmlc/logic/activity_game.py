@@ -37,6 +37,7 @@ class Game:
         self._quiets = dict(graph.quiets)
         self._complete: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
+        self._endings: dict[str, Formula] = {}
 
     # -- nodes -----------------------------------------------------------------------------
 
@@ -187,9 +188,10 @@ class Game:
 
     def ended(self, region: str) -> Formula:
         """The region, or one around it, ends."""
-        return f.either(
-            self.complete(ACTIVITY_REGION), *map(self._ends, self.graph.regions_around(region))
-        )
+        if region not in self._endings:
+            around = map(self._ends, self.graph.regions_around(region))
+            self._endings[region] = f.either(self.complete(ACTIVITY_REGION), *around)
+        return self._endings[region]
 
     def interruptions(self, region: str, members: set[str]) -> Iterator[Formula]:
         """Interruptions of what ``members`` of a region are in."""

@@ -48,19 +48,40 @@ def _test(draft: Draft, node: Element, part: Part | None, role: str) -> tuple[st
     """A decision after a test, and the guard that the test is true."""
     text = f"{role} is true"
     decision = _inner(draft, node, f"decision after {role}", NodeKind.DECISION)
-    value = None if part is None else _constant(draft, part)
+    value = _constant(draft, node, part, role)
     if value is not None:
         return decision, Guard(text, f.TRUE if value else f.FALSE)
     return decision, _answer(draft, node, role, text)
 
 
-def _constant(draft: Draft, part: Part) -> bool | None:
-    """The value of a test that is nothing but a literal: ``else``, ``while (true)``."""
-    found = [draft.graph[id] for id in part.nodes if id in draft.graph]
-    works = [one for one in found if one.kind in (Kind.ACTION, Kind.STRUCTURED)]
-    values = [one.attrs.get("value") for one in works if one.subkind == "value"]
-    is_literal = len(works) == len(values) == 1
-    return {"true": True, "false": False}.get(str(values[0]).lower()) if is_literal else None
+def _constant(draft: Draft, node: Element, part: Part | None, role: str) -> bool | None:
+    """The value of a test that is a literal: ``else``, ``while (true)``."""
+    decider = draft.graph.get(_decider(node, role))
+    if decider is not None:
+        return _literal(draft.graph.owner(decider))
+    works = [
+        one
+        for one in map(draft.graph.get, part.nodes if part else ())
+        if one is not None and one.kind in (Kind.ACTION, Kind.STRUCTURED)
+    ]
+    return _literal(works[0]) if len(works) == 1 else None
+
+
+def _decider(node: Element, role: str) -> str:
+    """The id of the pin whose value a test is about, as far as the model names one."""
+    if node.subkind == "loop":
+        return str(node.attrs.get("decider") or "")
+    found = node.attrs.get("clause_outputs")
+    place = int(role.split()[1]) - 1
+    clause = found[place] if isinstance(found, tuple) and len(found) > place else ()
+    pins = clause[0] if isinstance(clause, tuple) and clause else ()
+    return str(pins[0]) if isinstance(pins, tuple) and pins else ""
+
+
+def _literal(action: Element | None) -> bool | None:
+    if action is None or action.subkind != "value":
+        return None
+    return {"true": True, "false": False}.get(str(action.attrs.get("value")).lower())
 
 
 def _add_loop(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
