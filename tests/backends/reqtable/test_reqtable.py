@@ -2,6 +2,7 @@
 
 import csv
 import io
+from pathlib import Path
 
 import pytest
 
@@ -10,6 +11,7 @@ from sysmlc.backends.reqtable import BACKEND, rules
 from sysmlc.backends.reqtable.table import Cell
 from sysmlc.backends.reqtable.text import markdown_cell
 from sysmlc.diagnostics import Sink
+from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir.text import parse_text
 from sysmlc.output import Output
 from sysmlc.passes import pipeline
@@ -230,3 +232,10 @@ def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
     assert list(files) == ["requirements/Plant.requirements.csv"]
     (tmp_path / "requirements.md.j2").write_text(rules.BAD_TEMPLATE.right, encoding="utf-8")
     assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant"
+
+
+def test_the_tables_of_an_example(golden):
+    example = Path(__file__).parents[3] / "examples/lego-recipe/lego-recipe.uml"
+    made = compile_model(Request((example,), backends=tuple(select_backends(("reqtable",)))))
+    files = {one.path: one.text for one in made.written() if "requirements/" in one.path}
+    golden.check("reqtable/lego", {path.rpartition("/")[2]: files[path] for path in files})
