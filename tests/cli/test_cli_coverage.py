@@ -147,6 +147,13 @@ def test_several_files_have_a_table_of_their_own_and_none_counts_twice(plant):
     assert [line.split()[0] for line in lines[2:6]] == ["file", "plant.uml", "good.uml", "total"]
 
 
+def test_a_long_name_leaves_room_for_the_numbers(plant):
+    plant.write("good.uml", '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>')
+    plant.write(f"a{'x' * 90}.uml", PLANT)
+    done = plant.sysmlc("coverage", "good.uml", f"a{'x' * 90}.uml")
+    assert done.stdout.splitlines()[3].startswith(f"a{'x' * 40}...{'x' * 16}.uml  ")
+
+
 def test_a_damaged_file_is_reported_and_exit_code_1(plant):
     plant.write("bad.uml", PLANT[:400])
     done = plant.sysmlc("coverage", "plant.uml", "bad.uml", "--format", "json")

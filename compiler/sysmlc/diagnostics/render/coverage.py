@@ -27,6 +27,7 @@ _COLUMNS = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
 _TITLES = {Verdict.IGNORED_NOTATION: "notation"}
 _COLORS = {Verdict.UNSUPPORTED: "31", Verdict.APPROXIMATED: "33", Verdict.EXTERNAL: "36"}
 _EXAMPLES = 3
+_WIDTH = 64
 
 
 def text(files: Sequence[FileReport], *, color: bool = False, every: bool = False) -> str:
@@ -52,11 +53,16 @@ def _percent(tenths: int) -> str:
 def _tables(files: Sequence[FileReport], color: bool) -> Iterator[str]:
     total = added(file.totals for file in files)
     if len(files) > 1:
-        rows = [(visible(file.file), file.totals) for file in worst_first(files)]
+        rows = [(_short(visible(file.file)), file.totals) for file in worst_first(files)]
         yield _table("file", [*rows, ("total", total)], color)
     types = [(visible(one.name), one.counts) for one in type_reports(files)]
     shares = ["per cent", "", *map(_share, (tenths(total)[v.value] for v in _COLUMNS)), "100.0"]
     yield _table("type", [*types, ("total", total)], color, shares)
+
+
+def _short(name: str) -> str:
+    """The name for a column; entries of archives have names of 150 characters."""
+    return name if len(name) <= _WIDTH else f"{name[: _WIDTH - 23]}...{name[-20:]}"
 
 
 def _share(tenths: int) -> str:
@@ -104,17 +110,18 @@ def _details(files: Sequence[FileReport], color: bool, every: bool) -> Iterator[
         groups: dict[tuple[Verdict, str, str], list[LostElement]] = {}
         for lost in one.losses:
             if lost.loss.verdict in LOSSES:
-                code = f"{lost.loss.rule.code} {lost.loss.rule.name}" if lost.loss.rule else ""
+                rule = lost.loss.rule
+                code = f" [{rule.code} {rule.name}]" if rule else ""
                 groups.setdefault((lost.loss.verdict, code, _general(lost)), []).append(lost)
         for (verdict, code, reason), members in groups.items():
             word = _painted(verdict.value, _COLORS[verdict]) if color else verdict.value
-            head = f"{visible(one.name)}: {len(members)} {word}, {visible(reason)} [{code}]"
+            head = f"{visible(one.name)}: {len(members)} {word}, {visible(reason)}{code}"
             yield "\n".join([head, *_examples(members, every)])
 
 
 def _general(lost: LostElement) -> str:
     """The reason without what differs from element to element."""
-    is_external = lost.loss.verdict is Verdict.EXTERNAL
+    is_external = lost.loss.verdict is Verdict.EXTERNAL and lost.loss.rule is not None
     return "stands for what is in no file of the unit" if is_external else lost.loss.reason
 
 

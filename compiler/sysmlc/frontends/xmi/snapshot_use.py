@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
+from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.profiles import last_segment, mangled
 from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
@@ -100,6 +101,12 @@ def account(snapshots: Snapshots, files: Iterable[Source], unit: Unit, coverage:
                 coverage.file(name).count(type_name, Verdict.MAPPED, mapped)
             if number > mapped:
                 coverage.file(name).count(type_name, Verdict.EXTERNAL, number - mapped)
+                if coverage.is_detailed:
+                    rest = Loss(type_name, Verdict.EXTERNAL, 0, number - mapped, reason=_UNUSED)
+                    coverage.file(name).losses.append(rest)
+
+
+_UNUSED = "belongs to a used project, and no model needs it"
 
 
 def _written(entry: Entry) -> str:
