@@ -38,12 +38,15 @@ def compile_both(
 def graph_changes(one: Compilation, other: Compilation) -> list[Change]:
     """Differences of the graphs that are not of the dialect."""
     ignored = {"id", "source", "trace", *OF_THE_DIALECT}
-    return [change for change in diff(one.graph, other.graph, ignored) if not _of_dialect(change)]
+    return [change for change in diff(one.graph, other.graph, ignored) if not of_dialect(change)]
 
 
-def _of_dialect(change: Change) -> bool:
-    """Papyrus applies SysML package by package and MagicDraw once; the tools' libraries have other
-    names; MagicDraw notes the path of a connector end also where partWithPort says it."""
+def of_dialect(change: Change) -> bool:
+    """Whether a difference is of the dialect, not of the model.
+
+    Papyrus applies SysML package by package and MagicDraw once; the tools' libraries have other
+    names; MagicDraw notes the path of a connector end also where partWithPort says it.
+    """
     is_library = "::" not in change.element or change.element.startswith("SysML::")
     stand_in = change.detail in ("Profile", "Package") and is_library
     path = change.detail == "Application" and change.element.endswith("::NestedConnectorEnd")

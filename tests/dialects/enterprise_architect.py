@@ -167,7 +167,7 @@ class _Writer:
         elements = etree.SubElement(extension, "elements")
         connectors = etree.SubElement(extension, "connectors")
         etree.SubElement(extension, "primitivetypes")
-        for one in model.iter():
+        for one in filter(id_of, model.iter()):
             is_element = one.tag in ("packagedElement", "ownedBehavior", "node", "subvertex")
             if one is model or is_element or _type(one) == "uml:Port":
                 kind = "connector" if _type(one) in _CONNECTORS else "element"
@@ -188,7 +188,7 @@ class _Writer:
         etree.SubElement(made, "project", author="sysmlc", version="1.0")
         self._repeat_stereotypes(one, made)
         for child in one:
-            if _type(child) in _FEATURES:
+            if id_of(child) and _type(child) in _FEATURES:
                 plural, singular = _FEATURES[_type(child)]
                 box = made.find(plural)
                 box = etree.SubElement(made, plural) if box is None else box

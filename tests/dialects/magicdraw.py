@@ -296,7 +296,10 @@ def _outside_reference(source: Element, made: Element) -> None:
 
 
 def standard(href: str) -> tuple[str, str]:
-    """What MagicDraw calls an element of the standards' files: where it is, and its path."""
+    """What MagicDraw calls an element of the standards' files: where it is, and its path.
+
+    Of other files nothing is known, and the path is empty.
+    """
     primitives = "UML Standard Profile::UML2 Metamodel::PrimitiveTypes"
     if href.startswith(_PRIMITIVES):
         name = href.removeprefix(_PRIMITIVES)
@@ -311,4 +314,4 @@ def standard(href: str) -> tuple[str, str]:
         return f"{SYSML}.xmi#_11_5EAPbeta{number}", "::".join(["SysML", *names])
     if href.startswith(_SYSML_PROFILE):
         return f"{SYSML}.xmi#_SysML__0", "SysML"
-    return href, href.partition("#")[0].rpartition("/")[2].partition(".")[0]
+    return href, ""

@@ -1,13 +1,12 @@
 """Applications of stereotypes: siblings of the model that name their base elements."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi import application_tags, metaclasses
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.enterprise_architect_profiles import stereotype_of
 from sysmlc.frontends.xmi.unit import Lowered
-from sysmlc.frontends.xmi.values import value_of
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 
 _BASE = "base_"
@@ -57,7 +56,7 @@ def _application(context: Context, row: int) -> None:
     element = _element(context, row, kept[0][0].gids[kept[0][1]] if kept else None)
     for target, at, is_href in bases:
         context.link(Edge.SUBJECT, element.id, target, at, "subject", is_href)
-    _tags(context, element, row)
+    application_tags.read(context, element, row)
     _specialities(context, element, row, kept)
 
 
@@ -86,9 +85,7 @@ def _plain(context: Context, row: int, bases: dict[str, int]) -> None:
     element = _element(context, row, context.gids[places[0]])
     for target in bases:
         context.link(Edge.SUBJECT, element.id, target, row, "subject")
-    for name, value in values.items():
-        if "}" not in name and not name.startswith(_BASE):
-            element.attrs[f"tag.{name}"] = _tag(context, value)
+    application_tags.read(context, element, row)
     if element.name == "ItemFlow" or "propertyPath" in values:
         _specialities(context, element, row, [(context.lowered, at) for at in places])
 
@@ -146,7 +143,7 @@ def _on_folded(context: Context, row: int, folded: list[tuple[str, str]]) -> Non
     element.attrs["on"] = folded[0][1]
     for holder, _ in folded:
         context.graph.connect(Edge.REFERENCES, element, holder)
-    _tags(context, element, row)
+    application_tags.read(context, element, row)
 
 
 def _element(context: Context, row: int, owner: str | None) -> Element:
@@ -169,50 +166,6 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
     if stereotype is not None:
         context.graph.connect(Edge.INSTANCE_OF, element, stereotype)
     return element
-
-
-def _tags(context: Context, element: Element, row: int) -> None:
-    document = context.document
-    for name, value in document.attributes[row].items():
-        if "}" not in name and not name.startswith((_BASE, "__EA")):
-            element.attrs[f"tag.{name}"] = _tag(context, value)
-    collected: dict[str, list[AttrValue]] = {}
-    for child in document.children(row):
-        feature = document.features[child]
-        if not feature.startswith(_BASE):
-            collected.setdefault(feature, []).append(_child_tag(context, child))
-    for feature, values in collected.items():
-        element.attrs[f"tag.{feature}"] = values[0] if len(values) == 1 else tuple(values)
-
-
-def _tag(context: Context, value: str) -> AttrValue:
-    tokens = value.split()
-    ids = context.document.ids
-    if not tokens or not all(token in ids for token in tokens):
-        return value
-    found = [_meant(context, token) for token in tokens]
-    return found[0] if len(found) == 1 else tuple(found)
-
-
-def _meant(context: Context, token: str) -> AttrValue:
-    """Id of the element that a local id means; what a value specification says is its value."""
-    row = context.document.ids[token]
-    if not context.lowered.own[row] and context.document.types[row] in metaclasses.VALUE_TYPES:
-        return value_of(context.document, row).value
-    return context.unit.target_id(context.lowered, token, False) or token
-
-
-def _child_tag(context: Context, child: int) -> AttrValue:
-    document = context.document
-    href = document.attributes[child].get("href", "")
-    target = href or document.idref(child)
-    if target:
-        if not href and target in document.ids:
-            return _meant(context, target)
-        if href and context.unit.find(context.lowered, href, True) is None:
-            context.verdicts[child] = Verdict.EXTERNAL
-        return context.unit.target_id(context.lowered, target, bool(href)) or target
-    return document.texts.get(child, document.attributes[child].get("value", ""))
 
 
 def _specialities(

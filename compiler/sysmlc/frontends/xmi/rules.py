@@ -86,3 +86,14 @@ APPROXIMATED = rule(
     wrong="<weight xmi:type='uml:OpaqueExpression'><body>a</body><body>b</body></weight>",
     right="<weight xmi:type='uml:OpaqueExpression'><body>a</body></weight>",
 )
+LOST_TAG = rule(
+    "SM118",
+    "tag-names-missing-element",
+    Severity.WARNING,
+    "tag '{tag}' of stereotype '{stereotype}' names '{target}', which does not exist",
+    why="The value is the id of an element that the file does not have: it was deleted, or it is "
+    "in another file. What the stereotype says of it is lost.",
+    help="choose the value again in the modelling tool, or remove it",
+    wrong="<Plant:Cell base_Class='_a' robot='_Zk3cQPoREe2dJ8u5Yq1m4w'/>",
+    right="<Plant:Cell base_Class='_a' robot='_b'/>",
+)

@@ -1,0 +1,90 @@
+"""Tagged values of applications: texts, values, and ids of the elements that they name."""
+
+import re
+
+from sysmlc.diagnostics import Subject, Verdict
+from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.rules import LOST_TAG
+from sysmlc.frontends.xmi.values import value_of
+from sysmlc.ir import AttrValue, Element
+
+_NOT_TAGS = ("base_", "__EA")
+_MADE_BY_TOOLS = re.compile(
+    r"_[\w-]{22}|_\w+_\d+_\d+_\d+|EA(ID|PK)_[0-9A-F]{8}_\w+|eee_\d+_\d+_\d+", re.ASCII
+)
+"""Ids as Eclipse, MagicDraw and Enterprise Architect make them: nobody writes such text."""
+
+
+def read(context: Context, element: Element, row: int) -> None:
+    """Put what the application in the row says into the element, as attributes ``tag.<name>``."""
+    document = context.document
+    for name, value in document.attributes[row].items():
+        if "}" not in name and not name.startswith(_NOT_TAGS):
+            element.attrs[f"tag.{name}"] = _tag(context, element, row, name, value)
+    collected: dict[str, list[AttrValue]] = {}
+    for child in document.children(row):
+        feature = document.features[child]
+        if not feature.startswith(_NOT_TAGS):
+            collected.setdefault(feature, []).append(_child_tag(context, element, child))
+    for feature, values in collected.items():
+        element.attrs[f"tag.{feature}"] = values[0] if len(values) == 1 else tuple(values)
+
+
+def _tag(context: Context, element: Element, row: int, name: str, value: str) -> AttrValue:
+    tokens = value.split()
+    ids = context.document.ids
+    if all(token in ids for token in tokens):
+        known = tokens
+    else:
+        known = _existing(context, element, row, name, tokens)
+    found = [_meant(context, token) for token in known]
+    return value if not found else found[0] if len(tokens) == 1 else tuple(found)
+
+
+def _existing(
+    context: Context, element: Element, row: int, name: str, tokens: list[str]
+) -> list[str]:
+    """Ids of elements, when all tokens are ids; those that lead nowhere are reported."""
+    missing = [token for token in tokens if not _is_known(context, token)]
+    if not all(_MADE_BY_TOOLS.fullmatch(token) for token in missing):
+        return []
+    for token in missing:
+        _report(context, element, row, name, token)
+    return [token for token in tokens if token not in missing]
+
+
+def _child_tag(context: Context, element: Element, child: int) -> AttrValue:
+    document = context.document
+    href, id = document.attributes[child].get("href", ""), document.idref(child)
+    if href:
+        if context.unit.find(context.lowered, href, True) is None:
+            context.verdicts[child] = Verdict.EXTERNAL
+        return context.unit.target_id(context.lowered, href, True) or href
+    if id:
+        if not _is_known(context, id):
+            _report(context, element, child, document.features[child], id)
+        return _meant(context, id)
+    return document.texts.get(child, document.attributes[child].get("value", ""))
+
+
+def _is_known(context: Context, id: str) -> bool:
+    return id in context.document.ids or (
+        _MADE_BY_TOOLS.fullmatch(id) is not None
+        and context.unit.find(context.lowered, id, False) is not None
+    )
+
+
+def _meant(context: Context, id: str) -> AttrValue:
+    """Id of the element that a local id means; what a value specification says is its value."""
+    row = context.document.ids.get(id, -1)
+    is_own = row < 0 or context.lowered.own[row]
+    if not is_own and context.document.types[row] in metaclasses.VALUE_TYPES:
+        return value_of(context.document, row).value
+    return context.unit.target_id(context.lowered, id, False) or id
+
+
+def _report(context: Context, element: Element, row: int, tag: str, target: str) -> None:
+    name = context.graph.qualified_name(element)
+    subject = Subject(name, element.id, context.place(row))
+    context.sink.report(LOST_TAG, subject, tag=tag, stereotype=element.name, target=target)
