@@ -113,3 +113,54 @@ def test_strict_input_makes_unsupported_content_an_error(tmp_path):
     (found,) = [f for f in made.diagnostics if f.rule.name == "unsupported-content"]
     assert unsupported == 1
     assert found.message.startswith("1 of the ")
+
+
+@pytest.mark.parametrize(
+    "place", ["work/Drives/lib/drives.uml", "work/Plant/Drives/lib/drives.uml"]
+)
+def test_files_of_an_eclipse_workspace_are_found_by_their_project(tmp_path, place):
+    model(tmp_path / place, "lib", "Library")
+    href = "platform:/resource/Drives/lib/drives.uml"
+    plant = model(tmp_path / "work/Plant/models/plant.uml", "plant", "Plant", href)
+    made = compiled(plant, passes=None, config=Config(folder=tmp_path / "work"))
+    assert len(inputs(made)) == 2
+    general = made.graph.target(made.graph["plant_class"], Edge.SPECIALIZES)
+    assert general is made.graph["lib_class"]
+
+
+def test_the_own_project_is_known_by_the_name_of_its_folder(tmp_path):
+    model(tmp_path / "Plant/lib.uml", "lib", "Library")
+    href = "platform:/resource/Plant/lib.uml"
+    plant = model(tmp_path / "Plant/plant.uml", "plant", "Plant", href)
+    assert inputs(compiled(plant, passes=None)) == ["lib.uml", "plant.uml"]
+
+
+@pytest.mark.parametrize(
+    "href", ["platform:/plugin/Plant/lib.uml", "platform:/resource/../lib.uml"]
+)
+def test_eclipse_leads_nowhere_else(tmp_path, href):
+    model(tmp_path / "lib.uml", "lib", "Library")
+    plant = model(tmp_path / "Plant/plant.uml", "plant", "Plant", href)
+    assert inputs(compiled(plant, passes=None)) == ["plant.uml"]
+
+
+def test_a_folder_of_models_that_refer_to_each_other_is_one_unit(tmp_path):
+    model(tmp_path / "lib/library.uml", "lib", "Library")
+    model(tmp_path / "cells/cell.uml", "cell", "Cell", "../lib/library.uml")
+    model(tmp_path / "line.uml", "line", "Line", "lib/library.uml")
+    made = compiled(tmp_path, passes=None)
+    assert inputs(made) == ["cells/cell.uml", "lib/library.uml", "line.uml"]
+    users = made.graph.sources(made.graph["lib_class"], Edge.SPECIALIZES)
+    assert sorted(one.id for one in users) == ["cell_class", "line_class"]
+    assert made.diagnostics == ()
+
+
+def test_a_symbolic_link_out_of_the_folder_is_not_followed(tmp_path):
+    model(tmp_path / "secret/lib.uml", "lib", "Library")
+    plant = model(tmp_path / "plant/plant.uml", "plant", "Plant", "linked.uml")
+    (tmp_path / "plant/linked.uml").symlink_to(tmp_path / "secret/lib.uml")
+    assert inputs(compiled(plant, passes=None)) == ["plant.uml"]
+    inside = model(tmp_path / "plant/real.uml", "lib", "Library")
+    (tmp_path / "plant/linked.uml").unlink()
+    (tmp_path / "plant/linked.uml").symlink_to(inside)
+    assert inputs(compiled(plant, passes=None)) == ["plant.uml", "real.uml"]

@@ -2,12 +2,14 @@
 
 import os
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
 _LONGEST = 4096
 """No file system has longer paths; looking for one takes a call for each of its parts."""
+_WORKSPACE = re.compile(r"platform:/resource/([^/]+)/(.+)")
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
@@ -20,17 +22,31 @@ class Roots:
     def resolve(self, base: Path, href: str) -> Path | None:
         """The file that ``href`` in the file ``base`` names, if it is there and allowed.
 
-        Anything with a scheme (http, pathmap, platform) is never followed; symbolic links
-        count as where they lead. A path that no file system can hold leads nowhere, which
-        ``os.path.isfile`` answers and ``Path.is_file`` raises.
+        Anything with a scheme (http, pathmap) is never followed, but for Eclipse's
+        ``platform:/resource/Project/file``: the project is a folder above the file ``base``, or
+        beside one. Symbolic links count as where they lead. A path that no file system can
+        hold leads nowhere, which ``os.path.isfile`` answers and ``Path.is_file`` raises.
         """
         path = unquote(href.partition("#")[0])
-        if not path or len(path) > _LONGEST or _SCHEME.match(path) or "\0" in path:
+        if not path or len(path) > _LONGEST or "\0" in path:
             return None
-        target = Path(os.path.realpath(base.parent / path))
-        return target if self.allows(target) and os.path.isfile(target) else None  # noqa: PTH113
+        targets = (Path(os.path.realpath(place)) for place in _places(base, path))
+        allowed = (target for target in targets if self.allows(target))
+        return next((one for one in allowed if os.path.isfile(one)), None)  # noqa: PTH113
 
     def allows(self, path: Path) -> bool:
         """Whether the real place of the path is inside one of the folders."""
         real = Path(os.path.realpath(path))
         return any(real.is_relative_to(os.path.realpath(folder)) for folder in self.folders)
+
+
+def _places(base: Path, path: str) -> Iterator[Path]:
+    workspace = _WORKSPACE.fullmatch(path)
+    if workspace is None:
+        if not _SCHEME.match(path):
+            yield base.parent / path
+        return
+    for folder in base.parents:
+        if folder.name == workspace[1]:
+            yield folder / workspace[2]
+        yield folder / workspace[1] / workspace[2]

@@ -38,9 +38,12 @@ def is_unmistakable(fragment: str) -> bool:
     return len(fragment) >= _UNMISTAKABLE and not fragment.startswith(_ROOT)
 
 
-def is_project(href: str) -> bool:
-    """Whether it leads into a project as MagicDraw names them: this one, or one that it uses."""
-    return _PROJECT.match(href) is not None
+def is_in_project(href: str, fragment: str) -> bool:
+    """Whether it leads into a project as MagicDraw names them: this one, or one that it uses.
+
+    Which of them, only the id can tell, and those of the roots cannot.
+    """
+    return not fragment.startswith(_ROOT) and _PROJECT.match(href) is not None
 
 
 def base_name(path: str) -> str:

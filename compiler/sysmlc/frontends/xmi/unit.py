@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import hrefs
+from sysmlc.frontends.xmi import fragments, hrefs
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
 from sysmlc.ir import Edge, Graph, Kind, Reference
@@ -139,11 +139,13 @@ class Unit:
         if not is_href:
             return self._local(lowered, target)
         path, _, fragment = hrefs.normalised(target, lowered.document.name).partition("#")
+        if fragments.is_path(fragment):
+            return self._at_path(path, fragment)
         holders = self._having(fragment)
         exact = [h for h in holders if _archive(h.document.name) == path or h.document.name == path]
         if not exact and hrefs.is_unmistakable(fragment):
             exact = holders
-        if hrefs.is_project(target):
+        if hrefs.is_in_project(target, fragment):
             here = _archive(lowered.document.name)
             exact = [h for h in holders if _archive(h.document.name) == here] or exact
         if not exact:
@@ -155,6 +157,15 @@ class Unit:
         """Whether a file of the unit has an element with this id."""
         return bool(self._having(id))
 
+    def _at_path(self, path: str, fragment: str) -> tuple[Lowered, int] | None:
+        """A path of EMF leads through the one file that it names."""
+        named = [f for f in self.files if f.document.name == path]
+        if not named:
+            name = hrefs.base_name(path)
+            named = [f for f in self.files if hrefs.base_name(f.document.name) == name]
+        row = fragments.row_at(named[0].document, fragment) if len(named) == 1 else None
+        return None if row is None else (named[0], row)
+
     def _having(self, id: str) -> list[Lowered]:
         if len(self.files) == 1:
             return self.files if id in self.files[0].document.ids else []
@@ -162,6 +173,8 @@ class Unit:
 
     def _local(self, lowered: Lowered, target: str) -> tuple[Lowered, int] | None:
         row = lowered.document.ids.get(target)
+        if row is None and fragments.is_path(target):
+            row = fragments.row_at(lowered.document, target)
         if row is not None:
             return lowered, row
         holders = self._having(target)
