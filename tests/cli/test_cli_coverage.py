@@ -131,6 +131,19 @@ def test_sarif_has_one_result_for_each_element_that_is_lost(plant):
     assert len({r["partialFingerprints"]["sysmlc/v1"] for r in results}) == 4
 
 
+def test_what_a_further_input_holds_is_not_external(plant):
+    plant.write(
+        "pallets.uml",
+        '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"'
+        ' xmlns:xmi="http://www.omg.org/spec/XMI/20131001" xmi:id="m2" name="Pallets">'
+        '<packagedElement xmi:type="uml:Class" xmi:id="pallet" name="Pallet"/></uml:Model>',
+    )
+    (plant.folder / "alone").mkdir()
+    plant.write("alone/plant.uml", PLANT)
+    assert "SM160" in plant.sysmlc("coverage", "alone/plant.uml").stdout
+    assert "SM160" not in plant.sysmlc("coverage", "plant.uml", "pallets.uml").stdout
+
+
 @pytest.mark.parametrize(("limit", "code"), [("55.5", 0), ("55.6", 1), ("0", 0), ("100", 1)])
 def test_too_little_coverage_is_exit_code_1(plant, limit, code):
     assert plant.sysmlc("coverage", "plant.uml", "--fail-under", limit).exit_code == code

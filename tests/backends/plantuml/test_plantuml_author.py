@@ -121,6 +121,19 @@ def test_what_has_no_place_in_the_notation_is_reported():
     assert found.message == "1 of the 2 elements that diagram 'Use' shows are not drawn: Pump"
 
 
+def test_the_frame_may_be_a_shape_too():
+    """Papyrus draws the block itself, and the parts inside it."""
+    graph = parse_text(
+        'Class line "Line"\n  Property a "loader" role="part"\n'
+        'View v "Parts" subkind="diagram" diagram="ibd" nesting=[["line","a"]]\n'
+        "  -> represents line\n  -> references line a\n"
+    )
+    files, sink = emitted(graph)
+    assert list(sink) == []
+    assert '"Line' not in files[0].text
+    assert "loader" in files[0].text
+
+
 def test_everything_that_is_drawn_was_chosen():
     graph = model("author")
     for file in emitted(graph)[0]:

@@ -193,6 +193,10 @@ def _report_left_out(choice: Choice, diagram: Diagram, sink: Sink) -> None:
 
 
 def _is_said(choice: Choice, one: Element) -> bool:
-    """Whether another element says it: a classifier that is only named types what is drawn."""
+    """Whether the frame or another element says it.
+
+    Papyrus draws the frame as a shape of its own, and regions in it; a classifier that is only
+    named is the type of something that is drawn.
+    """
     is_named = one.id in choice.listed and one.kind in CLASSIFIERS
-    return one.kind is Kind.APPLICATION or is_named
+    return is_named or one is choice.about or one.kind in (Kind.APPLICATION, Kind.REGION)
