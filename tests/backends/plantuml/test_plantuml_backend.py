@@ -203,3 +203,88 @@ def test_a_message_that_another_overtakes_is_reported():
     ]
     _, sink = emitted(parse_text(OVERTAKEN.right))
     assert list(sink) == []
+
+
+def _with_services(count: int) -> str:
+    text = 'Package m "Machines"\n  Class robot "Robot" role="block"\nPackage s "Services"\n'
+    for number in range(count):
+        text += f'  Activity a{number} "Do {number}"\n    Action n{number} "n"\n'
+        text += f'  Dependency d{number} "able {number}" subkind="dependency"\n'
+        text += f"    -> client a{number}\n    -> supplier robot\n"
+    return text
+
+
+def test_few_foreign_clients_are_boxes_and_many_are_rows():
+    few = texts(parse_text(_with_services(3)))["Machines.bdd.puml"]
+    many = texts(parse_text(_with_services(4)))["Machines.bdd.puml"]
+    assert few.count("..>") == 3
+    assert "depended on by" not in few
+    assert many.count("..>") == 0
+    assert ".. depended on by ..\n{field} Do 0 able 0\n{field} Do 1 able 1\n" in many
+
+
+def test_dependencies_in_rows_are_in_the_trace():
+    files, sink = emitted(parse_text(_with_services(5)))
+    bdd = next(one for one in files if one.path.endswith("Machines.bdd.puml"))
+    assert {f"d{number}" for number in range(5)} <= set(bdd.trace)
+    assert list(sink) == []
+
+
+def test_a_bar_that_ends_in_one_operand_stands_in_the_other():
+    made = texts(
+        parse_text("""
+Interaction sd "Serve"
+  Lifeline a "a"
+  Lifeline b "b"
+  Occurrence s1
+    -> covers a
+  Occurrence r1
+    -> covers b
+  Execution x
+    -> covers b
+    -> start r1
+    -> finish s2
+  Fragment f subkind="alt"
+    Operand f1 guard="good"
+      Occurrence s2
+        -> covers b
+      Occurrence r2
+        -> covers a
+    Operand f2 guard="else"
+      Occurrence s3
+        -> covers b
+      Occurrence r3
+        -> covers a
+  Message m1 "ask"
+    -> send-event s1
+    -> receive-event r1
+    -> flow-source a
+    -> flow-target b
+  Message m2 "yes" subkind="reply"
+    -> send-event s2
+    -> receive-event r2
+    -> flow-source b
+    -> flow-target a
+  Message m3 "no" subkind="reply"
+    -> send-event s3
+    -> receive-event r3
+    -> flow-source b
+    -> flow-target a
+""")
+    )["Serve.sd.puml"]
+    assert (
+        made[made.index("a_1 ->") :]
+        == """\
+a_1 -> b_1 : ask
+activate b_1
+alt good
+b_1 -->> a_1 : yes
+deactivate b_1
+else else
+b_1 -->> a_1 : no
+activate b_1
+end
+deactivate b_1
+@enduml
+"""
+    )

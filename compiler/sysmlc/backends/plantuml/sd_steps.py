@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.sd_bars import operands
 from sysmlc.backends.plantuml.sd_messages import message_steps
 from sysmlc.backends.plantuml.sd_texts import arguments, operand_text
 from sysmlc.backends.plantuml.sd_walk import Walk
@@ -124,18 +125,20 @@ def _invariant(walk: Walk, item: Element) -> Step:
 
 
 def _combined(walk: Walk, item: Element) -> Iterator[Step]:
-    operands = sequence.operands(walk.graph, item)
-    first, shown = _head(walk, operands[0]) if operands else ("", ())
+    parts = sequence.operands(walk.graph, item)
+    contents = [[*walk.notes(part), *_inside(walk, part)] for part in parts]
+    heads = [_head(walk, part) for part in parts] or [("", ())]
     is_group = item.subkind not in _FRAMES
-    text = f"[{first}]" if first and is_group else first
-    yield Step("open", text, arrow=_operator(walk, item), shows=(item.id, *shown))
-    for number, operand in enumerate(operands):
+    first = f"[{heads[0][0]}]" if heads[0][0] and is_group else heads[0][0]
+    yield Step("open", first, arrow=_operator(walk, item), shows=(item.id, *heads[0][1]))
+    *inside, after = operands(contents) or [[]]
+    for number, content in enumerate(inside):
         if number:
-            text, shown = _head(walk, operand)
+            text, shown = heads[number]
             yield Step("else", text, shows=shown)
-        yield from walk.notes(operand)
-        yield from _inside(walk, operand)
+        yield from content
     yield Step("end")
+    yield from after
 
 
 def _head(walk: Walk, operand: Element) -> tuple[str, tuple[str, ...]]:
