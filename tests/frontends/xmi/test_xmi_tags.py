@@ -31,6 +31,13 @@ def test_of_several_ids_those_that_exist_are_kept():
     assert applied(f'robot="{HERE} {GONE}"') == ((HERE,), [LOST.format(GONE)])
 
 
+def test_many_ids_that_lead_nowhere_are_one_finding():
+    gone = " ".join(f"_Zk3cQPoREe2dJ8u5Yq1{i:03}" for i in range(500))
+    tag, (finding,) = applied(f'robot="{gone}"')
+    assert tag == gone
+    assert finding == LOST.format("_Zk3cQPoREe2dJ8u5Yq1000")
+
+
 def test_a_child_that_leads_nowhere_is_told():
     assert applied(children='<robot xmi:idref="gone"/>') == ("gone", [LOST.format("gone")])
     assert applied(children=f'<robot xmi:idref="{HERE}"/>') == (HERE, [])

@@ -46,11 +46,11 @@ def _existing(
     context: Context, element: Element, row: int, name: str, tokens: list[str]
 ) -> list[str]:
     """Ids of elements, when all tokens are ids; those that lead nowhere are reported."""
-    missing = [token for token in tokens if not _is_known(context, token)]
-    if not all(_MADE_BY_TOOLS.fullmatch(token) for token in missing):
+    missing = dict.fromkeys(token for token in tokens if not _is_known(context, token))
+    if not all(map(_MADE_BY_TOOLS.fullmatch, missing)):
         return []
-    for token in missing:
-        _report(context, element, row, name, token)
+    if missing:
+        _report(context, element, row, name, *missing)
     return [token for token in tokens if token not in missing]
 
 
@@ -84,7 +84,12 @@ def _meant(context: Context, id: str) -> AttrValue:
     return context.unit.target_id(context.lowered, id, False) or id
 
 
-def _report(context: Context, element: Element, row: int, tag: str, target: str) -> None:
+def _report(
+    context: Context, element: Element, row: int, tag: str, target: str, *others: str
+) -> None:
     name = context.graph.qualified_name(element)
     subject = Subject(name, element.id, context.place(row))
-    context.sink.report(LOST_TAG, subject, tag=tag, stereotype=element.name, target=target)
+    notes = (f"and {len(others)} more",) if others else ()
+    context.sink.report(
+        LOST_TAG, subject, notes=notes, tag=tag, stereotype=element.name, target=target
+    )
