@@ -16,11 +16,11 @@ pytestmark = pytest.mark.corpus
 
 ENTRIES = 48
 NOT_MODELS = {
-    "huds/TMT_mtip.zip": "exchange format of another tool, not XMI",
     "metamodel/types.ecore": "a metamodel, not a model",
     "metamodel/uml.ecore": "a metamodel, not a model",
     "profile/papyrus-SysML-1.6.profile.ecore": "a metamodel, not a model",
 }
+ELSEWHERE = {"huds/TMT_mtip.zip": "94 MB: read by tests/frontends/huds, to the resolved graph"}
 JUSTIFIED = {
     ("papyrus/Arrowhead-5.0.uml", "SM421"): "both initial pseudostates of the region lead nowhere",
     ("papyrus/RoboCab.uml", "SM421"): "four transitions leave the region's initial pseudostate",
@@ -38,7 +38,8 @@ def entries(corpus):
 
 @pytest.fixture(scope="module")
 def outcomes(corpus, tmp_path_factory):
-    return {name: build(corpus, name, tmp_path_factory.mktemp("out")) for name in entries(corpus)}
+    names = [name for name in entries(corpus) if name not in ELSEWHERE]
+    return {name: build(corpus, name, tmp_path_factory.mktemp("out")) for name in names}
 
 
 def build(corpus, name, output):
@@ -54,7 +55,7 @@ def build(corpus, name, output):
 
 def test_exit_codes_and_findings_of_every_entry(outcomes, golden):
     lines = [line(name, *outcome) for name, outcome in outcomes.items()]
-    assert len(lines) == ENTRIES
+    assert len(lines) + len(ELSEWHERE) == ENTRIES
     golden.check("corpus", {"entries.txt": "".join(lines)})
 
 

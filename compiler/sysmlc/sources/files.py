@@ -41,6 +41,11 @@ def is_wanted_entry(name: str) -> bool:
     return is_model_entry(name) or is_library_entry(name)
 
 
+def _is_plain_entry(name: str) -> bool:
+    """XML at the top of an archive that holds nothing else: a packed export."""
+    return name.lower().endswith(".xml") and "/" not in name
+
+
 def load(
     path: Path,
     name: str,
@@ -54,7 +59,7 @@ def load(
     source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
         return [in_utf8(source)]
-    found = entries(source, wanted, limits)
+    found = entries(source, wanted, limits) or entries(source, _is_plain_entry, limits)
     if all(is_library_entry(source.name.partition("!")[2]) for source in found):
         raise SourceError("the archive holds no model", name)
     return [in_utf8(source) for source in found]

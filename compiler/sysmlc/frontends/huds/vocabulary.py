@@ -1,0 +1,151 @@
+"""Types of MTIP and what they are in the graph; names are those of the plug-in."""
+
+from sysmlc.ir import Edge, Kind
+
+_CLASSES = ("Class", "Block", "InterfaceBlock", "ConstraintBlock", "Requirement")
+_PROPERTIES = (
+    "Property",
+    "PartProperty",
+    "ReferenceProperty",
+    "ValueProperty",
+    "ConstraintProperty",
+    "ConstraintParameter",
+    "ClassifierBehaviorProperty",
+    "FlowProperty",
+)
+_DEPENDENCIES = {
+    "Dependency": "dependency",
+    "Usage": "usage",
+    "Abstraction": "abstraction",
+    "Realization": "realization",
+    "Satisfy": "abstraction",
+    "Verify": "abstraction",
+    "Refine": "abstraction",
+    "Trace": "abstraction",
+    "DeriveRequirement": "abstraction",
+    "Copy": "abstraction",
+    "Allocate": "abstraction",
+}
+
+KINDS: dict[str, tuple[Kind, str]] = {
+    **dict.fromkeys(_CLASSES, (Kind.CLASS, "")),
+    **dict.fromkeys(_PROPERTIES, (Kind.PROPERTY, "")),
+    **dict.fromkeys(("Port", "ProxyPort", "FullPort", "FlowPort"), (Kind.PORT, "")),
+    **{name: (Kind.DEPENDENCY, subkind) for name, subkind in _DEPENDENCIES.items()},
+    **dict.fromkeys(
+        ("Association", "Composition", "Aggregation", "AssociationBlock"), (Kind.ASSOCIATION, "")
+    ),
+    "Model": (Kind.PACKAGE, "model"),
+    "Package": (Kind.PACKAGE, ""),
+    "Profile": (Kind.PROFILE, ""),
+    "Stereotype": (Kind.STEREOTYPE, ""),
+    "Interface": (Kind.INTERFACE, ""),
+    "Signal": (Kind.SIGNAL, ""),
+    "ValueType": (Kind.DATA_TYPE, ""),
+    "DataType": (Kind.DATA_TYPE, ""),
+    "Enumeration": (Kind.ENUMERATION, ""),
+    "EnumerationLiteral": (Kind.ENUMERATION_LITERAL, ""),
+    "Actor": (Kind.ACTOR, ""),
+    "UseCase": (Kind.USE_CASE, ""),
+    "InstanceSpecification": (Kind.INSTANCE, ""),
+    "Unit": (Kind.INSTANCE, ""),
+    "QuantityKind": (Kind.INSTANCE, ""),
+    "Slot": (Kind.SLOT, ""),
+    "Operation": (Kind.OPERATION, ""),
+    "Reception": (Kind.RECEPTION, ""),
+    "Parameter": (Kind.PARAMETER, ""),
+    "Constraint": (Kind.CONSTRAINT, ""),
+    "Comment": (Kind.COMMENT, ""),
+    "Connector": (Kind.CONNECTOR, ""),
+    "InformationFlow": (Kind.ITEM_FLOW, ""),
+    "ItemFlow": (Kind.ITEM_FLOW, ""),
+    "Activity": (Kind.ACTIVITY, ""),
+    "OpaqueBehavior": (Kind.ACTIVITY, "opaque"),
+    "FunctionBehavior": (Kind.ACTIVITY, "function"),
+    "OpaqueAction": (Kind.ACTION, "opaque"),
+    "CallBehaviorAction": (Kind.ACTION, "call-behavior"),
+    "CallOperationAction": (Kind.ACTION, "call-operation"),
+    "SendSignalAction": (Kind.ACTION, "send"),
+    "AcceptEventAction": (Kind.ACTION, "accept"),
+    "StructuredActivityNode": (Kind.STRUCTURED, "structured"),
+    "InputPin": (Kind.PIN, "argument"),
+    "OutputPin": (Kind.PIN, "result"),
+    "ActivityParameterNode": (Kind.ACTIVITY_PARAMETER, ""),
+    "CentralBufferNode": (Kind.OBJECT_NODE, ""),
+    "DataStoreNode": (Kind.DATA_STORE, ""),
+    "InitialNode": (Kind.CONTROL, "initial"),
+    "ActivityFinalNode": (Kind.CONTROL, "final"),
+    "FlowFinalNode": (Kind.CONTROL, "flow-final"),
+    "ForkNode": (Kind.CONTROL, "fork"),
+    "JoinNode": (Kind.CONTROL, "join"),
+    "MergeNode": (Kind.CONTROL, "merge"),
+    "DecisionNode": (Kind.CONTROL, "decision"),
+    "ControlFlow": (Kind.CONTROL_FLOW, ""),
+    "ObjectFlow": (Kind.OBJECT_FLOW, ""),
+    "ActivityPartition": (Kind.PARTITION, ""),
+    "StateMachine": (Kind.STATE_MACHINE, ""),
+    "Region": (Kind.REGION, ""),
+    "State": (Kind.STATE, ""),
+    "FinalState": (Kind.FINAL_STATE, ""),
+    "InitialPseudoState": (Kind.PSEUDOSTATE, "initial"),
+    "ChoicePseudoState": (Kind.PSEUDOSTATE, "choice"),
+    "JunctionPseudoState": (Kind.PSEUDOSTATE, "junction"),
+    "ForkPseudoState": (Kind.PSEUDOSTATE, "fork"),
+    "JoinPseudoState": (Kind.PSEUDOSTATE, "join"),
+    "Transition": (Kind.TRANSITION, ""),
+    "Trigger": (Kind.TRIGGER, ""),
+    "Interaction": (Kind.INTERACTION, ""),
+    "Lifeline": (Kind.LIFELINE, ""),
+    "Message": (Kind.MESSAGE, ""),
+}
+"""Kind and subkind by type, without ``sysml.``."""
+
+FOLDED = frozenset(
+    {"SignalEvent", "TimeEvent", "ChangeEvent", "CallEvent", "TimeExpression", "OpaqueExpression"}
+    | {"Generalization", "Include", "Extend"}
+)
+"""Types that say something about another element, which holds it."""
+
+RELATIONS: dict[str, Edge] = {
+    "typedBy": Edge.TYPED_BY,
+    "classifiedBy": Edge.INSTANCE_OF,
+    "property": Edge.INSTANCE_OF,
+    "constrainedElement": Edge.REFERENCES,
+    "behavior": Edge.CALLS,
+    "operation": Edge.CALLS,
+    "signal": Edge.CALLS,
+    "signature": Edge.CALLS,
+    "represents": Edge.REPRESENTS,
+    "doActivity": Edge.DO,
+    "entry": Edge.ENTRY,
+    "exit": Edge.EXIT,
+    "instanceValue": Edge.REFERENCES,
+}
+"""Relations that are one edge from the element to its target."""
+
+ENDS: dict[Kind, tuple[Edge, Edge]] = {
+    Kind.CONTROL_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.OBJECT_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.TRANSITION: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.MESSAGE: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.ITEM_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    Kind.DEPENDENCY: (Edge.CLIENT, Edge.SUPPLIER),
+}
+"""Edges to ``supplier`` and ``client``: MTIP calls supplier where an arrow starts."""
+
+OWNERS: dict[Kind, frozenset[Kind]] = {
+    Kind.REGION: frozenset({Kind.STATE_MACHINE, Kind.STATE}),
+    Kind.STATE: frozenset({Kind.REGION}),
+    Kind.FINAL_STATE: frozenset({Kind.REGION}),
+    Kind.ENUMERATION_LITERAL: frozenset({Kind.ENUMERATION}),
+    Kind.SLOT: frozenset({Kind.INSTANCE}),
+}
+"""Kinds that have a place only below these."""
+
+SYSML = "http://www.omg.org/spec/SysML/20181001/SysML"
+SYSML_PROFILES = frozenset({"SysML", "additional_stereotypes", "SysML Profile"})
+
+
+def is_notation(type_name: str) -> bool:
+    """Whether elements of the type are drawn, or tables and settings of the tool, and no more."""
+    return type_name.endswith(("Diagram", "Table", "Matrix", "Map")) or type_name == "Customization"

@@ -1,0 +1,247 @@
+"""Models that MTIP exports from Cameo: the same graph as from XMI, as far as the export goes."""
+
+from random import Random
+
+import pytest
+
+from dialects.mutate import damage, mutate
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.driver import Request, compile_model
+from sysmlc.frontends.huds import FRONTEND
+from sysmlc.ir import Edge, Graph
+from sysmlc.ir.text import print_text
+from sysmlc.ir.verify import verify
+from sysmlc.passes import pipeline
+from sysmlc.sources import Fault, Source, SourceError, load
+
+
+def attribute(key, text):
+    return f'<attribute key="{key}"><attribute key="value">{text}</attribute></attribute>'
+
+
+def stereotype(name, profile="SysML", **tags):
+    head = f'<attribute key="stereotypeName">{name}</attribute>'
+    head += f'<attribute key="profileName">{profile}</attribute>'
+    told = "".join(
+        f'<attribute key="stereotypeTaggedValue">{head}<attribute key="taggedValueName">{tag}'
+        '</attribute><attribute key="values"><attribute key="value"><attribute key="value">'
+        f"{value}</attribute></attribute></attribute></attribute>"
+        for tag, value in tags.items()
+    )
+    return f'<attribute key="stereotype">{head}</attribute>{told}'
+
+
+def data(type, id, parent="", name="", more="", **relations):
+    related = {"hasParent": parent, **relations} if parent else relations
+    told = "".join(
+        f"<{relation}><type>x</type><id>{target}</id><relationship_metadata/></{relation}>"
+        for relation, targets in related.items()
+        for target in targets.split()
+    )
+    return (
+        f"<data><attributes>{attribute('name', name)}{more}</attributes>"
+        f"<id><cameo>{id}</cameo></id><relationships>{told}</relationships>"
+        f"<type>sysml.{type}</type></data>\n"
+    )
+
+
+def packet(*records, name="plant_mtip.xml"):
+    head = "<metadata><mtipVersion>2022x v1.0.0</mtipVersion></metadata>"
+    text = f'<?xml version="1.0" encoding="UTF-8"?><packet>{head}{"".join(records)}</packet>'
+    return Source(name, text.encode())
+
+
+class Read:
+    def __init__(self, *sources, resolved=True):
+        self.graph, self.sink, self.coverage = Graph(), Sink(), Coverage()
+        FRONTEND.read(sources, self.graph, self.sink, self.coverage)
+        if resolved:
+            pipeline.load("resolve").run(self.graph, self.sink)
+        assert verify(self.graph) == []
+        self.found = [f"{found.rule.code} {found.message}" for found in self.sink]
+        self.totals = {k: n for k, n in self.coverage.as_json()["total"].items() if n}
+
+
+STRUCTURE = packet(
+    data("Model", "m", name="Plant"),
+    data("Block", "b", "m", "Gate", stereotype("Block")),
+    data("ProxyPort", "p", "b", "in", stereotype("ProxyPort"), typedBy="i"),
+    data("PartProperty", "q", "b", "belt", attribute("multiplicity", "0..*"), typedBy="c"),
+    data("InterfaceBlock", "i", "m", "Pallets", stereotype("InterfaceBlock")),
+    data("Block", "c", "m", "Belt", stereotype("Block")),
+    data("Port", "cp", "c", "out"),
+    data("Connector", "k", "b", supplier="cp", client="p", supplierPartWithPort="q"),
+    data("Generalization", "g", "c", supplier="c", client="b"),
+    data("Requirement", "r", "m", "Pass", attribute("id", "R1") + attribute("text", "Shall.")),
+    data("Satisfy", "s", "m", more=stereotype("Satisfy"), supplier="b", client="r"),
+    data("BlockDefinitionDiagram", "d", "m", "drawn"),
+)
+
+
+def test_blocks_ports_parts_connectors_and_requirements():
+    read = Read(STRUCTURE)
+    graph = read.graph
+    assert (read.found, read.totals) == ([], {"elements": 12, "mapped": 11, "ignored_notation": 1})
+    assert graph.qualified_name(graph["p"]) == "Plant::Gate::in"
+    assert graph.target(graph["p"], Edge.TYPED_BY) is graph["i"]
+    assert graph["q"].attrs == {"multiplicity": "*", "aggregation": "composite"}
+    ends = graph.targets(graph["k"], Edge.END)
+    assert [graph.target(end, Edge.ROLE).id for end in ends] == ["cp", "p"]
+    assert [graph.targets(end, Edge.PATH) for end in ends] == [[graph["q"]], []]
+    assert graph.target(graph["c"], Edge.SPECIALIZES) is graph["b"]
+    assert graph["r"].attrs == {"req_id": "R1", "text": "Shall."}
+    assert graph.target(graph["s"], Edge.CLIENT) is graph["b"]
+    assert graph.target(graph["s"], Edge.SUPPLIER) is graph["r"]
+
+
+def test_classify_finds_the_roles_by_the_stereotypes(tmp_path):
+    (tmp_path / "plant.xml").write_bytes(STRUCTURE.data)
+    graph = compile_model(Request((tmp_path / "plant.xml",))).graph
+    roles = {id: graph[id].role for id in ("b", "i", "p", "q", "s")}
+    assert roles == {
+        "b": "block",
+        "i": "interface block",
+        "p": "proxy port",
+        "q": "part",
+        "s": "satisfy",
+    }
+    assert graph.targets(graph["b"], Edge.SATISFIES) == [graph["r"]]
+
+
+def test_behaviour_has_the_shape_that_xmi_gives():
+    read = Read(
+        packet(
+            data("Model", "m", name="M"),
+            data("Activity", "a", "m", "Pull"),
+            data("InitialNode", "n", "a"),
+            data("CallBehaviorAction", "x", "a", "Lower", behavior="l"),
+            data("OutputPin", "o", "x", "done", typedBy="t"),
+            data(
+                "ControlFlow", "f", "a", more=attribute("guard", "free"), supplier="n", client="x"
+            ),
+            data("Activity", "l", "m", "Lower"),
+            data("Signal", "t", "m", "Done"),
+            data("StateMachine", "sm", "m", "States"),
+            data("Transition", "tr", "sm", supplier="s1", client="s2", trigger="tg"),
+            data("Region", "re", "sm"),
+            data("State", "s1", "re", "up"),
+            data("State", "s2", "re", "down"),
+            data("Trigger", "tg", "tr", event="e"),
+            data("TimeEvent", "e", "m", more=attribute("when", "w")),
+            data("TimeExpression", "w", "e", more=attribute("expr", "1s")),
+        )
+    )
+    graph = read.graph
+    assert read.found == []
+    assert "guard" in graph["f"].attrs
+    assert graph.target(graph["x"], Edge.CALLS) is graph["l"]
+    assert graph["o"].attrs["direction"] == "out"
+    assert graph.owner(graph["tr"]) is graph["re"]
+    assert graph.target(graph["tr"], Edge.TRIGGER) is graph["tg"]
+    assert graph["tg"].attrs == {"subkind": "time", "when": "1s", "relative": True}
+
+
+def test_tagged_values_stay_with_their_stereotype():
+    read = Read(packet(data("Class", "c", "", "C", stereotype("Cost", "Own", euro="5"))))
+    (application,) = [one for one in read.graph if one.name == "Cost"]
+    assert application.attrs == {"stereotype": "Cost", "namespace": "Own", "tag.euro": "5"}
+
+
+def test_what_mtip_left_out_is_known_by_name_only():
+    read = Read(
+        packet(data("Property", "p", "c", "speed", typedBy="gone"), data("Class", "c", name="C"))
+    )
+    assert read.found == [
+        "SM152 'MTIP:not-exported' is not part of the compile unit; "
+        "what it holds (1) is known by name only"
+    ]
+    assert read.graph.target(read.graph["p"], Edge.TYPED_BY).attrs["external"] is True
+
+
+def test_a_flow_from_what_is_not_there_has_no_source_and_says_so():
+    read = Read(
+        packet(
+            data("Activity", "a", name="A"),
+            data("FlowFinalNode", "n", "a"),
+            data("ControlFlow", "f", "a", supplier="gone", client="n"),
+        )
+    )
+    assert read.totals == {"elements": 3, "mapped": 2, "approximated": 1}
+    assert read.graph["f"].attrs["unresolved"] == ("flow-source",)
+    assert [line[:5] for line in read.found] == ["SM184"]
+
+
+def test_what_is_not_read_is_counted_and_told():
+    read = Read(
+        packet(
+            data("Model", "m", name="M"),
+            data("DurationInterval", "d1", "m"),
+            data("DurationInterval", "d2", "m"),
+            data("InputPin", "p", "gone"),
+            data("Class", "m", name="Again"),
+        )
+    )
+    assert read.totals == {"elements": 5, "mapped": 1, "unsupported": 4}
+    assert [line.partition(" ")[0] for line in read.found] == ["SM183", "SM181", "SM182"]
+
+
+def test_what_is_nearly_that_is_not_told():
+    read = Read(packet(data("Model", "m", name="M"), data("Class", "n", "m", "N")))
+    assert read.found == []
+
+
+def test_the_order_of_records_does_not_matter():
+    records = [data("Class", f"c{n}", f"c{n - 1}" if n else "", f"C{n}") for n in range(5)]
+    forwards, backwards = Read(packet(*records)), Read(packet(*reversed(records)))
+    names = [
+        {e.id: one.graph.qualified_name(e) for e in one.graph} for one in (forwards, backwards)
+    ]
+    assert names[0] == names[1]
+
+
+def test_owners_in_circles_are_not_read():
+    read = Read(packet(data("Class", "a", "b"), data("Class", "b", "a"), data("Class", "c")))
+    assert [element.id for element in read.graph] == ["c"]
+
+
+def test_owners_without_end_are_refused():
+    records = [data("Class", f"c{n}", f"c{n - 1}" if n else "") for n in range(600)]
+    with pytest.raises(SourceError, match="nested more than 500 deep") as raised:
+        Read(packet(*records))
+    assert raised.value.fault is Fault.LIMIT
+
+
+def test_other_files_are_left_to_others():
+    assert FRONTEND.detect(STRUCTURE) == 1.0
+    for text in (b"<packet/>", b"<x><packet mtipVersion=''/></x>", b"", b"<uml:Model/>"):
+        assert FRONTEND.detect(Source("m.xml", text)) == 0.0
+
+
+def test_spoilt_files_are_a_graph_or_a_located_fault(tmp_path):
+    """Whatever is done to a file, no exception of ours comes of it."""
+    for seed in range(200):
+        random = Random(seed)
+        spoil = mutate if seed % 4 else damage
+        _, spoilt = spoil(STRUCTURE.data, random)
+        path = tmp_path / "plant.xml"
+        path.write_bytes(spoilt)
+        made = compile_model(Request((path,), verify_each=True))
+        assert not [f for f in made.diagnostics if f.rule.code.startswith("SM9")], seed
+
+
+@pytest.mark.corpus
+def test_the_telescope_is_read(corpus):
+    """94 MB: each record has one verdict, 94 percent of them are in the graph."""
+    (source,) = load(corpus / "xmi" / "huds" / "TMT_mtip.zip", "TMT_mtip.zip")
+    assert FRONTEND.detect(source) == 1.0
+    read = Read(source)
+    assert read.totals["elements"] == source.data.count(b"<data>")
+    shares = [read.totals[k] for k in ("mapped", "approximated", "ignored_notation", "unsupported")]
+    assert sum(shares) == read.totals["elements"]
+    assert read.totals["mapped"] >= 0.93 * read.totals["elements"]
+    assert {line[:5] for line in read.found} == {"SM152", "SM181", "SM182", "SM184"}
+
+
+def test_the_text_form_shows_what_was_read():
+    lines = print_text(Read(STRUCTURE, resolved=False).graph).splitlines()
+    assert lines[0] == 'Package m "Plant" subkind="model" @plant_mtip.xml:3'
