@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.backends.plantuml import bdd, labels, req
+from sysmlc.backends.plantuml import bdd, boxes, labels, req
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author_choice import FEATURES, LINES, Choice
 from sysmlc.backends.plantuml.grid import box_view
@@ -71,11 +71,11 @@ def _box(choice: Choice, item: Element, aliases: Aliases, in_lines: set[str]) ->
         alias = aliases.make(item.id, "", "note")
         return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
     if item.attrs.get("external"):
-        return bdd.stub(graph, item, aliases)
+        return boxes.stub(graph, item, aliases)
     if req.is_requirement(item):
         return req.box(graph, item, aliases)
     features = _features(choice, item)
-    return bdd.box(graph, item, aliases, in_lines, {}, features)
+    return boxes.box(graph, item, aliases, in_lines, {}, features)
 
 
 def _features(choice: Choice, item: Element) -> list[Element]:

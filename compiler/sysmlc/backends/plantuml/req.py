@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.backends.plantuml import bdd, labels, split
+from sysmlc.backends.plantuml import bdd, boxes, labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
@@ -119,7 +119,7 @@ def box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     alias = aliases.make(item.id, item.name, "requirement")
     return Box(
         alias,
-        bdd.heading(graph, item),
+        boxes.heading(graph, item),
         "requirement",
         tuple(part for part in compartments if part.rows),
         (item.id, *(part.id for part in owned)),
@@ -138,8 +138,8 @@ def _row(graph: Graph, part: Element) -> tuple[str, ...]:
 def _other(graph: Graph, item: Element, aliases: Aliases) -> Box:
     """What satisfies, verifies or refines; a requirement of another package is grey."""
     if is_requirement(item) or item.attrs.get("external"):
-        return bdd.stub(graph, item, aliases)
+        return boxes.stub(graph, item, aliases)
     owner = graph.owner(item)
     where = f"from {graph.qualified_name(owner)}" if owner is not None else ""
     alias = aliases.make(item.id, item.name, str(item.kind))
-    return Box(alias, bdd.heading(graph, item, where), "block", shows=(item.id,))
+    return Box(alias, boxes.heading(graph, item, where), "block", shows=(item.id,))

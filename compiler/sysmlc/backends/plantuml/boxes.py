@@ -1,0 +1,153 @@
+"""Boxes of classifiers: their heads, and their features in compartments."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from sysmlc.backends.plantuml import allocated, labels, measured
+from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.text import lines, plain, small, stack
+from sysmlc.backends.plantuml.views import Box, Compartment
+from sysmlc.ir import Element, Graph, Kind
+
+_BY_ROLE = {
+    "value": "values",
+    "part": "parts",
+    "reference": "references",
+    "flow property": "flow properties",
+    "constraint property": "constraints",
+    "constraint parameter": "parameters",
+}
+_BY_KIND = {
+    Kind.PROPERTY: "attributes",
+    Kind.FLOW_PROPERTY: "flow properties",
+    Kind.PORT: "ports",
+    Kind.OPERATION: "operations",
+    Kind.RECEPTION: "receptions",
+    Kind.CONSTRAINT: "constraints",
+    Kind.ENUMERATION_LITERAL: "literals",
+    Kind.ACTIVITY: "behaviors",
+    Kind.STATE_MACHINE: "behaviors",
+    Kind.INTERACTION: "behaviors",
+    Kind.SLOT: "slots",
+    Kind.COLLABORATION_USE: "collaborations",
+    Kind.PARAMETER: "parameters",
+}
+_TITLES = (
+    "literals values parts references attributes flow_properties ports "
+    "parameters constraints operations receptions slots collaborations behaviors allocations"
+)
+_ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
+_ROW = 64
+
+
+def box(
+    graph: Graph,
+    item: Element,
+    aliases: Aliases,
+    in_lines: set[str],
+    in_rows: Mapping[str, tuple[str, ...]],
+    features: Sequence[Element] | None = None,
+) -> Box:
+    """The box of a classifier, with all that it owns in compartments, or some ``features``.
+
+    What ``in_lines`` names has a line instead of a row; ``in_rows`` says what else a row shows.
+    """
+    rows: dict[str, list[str]] = {}
+    shows = [item.id]
+    for feature in graph.owned(item) if features is None else features:
+        title = _title(feature)
+        if title and feature.id not in in_lines:
+            rows.setdefault(title, []).extend(_rows(graph, feature))
+            shows += [part.id for part in _all(graph, feature)]
+            shows += in_rows.get(feature.id, ())
+    if features is None:
+        rows["allocations"], allocations = allocated.of_block(graph, item)
+        shows += allocations
+    compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if rows.get(t))
+    measures = measured.rows(graph, item)
+    if measures:
+        compartments = (Compartment("", measures), *compartments)
+        shows += measured.shown(graph, item)
+    alias = aliases.make(item.id, item.name, str(item.kind))
+    return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
+
+
+def _title(feature: Element) -> str:
+    if feature.kind is Kind.PROPERTY or feature.role == "constraint parameter":
+        return _BY_ROLE.get(feature.role, "attributes")
+    return _BY_KIND.get(feature.kind, "")
+
+
+def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
+    text = _TEXTS.get(feature.kind)
+    if text is not None:
+        return lines(text(graph, feature), _ROW)
+    parts = _feature_words(graph, feature), labels.feature(graph, feature), _unit(graph, feature)
+    return lines(" ".join(part for part in parts if part), _ROW)
+
+
+def _behaviour(graph: Graph, feature: Element) -> str:
+    words = labels.guillemets(labels.keywords(graph, feature))
+    return f"{words} {labels.name(feature)}{labels.signature(graph, feature)}".strip()
+
+
+_TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
+    Kind.OPERATION: labels.operation,
+    Kind.CONSTRAINT: lambda _, feature: labels.condition(feature),
+    Kind.ACTIVITY: _behaviour,
+    Kind.STATE_MACHINE: _behaviour,
+    Kind.INTERACTION: _behaviour,
+    Kind.SLOT: labels.slot,
+    Kind.COLLABORATION_USE: labels.collaboration_use,
+    Kind.ENUMERATION_LITERAL: lambda _, feature: labels.name(feature),
+}
+"""How features read that are no properties, ports or parameters."""
+
+
+def _unit(graph: Graph, feature: Element) -> str:
+    return measured.unit_text(graph, feature) if feature.role == "value" else ""
+
+
+def _feature_words(graph: Graph, feature: Element) -> str:
+    """Stereotypes of a feature, except those that its compartment says already."""
+    said = {"flowProperty", "partProperty", "valueProperty", "constraintProperty", "part", "value"}
+    words = labels.keywords(graph, feature) if feature.kind is not Kind.RECEPTION else ("signal",)
+    return labels.guillemets(
+        word for word in words if word not in said and feature.role != "constraint property"
+    )
+
+
+def heading(graph: Graph, item: Element, where: str = "") -> str:
+    """The head of a box: stereotypes, name, and where it comes from when it is foreign."""
+    words = small(plain(labels.guillemets(labels.keywords(graph, item))))
+    mark = "//" if item.attrs.get("abstract") else "**"
+    is_instance = item.kind is Kind.INSTANCE
+    own = labels.name(item) + labels.template(graph, item)
+    text = labels.instance(graph, item) if is_instance else own
+    rows = [f"{mark}{row}{mark}" for row in lines(text)]
+    return stack([words, *rows, *(small(row) for row in lines(where, 48))])
+
+
+def stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
+    """The box of something that another diagram defines."""
+    owner = graph.owner(item)
+    where = f"from {graph.qualified_name(owner)}" if owner is not None else ""
+    if item.attrs.get("external"):
+        file = str(item.attrs.get("href", "")).partition("#")[0]
+        where = f"in {file}" if file else "external"
+    alias = aliases.make(item.id, item.name, str(item.kind))
+    return Box(alias, heading(graph, item, where), "elsewhere", shows=(item.id,))
+
+
+def _style(item: Element) -> str:
+    if item.kind in (Kind.DATA_TYPE, Kind.ENUMERATION, Kind.SIGNAL, Kind.INSTANCE):
+        return "value"
+    return "interface" if item.kind is Kind.INTERFACE or "interface" in item.role else "block"
+
+
+def _all(graph: Graph, feature: Element) -> Iterator[Element]:
+    """The feature, and the parameters that its signature shows."""
+    yield feature
+    if feature.kind in (Kind.OPERATION, Kind.ACTIVITY, Kind.STATE_MACHINE):
+        yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)
+    if feature.kind is Kind.COLLABORATION_USE:
+        yield from graph.owned(feature)
