@@ -9,7 +9,7 @@ import pytest
 from dialects.mutate import mutate
 from sysmlc.diagnostics.render import make_report
 from sysmlc.diagnostics.xpath import is_xml
-from sysmlc.driver import Request, compile_model
+from sysmlc.driver import Request, compile_model, select_backends
 
 pytestmark = pytest.mark.corpus
 
@@ -24,9 +24,9 @@ def models() -> list[Path]:
     return [path for path in found if path.stat().st_size < LARGE]
 
 
-def incomplete(path: Path) -> list[str]:
-    """Findings about XML that lack a part of their place or a name, and how many are whole."""
-    made = compile_model(Request(inputs=(path,)))
+def incomplete(path: Path, **asked) -> list[str]:
+    """Findings that lack a part of their place or, about XML, a name."""
+    made = compile_model(Request(inputs=(path,), **asked))
     xml = {source.name for source in made.sources if is_xml(source.data)}
     return [
         f"{finding.where} {finding.xpath} {finding.diagnostic.subject} {finding.diagnostic.message}"
@@ -46,7 +46,8 @@ def _is_whole(finding, xml) -> bool:
 
 @pytest.mark.parametrize("path", models(), ids=lambda path: path.name)
 def test_findings_of_models_have_a_whole_place(path):
-    assert incomplete(path) == []
+    backends = tuple(select_backends(()))
+    assert incomplete(path, backends=backends, diagrams="both") == []
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,111 @@
+"""Findings stand at the start tag of what is wrong, with its XPath and a name."""
+
+import pytest
+
+from sysmlc.diagnostics.render import make_report
+from sysmlc.driver import Request, compile_model
+
+HEAD = (
+    '<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
+    ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmlns:B="http://b">\n'
+)
+PLANT = f"""{HEAD}<uml:Model xmi:id="m" name="Plant">
+ <packagedElement xmi:type="uml:Class" xmi:id="g" name="Gate">
+  %s
+ </packagedElement>
+</uml:Model>
+%s
+</xmi:XMI>
+"""
+
+
+def found(folder, inside="", beside="", encode=str.encode):
+    """Rule, line, column, XPath and name of each finding that is an error or about reading."""
+    path = folder / "plant.uml"
+    path.write_bytes(encode(PLANT % (inside, beside)))
+    made = compile_model(Request(inputs=(path,)))
+    return [
+        (one.diagnostic.rule.code, one.line, one.column, one.xpath, one.diagnostic.subject.name)
+        for one in make_report(made.diagnostics, made.sources).findings
+        if one.diagnostic.is_error or one.diagnostic.rule.code.startswith("SM1")
+    ]
+
+
+GATE = "/xmi:XMI/uml:Model[1]/packagedElement[1]"
+
+
+def test_a_child_that_refers_to_nothing_is_the_place(tmp_path):
+    inside = '<ownedAttribute xmi:id="p" name="item"><type xmi:idref="gone"/></ownedAttribute>'
+    assert found(tmp_path, inside) == [
+        ("SM150", 4, 42, f"{GATE}/ownedAttribute[1]/type[1]", "Plant::Gate::item")
+    ]
+
+
+def test_an_attribute_that_refers_to_nothing_stands_at_its_element(tmp_path):
+    inside = '<ownedAttribute\n   xmi:id="p" name="item"\n   type="gone"/>'
+    assert found(tmp_path, inside) == [
+        ("SM150", 4, 3, f"{GATE}/ownedAttribute[1]", "Plant::Gate::item")
+    ]
+
+
+def test_the_second_of_two_equal_ids_is_the_place(tmp_path):
+    inside = '<ownedAttribute xmi:id="p" name="a"/><ownedAttribute xmi:id="p" name="b"/>'
+    assert found(tmp_path, inside) == [
+        ("SM112", 4, 40, f"{GATE}/ownedAttribute[2]", "Plant::Gate::b")
+    ]
+
+
+def test_what_is_not_read_and_a_stereotype_of_nothing(tmp_path):
+    inside = '<nestedClassifier xmi:type="uml:Nonsense" xmi:id="n"/>'
+    assert found(tmp_path, inside, '<B:Block xmi:id="b" base_Class="gone"/>') == [
+        ("SM111", 4, 3, f"{GATE}/nestedClassifier[1]", "plant.uml"),
+        ("SM113", 7, 1, "/xmi:XMI/B:Block[1]", "Block"),
+    ]
+
+
+def test_a_library_that_is_missing_stands_where_it_is_first_used(tmp_path):
+    inside = '<ownedAttribute name="item"><type href="lib.uml#_x"/></ownedAttribute>'
+    assert found(tmp_path, inside) == [
+        ("SM152", 4, 31, f"{GATE}/ownedAttribute[1]/type[1]", "lib.uml")
+    ]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "windows-1252"])
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_malformed_xml_stands_where_the_parser_stopped_in_characters(tmp_path, encoding, newline):
+    def encode(text):
+        declared = f'<?xml version="1.0" encoding="{encoding}"?>\n{text}'
+        return declared.replace("\n", newline).encode(encoding)
+
+    inside = '<ownedAttribute name="ééé"/></wrong>'
+    assert found(tmp_path, inside, encode=encode) == [
+        ("SM100", 5, 3 + inside.index("wrong"), GATE, "plant.uml")
+    ]
+
+
+def test_a_file_that_is_cut_off_ends_in_the_element_that_is_open(tmp_path):
+    (one,) = found(tmp_path, encode=lambda text: text[: text.index("</packagedElement>")].encode())
+    assert (one[0], one[3]) == ("SM100", GATE)
+
+
+def test_what_is_far_down_and_far_to_the_right(tmp_path):
+    inside = "\n" * 70_000 + '<ownedAttribute xmi:id="p" name="a" type="gone"/>'
+    assert found(tmp_path, inside)[0][:3] == ("SM150", 70_004, 1)
+    inside = '<ownedAttribute name="a"/>' * 5_000 + '<ownedAttribute name="b" type="gone"/>'
+    assert found(tmp_path, inside)[0][:4] == (
+        "SM150",
+        4,
+        3 + 26 * 5_000,
+        f"{GATE}/ownedAttribute[5001]",
+    )
+
+
+def test_strict_input_stands_at_the_root(tmp_path):
+    path = tmp_path / "plant.uml"
+    path.write_text(PLANT % ('<nestedClassifier xmi:type="uml:Nonsense"/>', ""))
+    made = compile_model(Request(inputs=(path,), strict_input=True))
+    places = {
+        one.diagnostic.rule.code: (one.line, one.column, one.xpath)
+        for one in make_report(made.diagnostics, made.sources).findings
+    }
+    assert places["SM174"] == (1, 1, "/xmi:XMI")
