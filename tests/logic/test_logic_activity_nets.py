@@ -16,6 +16,7 @@ from sysmlc.passes import activity_drawing, activity_tokens
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
+from sysmlc.passes.activity_raising import find_raising
 
 KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
 
@@ -25,7 +26,7 @@ def drawn(canvas: Canvas) -> TokenGraph:
     graph, sink = canvas.graph, Sink()
     drawing = activity_drawing.read(graph, graph["a"], sink)
     inputs = Inputs(graph, Scope(graph, graph["a"], sink), sink)
-    return activity_tokens.build(graph, drawing, inputs, sink)
+    return activity_tokens.build(graph, drawing, inputs, find_raising(graph), sink)
 
 
 @st.composite
@@ -110,7 +111,7 @@ def doodles(draw) -> Canvas:
     """Anything that a tool lets one draw: regions in regions, guards, pins, loose handlers."""
     canvas = Canvas()
     nodes = [canvas.control("initial")]
-    for kind in draw(st.lists(st.sampled_from([*KINDS, *BOXES, "accept"]), max_size=7)):
+    for kind in draw(st.lists(st.sampled_from([*KINDS, *BOXES, *WORKS]), max_size=7)):
         outer = canvas.owner
         boxes = [outer, *(n for n in nodes if n.kind is Kind.STRUCTURED)]
         canvas.owner = draw(st.sampled_from(boxes))
@@ -128,6 +129,11 @@ def doodles(draw) -> Canvas:
             node.attrs.update(test=inside[:1], body_part=inside[1:])
         if node.subkind == "conditional":
             node.attrs["clauses"] = ((inside[:1], inside[1:]),)
+        if node.kind in (Kind.STRUCTURED, Kind.ACTION) and draw(st.integers(0, 5)) == 0:
+            body = draw(st.sampled_from([n.id for n in nodes] + ["nobody"]))
+            node.attrs["handlers"] = (((body,), (), ()),)
+        if node.subkind == "expansion" and draw(st.booleans()):
+            node.attrs["mode"] = "iterative"
         for region in nodes:
             if region.subkind == "interruptible" and draw(st.booleans()):
                 canvas.graph.connect(Edge.IN_PARTITION, node, region)
@@ -136,12 +142,13 @@ def doodles(draw) -> Canvas:
 
 BOXES = {
     name: (Kind.STRUCTURED, name)
-    for name in ("structured", "sequence", "loop", "conditional", "interruptible")
-}
+    for name in ("structured", "sequence", "loop", "conditional", "expansion", "interruptible")
+} | {"store": (Kind.DATA_STORE, ""), "buffer": (Kind.OBJECT_NODE, "")}
+WORKS = ("opaque", "value", "accept", "raise")
 
 
 def _kind(kind: str) -> Kind:
-    return Kind.ACTION if kind in ("opaque", "value", "accept") else Kind.CONTROL
+    return Kind.ACTION if kind in WORKS else Kind.CONTROL
 
 
 @settings(max_examples=250, deadline=None)

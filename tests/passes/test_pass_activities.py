@@ -567,6 +567,29 @@ def test_an_exception_that_nobody_catches_ends_the_activity():
     assert graph.node(end.target).kind == "final"
 
 
+CALLER = """
+Activity a "a"
+  Action c "c" subkind="call-behavior"
+    -> calls b
+Activity b "b"
+  Structured s "s" subkind="structured" {handlers}
+    Action r "r" subkind="raise"
+  Structured h "h" subkind="structured"
+"""
+
+
+def test_a_call_of_what_raises_an_exception_may_end_the_caller():
+    made, sink = tokens(CALLER.format(handlers=""))
+    assert "raised_c" in [variable.name for variable in made[0].inputs]
+    assert {found.subject.id for found in sink if found.rule.code == "SM475"} == {"c", "r"}
+
+
+def test_a_call_of_what_catches_its_exceptions_ends_by_itself():
+    made, sink = tokens(CALLER.format(handlers='handlers=[[["h"], [], []]]'))
+    assert [variable.name for variable in made[0].inputs] == ["done_c"]
+    assert "SM475" not in codes(sink)
+
+
 # -- ends --------------------------------------------------------------------------------------
 
 

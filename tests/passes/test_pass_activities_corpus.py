@@ -14,6 +14,7 @@ from sysmlc.ir.text import print_text
 from sysmlc.logic import evaluate, token_game
 from sysmlc.logic.activity_contract import derive
 from sysmlc.logic.domains import values
+from sysmlc.logic.printing import print_formula
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
@@ -100,6 +101,28 @@ def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name)
             )
         for conjunct in derive(tokens).guarantees:
             assert evaluate.violation(conjunct, trace) is None, conjunct.text
+
+
+OTHER_REVISION = {"TestClassReclassifier", "TestClassUnmarshaller"}
+"""The MagicDraw file has actions and parameters in these two that the Eclipse file lacks."""
+
+
+def test_two_dialects_of_one_model_give_the_same_contracts(corpus):
+    eclipse, magicdraw = (contracts(*refined(corpus, name)) for name in FILES[:2])
+    assert len(eclipse) == 38
+    differing = {name for name in eclipse if eclipse[name] != magicdraw[name]}
+    assert {name.rpartition("::")[2] for name in differing} == OTHER_REVISION
+
+
+def contracts(graph: Graph, _: Sink) -> dict[str, list[list[str]]]:
+    """The conjuncts of each activity; what the file is called is left out of the names."""
+    found: dict[str, list[list[str]]] = {}
+    for tokens in graph.derived(TokenGraph):
+        contract = derive(tokens)
+        parts = (*contract.assumptions, *contract.guarantees)
+        name = graph.qualified_name(graph[tokens.activity]).split("::", 1)[-1]
+        found.setdefault(name, []).append(sorted(print_formula(one.formula) for one in parts))
+    return found
 
 
 def test_contracts_grow_with_the_activity_and_not_with_its_square(corpus):

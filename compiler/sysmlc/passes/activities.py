@@ -16,6 +16,7 @@ from sysmlc.passes import activity_checks, activity_drawing, activity_search, ac
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
+from sysmlc.passes.activity_raising import Raising, find_raising
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,21 +38,24 @@ class Activities:
         graph.store(TokenGraph, self._token_graphs(graph, sink))
 
     def _token_graphs(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
+        raising = find_raising(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
             if _is_drawn_elsewhere(activity):
                 continue
             try:
-                yield self._token_graph(graph, activity, sink)
+                yield self._token_graph(graph, activity, raising, sink)
             except activity_drawing.CannotPlayError:
                 continue
 
-    def _token_graph(self, graph: Graph, activity: Element, sink: Sink) -> TokenGraph:
+    def _token_graph(
+        self, graph: Graph, activity: Element, raising: Raising, sink: Sink
+    ) -> TokenGraph:
         drawing = activity_drawing.read(graph, activity, sink)
         if not drawing.nodes:
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
         inputs = Inputs(graph, Scope(graph, activity, sink), sink)
-        tokens = activity_tokens.build(graph, drawing, inputs, sink)
+        tokens = activity_tokens.build(graph, drawing, inputs, raising, sink)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)

@@ -9,6 +9,7 @@ from sysmlc.logic.names import identifier
 from sysmlc.logic.tokens import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.passes.activity_drawing import Drawing, Flow, flow_label
 from sysmlc.passes.activity_inputs import Answer, Inputs
+from sysmlc.passes.activity_raising import Raising
 
 
 class Draft:
@@ -21,8 +22,11 @@ class Draft:
     ``failing`` the calls that may end with an exception.
     """
 
-    def __init__(self, graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> None:
+    def __init__(
+        self, graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
+    ) -> None:
         self.graph = graph
+        self.raising = raising
         self.drawing = drawing
         self.inputs = inputs
         self.sink = sink

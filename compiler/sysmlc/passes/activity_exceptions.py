@@ -5,15 +5,13 @@ protected node get their tokens as if the node had ended by itself. What no hand
 catches ends the activity.
 """
 
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Element, Kind
 from sysmlc.ir.identity import derived_id
 from sysmlc.logic.tokens import ACTIVITY_REGION, Guard, NodeKind
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft
+from sysmlc.passes.activity_raising import CALLS, may_raise
 from sysmlc.passes.activity_regions import Handler
-
-_CALLS = ("call-behavior", "call-operation", "opaque", "call", "start-object-behavior", "")
-_BODIES = ("opaque", "function")
 
 
 def keep_handlers(draft: Draft) -> None:
@@ -94,15 +92,9 @@ def _catcher(draft: Draft, node: Element) -> Element | None:
 
 
 def _add_raise(draft: Draft, node: Element) -> None:
-    catcher = _catcher(draft, node)
     if node.id not in draft.exits and draft.outgoing[node.id]:
         draft.exits[node.id] = _never(draft, node)
-    if catcher is None:
-        draft.link(node.id, _leaving(draft), node, ACTIVITY_REGION)
-        label = draft.drawing.labels[node.id]
-        draft.sink.report(rules.UNCAUGHT, draft.graph.subject(node), node=label)
-        return
-    _throw(draft, node, node.id, catcher, None)
+    _throw(draft, node, node.id, None)
 
 
 def _never(draft: Draft, node: Element) -> str:
@@ -112,8 +104,14 @@ def _never(draft: Draft, node: Element) -> str:
     return draft.extra(node, "end", NodeKind.MERGE, label, region).id
 
 
-def _throw(draft: Draft, node: Element, source: str, catcher: Element, guard: Guard | None) -> None:
+def _throw(draft: Draft, node: Element, source: str, guard: Guard | None) -> None:
     """Lead the exception to the handlers; a structured node that catches it is ended."""
+    catcher = _catcher(draft, node)
+    if catcher is None:
+        draft.link(source, _leaving(draft), node, ACTIVITY_REGION, guard=guard)
+        label = draft.drawing.labels[node.id]
+        draft.sink.report(rules.UNCAUGHT, draft.graph.subject(node), node=label)
+        return
     caught = draft.nodes[derived_id(catcher.id, "caught")]
     interrupts = ""
     if catcher is not node:
@@ -130,47 +128,26 @@ def _leaving(draft: Draft) -> str:
 
 
 def _may_raise(draft: Draft, node: Element) -> bool:
-    """Whether the end of the action may be an exception that a handler here catches."""
+    """Whether the end of the action may be an exception.
+
+    Where no handler is near only calls of what raises something by its drawing do so.
+    """
+    if node.subkind not in CALLS:
+        return False
     catcher = _catcher(draft, node)
-    if catcher is None or node.subkind not in _CALLS:
-        return False
-    return catcher is node or _raises(draft, node, frozenset()) is not False
-
-
-def _raises(draft: Draft, node: Element, seen: frozenset[str]) -> bool:
-    """Whether a call, or what it calls, may raise; unknown behaviours may."""
-    called = draft.graph.targets(node, Edge.CALLS)
-    return not called or any(_leads_to_raise(draft, one, seen) for one in called)
-
-
-def _leads_to_raise(draft: Draft, called: Element, seen: frozenset[str]) -> bool:
-    if called.id in seen:
-        return False
-    if called.kind is Kind.OPERATION:
-        methods = draft.graph.targets(called, Edge.METHOD)
-        return not methods or any(_leads_to_raise(draft, m, seen | {called.id}) for m in methods)
-    if called.subkind in _BODIES:
-        return False
-    if called.attrs.get("external"):
-        return True
-    inside = [e for e in draft.graph.subtree(called) if e.kind is Kind.ACTION]
-    return any(
-        one.subkind == "raise"
-        or (one.subkind in _CALLS and _raises(draft, one, seen | {called.id}))
-        for one in inside
-    )
+    if catcher is None:
+        return may_raise(draft.graph, node, draft.raising.drawn, unknown=False)
+    return catcher is node or may_raise(draft.graph, node, draft.raising.possible, unknown=True)
 
 
 def _add_failure(draft: Draft, node: Element) -> None:
     """Let the environment decide whether a call ends by itself or with an exception."""
-    catcher = _catcher(draft, node)
-    if catcher is None:
-        return
     label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
     choice = draft.extra(node, "failure", NodeKind.DECISION, f"the end of {label}", region)
     draft.link(node.id, choice.id, node, region)
     answer = draft.inputs.answer(f"raised_{draft.short[node.id]}", ["true"], node)
-    _throw(draft, node, choice.id, catcher, Guard("an exception is raised", answer.equals("true")))
+    guard = Guard("an exception is raised", answer.equals("true"))
+    _throw(draft, node, choice.id, guard)
     draft.failing.add(node.id)
     after = draft.exits.get(node.id) or _after(draft, node)
     draft.link(choice.id, after, node, region, guard=Guard("else", None))

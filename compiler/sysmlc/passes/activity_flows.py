@@ -1,6 +1,6 @@
 """Token edges of flows: where they start and end, and the guards of decisions they leave."""
 
-from sysmlc.ir import Element, Kind
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 from sysmlc.logic import formula as f
 from sysmlc.logic.tokens import Guard, NodeKind
@@ -51,7 +51,21 @@ def _interrupted(draft: Draft, flow: Flow) -> str:
     if region is None or region.subkind != "interruptible":
         return ""
     is_here = any(above is draft.drawing.activity for above in draft.graph.ancestors(region))
-    return region.id if is_here else ""
+    if not is_here or not _is_inside(draft, flow.target, region):
+        return region.id if is_here else ""
+    name = flow_label(
+        flow.element, draft.nodes[flow.source.id].label, draft.nodes[flow.target.id].label
+    )
+    draft.sink.report(rules.STAYS_INSIDE, draft.graph.subject(flow.element), flow=name)
+    return ""
+
+
+def _is_inside(draft: Draft, node: Element, region: Element) -> bool:
+    """Whether the interruptible region holds the node, or something around it."""
+    return any(
+        region in (one, *draft.graph.targets(one, Edge.IN_PARTITION))
+        for one in (node, *draft.graph.ancestors(node))
+    )
 
 
 def _entry(draft: Draft, flow: Flow) -> str:

@@ -1,4 +1,4 @@
-"""Rules about activities (SM450 to SM477), each with a small model that has it and one that nearly
+"""Rules about activities (SM450 to SM478), each with a small model that has it and one that nearly
 has it.
 """
 
@@ -22,6 +22,7 @@ _KINDS = {
     "expansion": 'Structured {0} "{0}" subkind="expansion" mode="parallel"',
     "iteration": 'Structured {0} "{0}" subkind="expansion" mode="iterative"',
     "structured": 'Structured {0} "{0}" subkind="structured"',
+    "interruptible": 'Structured {0} "{0}" subkind="interruptible"',
     "pin": 'Pin {0} "{0}" direction="in" subkind="argument"',
     "on-pallet": 'Trigger {0} "pallet" subkind="signal"',
     "on-tool": 'Trigger {0} "tool" subkind="signal"',
@@ -313,7 +314,7 @@ UNCAUGHT = _rule(
     "SM475",
     "exception-without-handler",
     Severity.INFO,
-    "no handler in the activity catches what {node} raises; it ends the activity",
+    "no handler in the activity catches what {node} may raise; it ends the activity",
     "An exception ends everything around it up to a node with a handler "
     "(UML 2.5.1, 15.5.3); what calls the activity may have one.",
     "Add a handler to the action, or to a structured node around it.",
@@ -342,4 +343,15 @@ AT_ONCE = _rule(
     "Make the region iterative if the order of the elements matters.",
     "initial i\nexpansion e\n  action x\ni -> e",
     "initial i\niteration e\n  action x\ni -> e",
+)
+STAYS_INSIDE = _rule(
+    "SM478",
+    "interrupting-flow-stays-inside",
+    Severity.WARNING,
+    "{flow} interrupts a region that it does not leave; it is taken as a plain flow",
+    "An interrupting flow starts in its region and ends outside (UML 2.5.1, 15.7.15); the token on "
+    "it would be lost as well.",
+    "Lead it out of the region, or let it interrupt nothing.",
+    'initial i\ninterruptible r\n  action x\n  action y\ni -> x\nx -> y interrupts="r"',
+    'initial i\ninterruptible r\n  action x\naction y\ni -> x\nx -> y interrupts="r"',
 )

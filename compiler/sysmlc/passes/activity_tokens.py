@@ -19,13 +19,16 @@ from sysmlc.passes.activity_exceptions import add_exceptions, keep_handlers
 from sysmlc.passes.activity_flows import add_flow, add_rest
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_nodes import add_node
+from sysmlc.passes.activity_raising import Raising
 from sysmlc.passes.activity_regions import FLOWS, interruptible_regions
 from sysmlc.passes.activity_structured import add_order, add_start
 
 
-def build(graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> TokenGraph:
+def build(
+    graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
+) -> TokenGraph:
     """The token graph of a drawing; reports shapes that UML asks to be drawn otherwise."""
-    draft = Draft(graph, drawing, inputs, sink)
+    draft = Draft(graph, drawing, inputs, raising, sink)
     keep_handlers(draft)
     for node in drawing.nodes:
         add_node(draft, node)
