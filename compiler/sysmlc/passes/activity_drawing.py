@@ -219,6 +219,10 @@ class _Reader:
         node = found
         while node is not None and node.id not in self.known:
             node = self.borders.get(node.id) or self.graph.owner(node)
+        known = element.attrs.get("unresolved")
+        if node is None and isinstance(known, tuple) and edge.value in known:
+            self.has_failed = True
+            return None
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
             self.sink.report(

@@ -245,3 +245,15 @@ def test_the_telescope_is_read(corpus):
 def test_the_text_form_shows_what_was_read():
     lines = print_text(Read(STRUCTURE, resolved=False).graph).splitlines()
     assert lines[0] == 'Package m "Plant" subkind="model" @plant_mtip.xml:3'
+
+
+def test_what_follows_from_a_node_that_is_not_there_is_not_an_error(tmp_path):
+    """MTIP leaves nodes out; that is one warning, not an error for each of their flows."""
+    records = (
+        data("Activity", "a", name="A"),
+        data("FlowFinalNode", "n", "a"),
+        data("ControlFlow", "f", "a", supplier="gone", client="n"),
+    )
+    (tmp_path / "plant.xml").write_bytes(packet(*records).data)
+    made = compile_model(Request((tmp_path / "plant.xml",)))
+    assert [f.rule.code for f in made.diagnostics if f.severity != "info"] == ["SM184"]
