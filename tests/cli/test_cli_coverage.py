@@ -1,12 +1,16 @@
 """``sysmlc coverage``: what became of every element, with places, reasons and shares."""
 
 import json
+import re
 
 import pytest
 from jsonschema import Draft202012Validator
 
 from sysmlc import resources
 from sysmlc.diagnostics.coverage import covered_tenths, tenths
+from sysmlc.diagnostics.render import coverage
+from sysmlc.driver import Request
+from sysmlc.driver.covering import cover
 
 PLANT = """\
 <xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
@@ -73,6 +77,14 @@ def test_columns_stand_below_each_other(plant):
     lines = plant.sysmlc("coverage", "plant.uml").stdout.splitlines()
     table = lines[2 : lines.index("", 3)]
     assert {len(line) for line in table} == {len(table[0])}
+
+
+def test_colours_are_for_terminals_and_move_no_column(plant):
+    files = cover(Request(inputs=(plant.folder / "plant.uml",))).files
+    plain, coloured = coverage.text(files), coverage.text(files, color=True)
+    assert "\x1b" not in plain
+    assert "\x1b[31munsupported\x1b[0m" in coloured
+    assert re.sub(r"\x1b\[\d+m", "", coloured) == plain
 
 
 def test_three_examples_are_shown_unless_all_are_asked_for(here):
