@@ -98,6 +98,21 @@ def test_tagged_values_of_a_stereotype_are_not_told_twice():
     assert application.attrs["tag.maker"] == "ACME"
 
 
+GUID = "{A059C88E-4BDF-46ec-9651-03CBB56A4410}"
+
+
+def test_a_tagged_value_may_refer_to_an_element_by_its_guid():
+    id = "EAPK_" + GUID[1:-1].replace("-", "_")
+    package = f'<packagedElement xmi:type="uml:Package" xmi:id="{id}" name="P"/>'
+    applied = f'<Plant:Robot base_Class="EAID_G" cell="{GUID}"/>'
+    tags = about("EAID_G", f'<tags><tag xmi:id="t" name="Other" value="{GUID}"/></tags>')
+    for model, told in ((GATE + package, id), (GATE, GUID)):
+        graph = ea(model, tags, applied).graph
+        (application,) = [e for e in graph if e.kind == "Application"]
+        assert application.attrs["tag.cell"] == told
+        assert graph["EAID_G"].attrs == {"tag.Other": told}
+
+
 def test_a_mangled_stereotype_has_its_own_name_and_profile():
     graph = ea(
         applications='<thecustomprofile:Plant__Robot_arm base_Class="EAID_G"'

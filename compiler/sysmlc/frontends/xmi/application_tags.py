@@ -5,6 +5,7 @@ import re
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of
 from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.values import value_of
 from sysmlc.ir import AttrValue, Element
@@ -33,6 +34,8 @@ def read(context: Context, element: Element, row: int) -> None:
 
 def _tag(context: Context, element: Element, row: int, name: str, value: str) -> AttrValue:
     tokens = value.split()
+    if value[:1] == "{":
+        return id_of(context, value) or value
     ids = context.document.ids
     if all(token in ids for token in tokens):
         known = tokens

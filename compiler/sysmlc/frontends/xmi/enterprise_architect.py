@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.enterprise_architect_profiles import qualified
+from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of, qualified
 from sysmlc.frontends.xmi.profiles import mangled
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
@@ -87,7 +87,8 @@ def _tags(context: Context, element: Element, row: int) -> None:
         if name and value:
             context.verdicts[tag] = Verdict.MAPPED
             if not any(_has_tag(one, name) for one in _applications(context, element)):
-                element.attrs[f"tag.{name.rpartition('::')[2]}"] = value
+                key = f"tag.{name.rpartition('::')[2]}"
+                element.attrs[key] = id_of(context, value) or value
 
 
 def _has_tag(application: Element, name: str) -> bool:

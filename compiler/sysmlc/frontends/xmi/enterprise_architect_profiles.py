@@ -13,6 +13,7 @@ from sysmlc.ir import Edge
 
 _PRIMITIVE = re.compile(r"EA[A-Za-z#+]*_\w+$")
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+_GUID = re.compile(r"\{[0-9A-Fa-f]{8}(-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12}\}")
 _SYSML = re.compile(r"https?://www\.sparxsystems\.com/profiles/SysML")
 
 
@@ -47,6 +48,15 @@ def _namespace(context: Context, prefix: str) -> str:
 def _spelt(name: str, namespace: str) -> str:
     is_lower = _SYSML.match(namespace) and not name.endswith("Requirement")
     return name[:1].upper() + name[1:] if is_lower else name
+
+
+def id_of(context: Context, guid: str) -> str:
+    """Id of the element that a tagged value names by its GUID (``{A059C88E-...}``), or empty."""
+    if not _GUID.fullmatch(guid):
+        return ""
+    number = guid[1:-1].replace("-", "_")
+    written = (f"{prefix}_{number}" for prefix in ("EAID", "EAPK"))
+    return next((id for id in written if id in context.document.ids), "")
 
 
 def localise(context: Context) -> None:
