@@ -45,7 +45,12 @@ NAMESPACES = [
     "http://example.org/plant",
     "http://www.eclipse.org/papyrus/GCM/1",
 ]
-STEREOTYPES = ["Block", "FullPort", "FlowProperty", "Satisfy", "Task", "Requirement", "Odd"]
+STEREOTYPES = [
+    *("Block", "FullPort", "FlowProperty", "Satisfy", "Task", "Requirement", "Odd", "Copy"),
+    *("ValueType", "Unit", "BoundReference", "AdjunctProperty", "AllocateActivityPartition"),
+    *("ConstraintBlock", "Allocated", "Conform", "View", "ElementGroup", "DistributedProperty"),
+]
+_ANY = st.sampled_from(["e0", "e1", ("e2", "gone"), "kg", "", "x.uml#y", True, 3])
 TARGETS = [
     "nowhere",
     "a.uml#e1",
@@ -67,6 +72,14 @@ ATTRIBUTES = {
     "stereotype": st.sampled_from(STEREOTYPES),
     "namespace": st.sampled_from(NAMESPACES),
     "tag.direction": st.sampled_from(["in", "out"]),
+    "tag.unit": _ANY,
+    "tag.bindingPath": _ANY,
+    "tag.principal": _ANY,
+    "tag.allocatedTo": _ANY,
+    "tag.member": _ANY,
+    "tag.lower": _ANY,
+    "tag.text": _ANY,
+    "on": st.sampled_from(["generalization", "change-event"]),
 }
 
 
