@@ -109,3 +109,9 @@ def test_without_drawings_nothing_happens_and_twice_is_once():
     graph.store(Drawing, [drawing(shown=("gate",))])
     pipeline.load("views").run(graph, Sink())
     assert print_text(graph) == once
+
+
+def test_a_diagram_is_no_view_of_sysml_when_it_is_read_again():
+    graph = parse_text('View v "Gates" subkind="diagram"\nView w "Safety"\n')
+    pipeline.load("classify").run(graph, Sink())
+    assert (graph["v"].role, graph["w"].role) == ("", "view")

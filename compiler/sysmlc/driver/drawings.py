@@ -8,7 +8,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import faults
 from sysmlc.driver.reading import Reading
 from sysmlc.frontends.base import DiagramReader
-from sysmlc.sources import Source, SourceError, entries
+from sysmlc.sources import Roots, Source, SourceError, entries
 from sysmlc.sources.limits import DEFAULT_LIMITS
 from sysmlc.sources.whole import read_whole
 
@@ -26,8 +26,9 @@ def beside(reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
 
 
 def _load(name: str, root: Path, sink: Sink) -> Iterator[Source]:
+    """The file, if it is in the root, or the entries of an archive that has been read before."""
     file, is_archive, pattern = name.partition("!")
-    if not (root / file).is_file():
+    if not (root / file).is_file() or not (is_archive or Roots((root,)).allows(root / file)):
         return
     try:
         source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))

@@ -245,6 +245,14 @@ def test_a_damaged_notation_file_is_reported_where_it_is_damaged(tmp_path):
     assert found.xpath.startswith("/xmi:XMI/notation:Diagram[1]/styles[1]")
 
 
+def test_a_notation_file_that_leads_out_of_the_folder_is_passed_over(tmp_path):
+    (tmp_path / "models").mkdir()
+    path = papyrus(tmp_path / "models")
+    (tmp_path / "models" / "plant.notation").rename(tmp_path / "secret.notation")
+    (tmp_path / "models" / "plant.notation").symlink_to(tmp_path / "secret.notation")
+    assert compiled(path).graph.of_kind(Kind.VIEW) == []
+
+
 def test_a_folder_in_the_place_of_the_notation_file_is_passed_over(tmp_path):
     (tmp_path / "plant.uml").write_text(PAPYRUS)
     (tmp_path / "plant.notation").mkdir()

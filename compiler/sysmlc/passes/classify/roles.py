@@ -76,6 +76,8 @@ def by_structure(graph: Graph, element: Element) -> str:
         return _class_role(graph, element)
     if element.kind is Kind.PORT and _is_of_constraint_block(graph, element):
         return "constraint parameter"
+    if element.kind is Kind.VIEW and element.subkind == "diagram":
+        return ""
     return _BY_KIND.get(element.kind, "")
 
 
