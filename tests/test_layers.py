@@ -7,14 +7,14 @@ import sysmlc
 
 ROOT = Path(sysmlc.__file__).parent
 LAYERS = [
-    {"", "resources", "output", "naming", "suggest"},
+    {"", "resources", "output", "naming", "suggest", "cache"},
     {"sources"},
     {"diagnostics"},
     {"ir"},
     {"logic", "recipe"},
     {"synthesis", "simulation"},
     {"frontends", "passes", "backends"},
-    {"driver", "config", "cache"},
+    {"driver", "config"},
     {"lsp"},
     {"cli", "__main__"},
 ]

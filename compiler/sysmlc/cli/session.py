@@ -140,11 +140,10 @@ def outcome_of(
 
     Without ``has_files`` the findings are enough.
     """
-    from sysmlc import cache
     from sysmlc.driver import key_of, open_unit, outcome, recall, remember
 
     request = _request(unit.files, config, settings)
-    store = cache.default() if settings.is_plain else None
+    store = request.cache
     if store is None:
         return outcome(_compile(_with_backends(request, unit.emit), settings), has_files)
     opened = open_unit(request)
@@ -158,6 +157,7 @@ def outcome_of(
 
 
 def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
+    from sysmlc import cache
     from sysmlc.driver import Request
 
     return Request(
@@ -167,6 +167,7 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         strict_input=settings.strict_input or config.strict_input,
         diagrams=settings.diagrams or config.diagrams,
         verify_each=settings.verify_each,
+        cache=cache.default() if settings.is_plain else None,
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
+from sysmlc.cache import Cache
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.suppress import suppress
@@ -53,6 +54,8 @@ class Request:
     verify_each: bool = False
     frontends: tuple[Frontend, ...] | None = None
     passes: tuple[Pass, ...] | None = None
+    cache: Cache | None = None
+    """Where front ends keep what they parsed; None: nowhere."""
 
     def pipeline(self) -> tuple[Pass, ...]:
         """The passes in order. Raises ConfigError for options that no pass has."""
@@ -92,6 +95,7 @@ class Opened:
     root: Path
     reading: Reading
     sink: Sink
+    frontends: tuple[Frontend, ...]
     drawings: tuple[Source, ...] = ()
     """What lies beside the inputs and holds the diagrams of authors, when they are wanted."""
 
@@ -99,11 +103,11 @@ class Opened:
 def open_unit(request: Request) -> Opened:
     """Read the inputs of a request, and what they refer to; parse nothing."""
     sink = Sink(request.config.rules)
-    frontends = request.frontends or tuple(registry.frontends())
+    frontends = request.frontends or tuple(registry.frontends(request.cache))
     root = unit_root(request.inputs, request.config.folder)
     reading = read_unit(request.inputs, root, frontends, sink)
     drawings = () if request.diagrams == DERIVED else beside(reading, root, sink)
-    return Opened(root, reading, sink, drawings)
+    return Opened(root, reading, sink, frontends, drawings)
 
 
 def compile_model(
@@ -127,7 +131,7 @@ class _Run:
         self._coverage = Coverage()
         self._graph = Graph()
         self._output = Output()
-        self._frontends = request.frontends or tuple(registry.frontends())
+        self._frontends = opened.frontends
         self._passes = request.pipeline()
         self._root = opened.root
         self._reading = opened.reading

@@ -8,9 +8,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
 from sysmlc.backends.base import Backend
+from sysmlc.cache import Cache
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
-from sysmlc.frontends.base import Frontend
+from sysmlc.frontends.base import Caching, Frontend
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.suggest import did_you_mean
@@ -35,9 +36,12 @@ class BackendError(Exception):
     """A back end is unknown, twice there, or cannot be loaded."""
 
 
-def frontends() -> list[Frontend]:
-    """The front ends, in the order in which they are asked."""
-    return [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
+def frontends(cache: Cache | None = None) -> list[Frontend]:
+    """The front ends, in the order in which they are asked; those that can use the cache do."""
+    found = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
+    if cache is None:
+        return found
+    return [one.with_cache(cache) if isinstance(one, Caching) else one for one in found]
 
 
 def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
+from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
@@ -28,6 +29,14 @@ class Frontend(Protocol):
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph and account for every element of them."""
+
+
+@runtime_checkable
+class Caching(Protocol):
+    """A front end that can keep what it parsed."""
+
+    def with_cache(self, cache: Cache) -> Frontend:
+        """The same front end, with a cache to keep it in."""
 
 
 @runtime_checkable

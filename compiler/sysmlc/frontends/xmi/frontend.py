@@ -4,6 +4,7 @@ import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.xmi import (
     account,
@@ -15,12 +16,13 @@ from sysmlc.frontends.xmi import (
     enterprise_architect_profiles,
     links,
     lowering,
+    remembered,
     rules,
     snapshot_parts,
     snapshot_use,
 )
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.document import Document, read
+from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
@@ -32,6 +34,13 @@ class XmiFrontend:
     """Reads UML 2 and SysML v1 models in XMI: Papyrus, MagicDraw/Cameo, and what is like them."""
 
     name = "xmi"
+
+    def __init__(self, cache: Cache | None = None) -> None:
+        self._cache = cache
+
+    def with_cache(self, cache: Cache) -> "XmiFrontend":
+        """The same front end; files that were read before are taken from the cache."""
+        return XmiFrontend(cache)
 
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1, that the source is UML in XMI."""
@@ -53,7 +62,8 @@ class XmiFrontend:
         models = [source for source in ordered if not is_snapshot(source)]
         beside = [source for source in ordered if is_snapshot(source)]
         with _no_collection():
-            documents = [d for source in models if (d := _read(source, sink)) is not None]
+            read = [_read(source, sink, self._cache) for source in models]
+            documents = [document for document in read if document is not None]
             unit = Unit(documents, graph)
             contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
             models, parts = snapshot_parts.split(models)
@@ -107,9 +117,9 @@ def _no_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _read(source: Source, sink: Sink) -> Document | None:
+def _read(source: Source, sink: Sink, cache: Cache | None) -> Document | None:
     try:
-        return read(source)
+        return remembered.read(source, cache)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise
