@@ -49,7 +49,11 @@ def defined_features(graph: Graph, id: str) -> list[str]:
 def test_resolving_does_not_depend_on_the_order_of_references(graph, random):
     text = print_text(graph)
     shuffled = parse_text(text)
-    random.shuffle(shuffled.pending)
+    pending = list(shuffled.pending)
+    random.shuffle(pending)
+    shuffled.pending.clear()
+    for reference in pending:
+        shuffled.refer(reference)
     results = []
     for one in (parse_text(text), shuffled):
         sink = Sink()
