@@ -11,6 +11,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
 from sysmlc.ir.query import generals, is_quantity_kind, is_unit
 from sysmlc.passes.classify.tags import elements, value
+from sysmlc.passes.classify.unit_factors import give_symbols
 
 _QUANTITY_KIND = re.compile(r"(Simple|Derived|Specialized)?QuantityKind")
 _UNIT = re.compile(
@@ -29,6 +30,7 @@ def give_units(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> None:
     for unit in graph.of_kind(*_KINDS):
         if is_unit(unit) or is_quantity_kind(unit):
             _describe(graph, unit)
+    give_symbols(graph)
     for id in (id for id, names in known.items() if "ValueType" in names or "Unit" in names):
         for subject in graph.targets(graph[id], Edge.SUBJECT):
             _refer(graph, graph[id], subject)

@@ -1,0 +1,76 @@
+"""Derived units of QUDV say their symbol by their factors."""
+
+import pytest
+from passing import again, refined
+
+from sysmlc.ir.text import print_text
+
+QUDV = """\
+Package qudv "QUDV"
+  Class unit "Unit"
+    Property unit.symbol "symbol"
+  Class derived "DerivedUnit"
+    -> specializes unit
+    Property derived.factor "factor"
+  Class factor "UnitFactor"
+    Property factor.unit "unit"
+    Property factor.exponent "exponent"
+  Class rational "Rational"
+    Property rational.n "numerator"
+    Property rational.d "denominator"
+Instance m "metre"
+  -> instance-of unit
+  Slot m.s value="m"
+    -> instance-of unit.symbol
+Instance s "second"
+  -> instance-of unit
+"""
+
+
+def speed(*factors: tuple[str, str]) -> str:
+    text = QUDV + 'Instance v "speed"\n  -> instance-of derived\n  Slot v.f\n'
+    text += "    -> instance-of derived.factor\n    -> references "
+    text += " ".join(f"f{number}" for number, _ in enumerate(factors)) + "\n"
+    for number, (unit, exponent) in enumerate(factors):
+        text += f'Instance f{number} "f"\n  -> instance-of factor\n'
+        text += f"  Slot f{number}.u\n    -> instance-of factor.unit\n    -> references {unit}\n"
+        text += f"  Slot f{number}.e{exponent}\n"
+    return text
+
+
+def exponent(value: str) -> str:
+    return f" value={value}\n    -> instance-of factor.exponent"
+
+
+HALF = (
+    "\n    -> instance-of factor.exponent\n    -> references half\n"
+    'Instance half "half"\n  -> instance-of rational\n'
+    "  Slot half.n value=1\n    -> instance-of rational.n\n"
+    "  Slot half.d value=2\n    -> instance-of rational.d"
+)
+
+
+@pytest.mark.parametrize(
+    ("factors", "symbol"),
+    [
+        ([("m", exponent("1")), ("s", exponent("-1"))], "m·second^-1"),
+        ([("m", exponent("2"))], "m^2"),
+        ([("m", HALF)], "m^(1/2)"),
+        ([("factor", exponent("1"))], None),
+    ],
+)
+def test_the_symbol_of_a_derived_unit(factors, symbol):
+    graph, _ = refined(speed(*factors), "classify")
+    assert graph["v"].role == "unit"
+    assert graph["v"].attrs.get("symbol") == symbol
+
+
+def test_a_second_run_changes_nothing():
+    graph, _ = refined(speed(("m", exponent("1")), ("s", exponent("-1"))), "classify")
+    once = print_text(graph)
+    assert again(graph, "classify") == once
+
+
+def test_a_class_of_the_plant_called_unit_is_no_library():
+    graph, _ = refined(QUDV.replace('"QUDV"', '"Plant"'), "classify")
+    assert graph["m"].role == ""
