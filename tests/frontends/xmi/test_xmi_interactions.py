@@ -186,7 +186,7 @@ def test_times_are_told_of_occurrences():
         "body": "2..5 s",
         "first_event": (True, False),
     }
-    assert graph["tc"].attrs == {"subkind": "time", "body": "t..now"}
+    assert graph["tc"].attrs == {"subkind": "time", "body": "t..now", "observations": ("to",)}
     assert targets(graph, "dc", Edge.REFERENCES) == ["o1", "o2"]
     assert graph["d2"].attrs == {"subkind": "duration", "value": "5 s"}
     assert graph["to"].attrs == {"subkind": "time", "first_event": False}

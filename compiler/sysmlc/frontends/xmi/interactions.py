@@ -57,6 +57,15 @@ def _first_event(context: Context, element: Element, row: int) -> None:
         element.attrs["first_event"] = values if len(values) > 1 else values[0]
 
 
+def _time_constraint(context: Context, element: Element, row: int) -> None:
+    """Besides the bounds, which are text, the observations that they are told by."""
+    document = context.document
+    inside = range(row + 1, document.ends[row])
+    found = [target for at in inside for target in document.targets(at, "observation")]
+    context.keep_ids(element, "observations", found)
+    _first_event(context, element, row)
+
+
 def _occurrence(context: Context, element: Element, row: int) -> None:
     if context.document.attributes[row].get("event"):
         context.deferred.append((_occurrence_event, element, row))
@@ -107,8 +116,8 @@ TYPES: dict[str, Reader] = {
     "MessageOccurrenceSpecification": reading("MessageOccurrenceSpecification", _occurrence),
     "TimeObservation": reading("TimeObservation", _events),
     "DurationObservation": reading("DurationObservation", _events),
-    "TimeConstraint": reading("TimeConstraint", _first_event),
-    "DurationConstraint": reading("DurationConstraint", _first_event),
+    "TimeConstraint": reading("TimeConstraint", _time_constraint),
+    "DurationConstraint": reading("DurationConstraint", _time_constraint),
     **dict.fromkeys(("ExecutionEvent", "DestructionEvent", "CreationEvent"), _part_of_others),
 }
 

@@ -293,6 +293,7 @@ LISTS = frozenset(
         "body_output",
         "input_element",
         "output_element",
+        "observations",
     }
 )
 """Kept lists of ids that are tuples also when there is one."""
