@@ -214,3 +214,26 @@ def test_another_tools_extension_is_not_read_so():
         applications="",
     ).replace('extender="Enterprise Architect"', 'extender="Another"')
     assert [e.kind for e in read(source(text.encode("cp1252"))).graph] == ["Package", "Class"]
+
+
+def test_an_export_in_xmi_2_1_is_read_the_same():
+    """UML 2.1 in XMI 2.1, with the applications before the extension."""
+    note = about("EAID_G", '<properties documentation="Opens"/>')
+    applied = '<Plant:Robot base_Class="EAID_G" axes="6"/>'
+    new = ea(extension=note, applications=applied)
+    text = FILE.format(model=GATE.replace("{}", ""), extension=note, applications="")
+    for old, other in (
+        ("http://www.omg.org/spec/XMI/20131001", "http://schema.omg.org/spec/XMI/2.1"),
+        ("http://www.omg.org/spec/UML/20161101", "http://schema.omg.org/spec/UML/2.1"),
+        ("<xmi:XMI ", '<xmi:XMI xmi:version="2.1" '),
+        ("<xmi:Extension ", f"{applied}<xmi:Extension "),
+    ):
+        assert old in text
+        text = text.replace(old, other)
+    legacy = read(source(text.encode("cp1252"), "m.xmi"))
+    assert legacy.findings == []
+    assert content(legacy.graph) == content(new.graph)
+
+
+def content(graph):
+    return sorted((e.kind, e.name, e.owner or "", str(sorted(e.attrs.items()))) for e in graph)
