@@ -79,6 +79,15 @@ def test_without_nesting_the_types_say_what_is_inside():
     assert texts()["Plant.Line.By%20type.ibd.puml"].count(">outfeed<") == 2
 
 
+def test_a_long_row_is_small_in_each_of_its_lines():
+    graph = model("author")
+    graph.rename(graph["motor.kw"], "the electrical power that the motor takes at full load")
+    (row,) = [
+        line for line in texts(graph)["Plant.Line.Belt.ibd.puml"].splitlines() if "Motor" in line
+    ]
+    assert row.count("<size:10>") == row.count("</size>") == row.count("\\n") == 2
+
+
 def test_requirements_and_use_cases_have_the_chosen_relations():
     assert [one[3] for one in lines("Plant.Goals.req.puml")] == ["«satisfy»"]
     assert "«include»" in texts()["Plant.Use.uc.puml"]

@@ -65,7 +65,7 @@ class _Drawing:
         graph, part = self.choice.graph, self._element(path)
         words = (word for word in labels.applied(graph, part) if word not in _SAID)
         listed = list(self._listed(part))
-        rows = [label(labels.typed(graph, part)), *(small(_row(graph, one)) for one in listed)]
+        rows = [label(labels.typed(graph, part)), *(_row(graph, one) for one in listed)]
         return PartView(
             self._alias(path),
             stack([small(plain(labels.guillemets(words))), *rows]),
@@ -163,7 +163,7 @@ _SAID = frozenset(["partProperty", "referenceProperty"])
 
 
 def _row(graph: Graph, feature: Element) -> str:
-    return label(labels.feature(graph, feature))
+    return stack(map(small, lines(labels.feature(graph, feature))))
 
 
 _CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
