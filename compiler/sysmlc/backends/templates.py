@@ -1,5 +1,6 @@
 """Templates of back ends: the user's before ours, and no name left undefined in silence."""
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,10 +10,12 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 
+@cache
 def environment(folder: str, templates: Path | None) -> "Environment":
     """Templates of one back end, from ``templates/<folder>`` of the user, ``templates``, ours.
 
-    jinja2 is imported here, because only back ends with templates need it.
+    jinja2 is imported here, because only back ends with templates need it. There is one for each
+    folder, so that a template is compiled once; one that has changed is read anew.
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 
