@@ -288,3 +288,17 @@ deactivate b_1
 @enduml
 """
     )
+
+
+def test_the_name_of_an_operand_stands_for_a_guard_that_is_not_there():
+    made = texts(
+        parse_text("""
+Interaction sd "Serve"
+  Lifeline a "a"
+  Fragment f subkind="alt"
+    Operand f1 "in time"
+    Operand f2 "InteractionOperand2"
+    Operand f3 "late" guard="[t > 5]"
+""")
+    )["Serve.sd.puml"]
+    assert "\nalt in time\nelse\nelse t <U+003E> 5\nend\n" in made

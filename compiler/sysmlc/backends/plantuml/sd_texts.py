@@ -1,11 +1,13 @@
 """How messages, guards, times and notes of interactions read (UML 2.5.1 clauses 17.4, 8.4)."""
 
+import re
 from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind, sequence
 
 _TIMES = ("duration", "time")
+_TOOL_NAME = re.compile(r"(interaction ?)?operand[ _]?\d*", re.IGNORECASE)
 
 
 def message_text(graph: Graph, message: Element) -> str:
@@ -28,12 +30,14 @@ def arguments(item: Element) -> str:
 
 
 def operand_text(operand: Element) -> str:
-    """``(1, 3) guard`` of an operand; the bounds are a loop's (17.6.4)."""
+    """``(1, 3) guard`` of an operand, without guard its name; bounds are a loop's (17.6.4)."""
     bounds = [operand.attrs.get(key) for key in ("min", "max")]
     told = [labels.literal(value) for value in bounds if value is not None]
     guard = labels.literal(operand.attrs.get("guard", "")).strip()
     if guard.startswith("[") and guard.endswith("]"):
         guard = guard[1:-1]  # Modellers write the brackets of the notation into the guard.
+    if not guard and not _TOOL_NAME.fullmatch(operand.name):
+        guard = operand.name.strip()
     parts = [f"({', '.join(told)})" if told else "", guard]
     return " ".join(part for part in parts if part)
 
