@@ -60,11 +60,15 @@ class Libraries:
         self._entries: dict[str, dict[str, object]] = data["elements"]
         self._by_id: dict[str, str] = {}
         self._by_name: dict[tuple[str, str], list[str]] = {}
+        self._stereotypes: dict[tuple[str, str], list[str]] = {}
         for name, entry in self._entries.items():
             self._by_id.update(dict.fromkeys(entry.get("ids", ()), name))
             library, _, rest = name.partition("::")
             for short in (rest.rpartition("::")[2], *entry.get("aliases", ())):
                 self._by_name.setdefault((library, short.lower()), []).append(name)
+                if entry["kind"] == "Stereotype":
+                    tag = re.sub(r"\W", "_", short)
+                    self._stereotypes.setdefault((library, tag), []).append(name)
 
     def find(self, file: str, fragment: str, path: str, kinds: Iterable[Kind]) -> StandIn | None:
         """The element that a reference into ``file`` means.
@@ -98,8 +102,11 @@ class Libraries:
         )
 
     def generals(self, library: str, name: str) -> tuple[str, ...]:
-        """Names of what the stereotype of this name in a library specialises."""
-        found = self._by_name.get((library, name.lower()), ())
+        """Names of what the stereotypes of this name in a library specialise.
+
+        The name is as XML tags show it: ``System_context`` is "System context".
+        """
+        found = self._stereotypes.get((library, name), ())
         ups = (up for one in found for up in self._entries[one].get("specializes", ()))  # type: ignore[attr-defined]
         return tuple(dict.fromkeys(up.rpartition("::")[2] for up in ups))
 

@@ -6,8 +6,10 @@ FlowSpecification (SysML 1.6 annex C).
 
 import re
 from enum import StrEnum
+from functools import cache
 
 from sysmlc.ir import Edge
+from sysmlc.passes.standins import libraries
 
 
 class Family(StrEnum):
@@ -76,51 +78,6 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
         ),
     ),
 )
-
-_PARENTS = {
-    "InterfaceBlock": ("Block",),
-    "ConjugatedInterfaceBlock": ("InterfaceBlock",),
-    "_InterfaceBlock": ("InterfaceBlock",),
-    "ConstraintBlock": ("Block",),
-    "System": ("Block",),
-    "Domain": ("Block",),
-    "System_context": ("Block",),
-    "Subsystem": ("Block",),
-    "External": ("Block",),
-    "Requirement": ("AbstractRequirement",),
-    "extendedRequirement": ("Requirement",),
-    **dict.fromkeys(
-        (
-            "businessRequirement",
-            "designConstraint",
-            "functionalRequirement",
-            "interfaceRequirement",
-            "performanceRequirement",
-            "physicalRequirement",
-            "usabilityRequirement",
-        ),
-        ("extendedRequirement",),
-    ),
-    **dict.fromkeys(("Copy", "DeriveReqt", "Satisfy", "Verify"), ("Trace",)),
-    **dict.fromkeys(("Allocate", "Refine", "Trace"), ("DirectedRelationshipPropertyPath",)),
-    **dict.fromkeys(
-        (
-            "AddFlowPropertyValueOnNestedPortAction",
-            "InvocationOnNestedPortAction",
-            "NestedConnectorEnd",
-            "TriggerOnNestedPort",
-        ),
-        ("ElementPropertyPath",),
-    ),
-    "BasicInterval": ("DistributedProperty",),
-    "Interval": ("BasicInterval",),
-    "Normal": ("DistributedProperty",),
-    "Uniform": ("BasicInterval",),
-    "BoundReference": ("EndPathMultiplicity",),
-    "Continuous": ("Rate",),
-    "Discrete": ("Rate",),
-    "PartProperty": ("BlockProperty",),
-}
 
 CLASSIFIER_ROLES = {
     "ConstraintBlock": "constraint block",
@@ -228,6 +185,14 @@ def mangled(name: str) -> str:
     return re.sub(r"\W", "_", name)
 
 
+@cache
 def parents(name: str) -> tuple[str, ...]:
-    """What a stereotype of SysML specialises, when no profile of the unit says it."""
-    return _PARENTS.get(name, ())
+    """What a stereotype of SysML specialises, when no profile of the unit says it.
+
+    ``name`` and the result are names as XML tags show them.
+    """
+    found = (up for library in _LIBRARIES for up in libraries().generals(library, name))
+    return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)
+
+
+_LIBRARIES = ("SysML", "MD Customization for SysML", "MD Customization for Requirements")

@@ -35,6 +35,8 @@ _ALIASES = {
     "double": "Real",
     "efloat": "Real",
     "edouble": "Real",
+    "ebiginteger": "Integer",
+    "ebigdecimal": "Real",
     "estring": "String",
     **{name.lower(): name for name in PRIMITIVES},
 }
