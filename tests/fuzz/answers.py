@@ -6,8 +6,8 @@ from pathlib import Path
 
 from fuzz.guard import Ended, Guard
 
-SECONDS = 2.0
-"""The requirement is one second on a machine that does nothing else."""
+SECONDS = 3.0
+"""The requirement is one second on a machine that does nothing else; here are many guests."""
 MEGABYTES = 300
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -76,9 +76,9 @@ class Asked:
     def run(self, *args: str) -> Ended:
         """How a command ends; fails when it took too much or ended otherwise."""
         ended = self._guard.run(self.folder, *args)
-        assert not ended.is_fault, ended
-        assert ended.seconds <= SECONDS, ended
-        assert ended.megabytes <= MEGABYTES, ended
+        assert not ended.is_fault, ended.told
+        assert ended.seconds <= SECONDS, ended.told
+        assert ended.megabytes <= MEGABYTES, ended.told
         return ended
 
     def check(self, *args: str) -> Answer:

@@ -42,6 +42,12 @@ class Ended:
     err: str
 
     @property
+    def told(self) -> str:
+        """How it ended, in a few lines."""
+        start = (self.out + self.err)[:500]
+        return f"exit {self.code}, {self.seconds} s, {self.megabytes} MB: {start}"
+
+    @property
     def is_fault(self) -> bool:
         """Whether it ended otherwise than with findings: killed, a traceback, a fault of ours."""
         signs = ("Traceback (most recent", "fault of sysmlc", "SM900", "SM901", "enough memory")

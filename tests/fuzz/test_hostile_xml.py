@@ -159,7 +159,7 @@ def test_long_references_lead_nowhere_and_are_told_shortly(asked, name):
     }[name]
     answer = asked.about(model(content))
     assert answer.codes
-    assert all(len(found.message) < 1000 for found in answer.findings)
+    assert max(len(found.message) for found in answer.findings) < 1000
 
 
 def test_a_truncated_file_is_reported_whichever_byte_is_the_last(tmp_path):

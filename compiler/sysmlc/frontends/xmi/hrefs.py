@@ -10,6 +10,8 @@ from sysmlc.frontends.xmi.metaclasses import kind_of
 from sysmlc.frontends.xmi.vocabulary import HINTS
 from sysmlc.ir import Kind
 
+_LONGEST = 8192
+"""Characters of an href that count: a longer one leads nowhere, and is told by its beginning."""
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 _MODEL_FILE = re.compile(r"([^.]+)(?:\.\w+)*\.(?:uml|xmi|mdzip|xml)$")
 _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
@@ -24,6 +26,8 @@ _PROJECT = re.compile(r"(local:/)?PROJECT-[^/]*\?resource=")
 @lru_cache(4096)
 def normalised(href: str, file: str) -> str:
     """The href with its path relative to the unit's root; what has a scheme stays as it is."""
+    if len(href) > _LONGEST:
+        href = href[:_LONGEST]
     path, _, fragment = href.partition("#")
     if not path:
         return f"{file}#{fragment}"
