@@ -2,9 +2,12 @@
 
 import io
 import zipfile
+from random import Random
 
 import pytest
 
+from dialects.mutate import mutate
+from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics.render import make_report
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir import Edge, Kind
@@ -66,7 +69,8 @@ def archive(path, shapes, model=MAGICDRAW % ""):
 
 
 def compiled(path, diagrams="author"):
-    made = compile_model(Request(inputs=(path,), diagrams=diagrams, verify_each=True))
+    asked = Request(inputs=(path,), diagrams=diagrams, backends=(BACKEND,), verify_each=True)
+    made = compile_model(asked)
     assert "SM900" not in codes(made)
     assert "SM901" not in codes(made)
     return made
@@ -291,3 +295,22 @@ def test_enterprise_architect_lists_what_is_shown_and_no_features(tmp_path):
     assert shown(made) == ["EAID_1", "EAID_2"]
     assert found.attrs["relations"] == (("specializes", "EAID_1", "EAID_2"),)
     assert "SM162" not in codes(made)
+
+
+# -- damage ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_spoilt_diagrams_are_no_fault_of_ours(tmp_path, seed):
+    random = Random(seed)
+
+    def spoilt(text):
+        return mutate(text.encode(), random)[1]
+
+    compiled(archive(tmp_path / "a.mdzip", spoilt(SHAPES.replace("xmi:", "")), MAGICDRAW % ""))
+    compiled(archive(tmp_path / "b.mdzip", SHAPES, spoilt(MAGICDRAW % "")))
+    (tmp_path / "plant.uml").write_bytes(spoilt(PAPYRUS))
+    (tmp_path / "plant.notation").write_bytes(spoilt(NOTATION))
+    compiled(tmp_path / "plant.uml")
+    (tmp_path / "plant.xmi").write_bytes(spoilt(EA))
+    compiled(tmp_path / "plant.xmi")
