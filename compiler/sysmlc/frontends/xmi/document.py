@@ -14,7 +14,8 @@ class Document:
 
     ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
     the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
-    ``xmi:type`` (or empty); ``ends[row]`` is the first row after the row's content;
+    ``xmi:type`` (or empty), which is no longer in ``attributes``; ``ends[row]`` is the first
+    row after the row's content;
     ``declared`` are the namespaces that the file declares.
     """
 
@@ -123,7 +124,7 @@ def _index(document: Document, spaces: list[str]) -> None:
 def _index_types(document: Document) -> None:
     key = document.type_key
     short = _Short()
-    document.types = [short[values.get(key, "")] for values in document.attributes]
+    document.types = [short[values.pop(key, "")] for values in document.attributes]
 
 
 class _Short(dict[str, str]):
@@ -137,7 +138,9 @@ class _Short(dict[str, str]):
 def _index_ids(document: Document) -> None:
     key = document.id_key
     written = [values.get(key) for values in document.attributes]
-    rows = dict(zip(written, range(len(written)), strict=True))
+    # The numbers of the ordinals are shared where they are those of the rows.
+    numbers = range(len(written)) if document.drawn else document.ordinals
+    rows = dict(zip(written, numbers, strict=True))
     rows.pop(None, None)
     document.ids = cast("dict[str, int]", rows)
     if len(rows) < len(written) - written.count(None):

@@ -35,6 +35,8 @@ class Plan(NamedTuple):
     owners: frozenset[Kind] | None
     detail: details.Detail | None
     may_be_metaclass: bool
+    is_done: bool
+    """Whether nobody looks at the attributes again when the element is made."""
     steps: tuple[Step, ...]
 
 
@@ -67,8 +69,28 @@ def plan_of(
         metaclasses.OWNERS.get(kind),
         details.OF.get(kind),
         kind is Kind.PROPERTY,
+        kind in _DONE,
         tuple(_steps(kind, names)),
     )
+
+
+_DONE = frozenset(
+    {
+        Kind.ACTION,
+        Kind.COMMENT,
+        Kind.CONNECTOR,
+        Kind.CONSTRAINT,
+        Kind.CONTROL,
+        Kind.CONTROL_FLOW,
+        Kind.OBJECT_FLOW,
+        Kind.OBJECT_NODE,
+        Kind.PIN,
+        Kind.PSEUDOSTATE,
+        Kind.STATE,
+        Kind.TRANSITION,
+    }
+)
+"""Most of a large model, and named by nothing that is read later than they are."""
 
 
 def may_be_value(feature: str, type_name: str) -> bool | None:

@@ -14,12 +14,17 @@ class _Plans(dict[Shape, Plan | None]):
         self, context: Context, features: Mapping[str, object], types: Mapping[str, object]
     ) -> None:
         super().__init__()
+        # The value of an ElementValue (MagicDraw) is the name of whatever element it names.
+        self._are_names_asked = "ElementValue" in context.document.types
         self._keys = context.document.id_key, context.document.idref_key
         self._features = features
         self._types = types
 
     def __missing__(self, shape: Shape) -> Plan | None:
-        made = self[shape] = plan_of(shape, self._keys, self._features, self._types)
+        made = plan_of(shape, self._keys, self._features, self._types)
+        if made is not None and self._are_names_asked:
+            made = made._replace(is_done=False)
+        self[shape] = made
         return made
 
 
@@ -66,7 +71,7 @@ class Swift:
             plan = plans[shape]
             if plan is None:
                 break
-            kind, subkind, type_name, owners, detail, may_be_metaclass, steps = plan
+            kind, subkind, type_name, owners, detail, may_be_metaclass, is_done, steps = plan
             owner, id, name = gids[above], values[id_key], values.get("name", "")
             is_special = may_be_metaclass and name.startswith("base_")
             if is_special or id in clashes or (owners and not context.may_own(owner, kind)):
@@ -91,5 +96,10 @@ class Swift:
                     context.attribute(made, row, step, value)
                 elif value != default:
                     made.attrs[key] = value
+            attributes[row] = _TAKEN if is_done else values
             row += 1
         return row
+
+
+_TAKEN: dict[str, str] = {}
+"""Attributes of rows that nobody looks at again: what is taken need not be kept in memory."""

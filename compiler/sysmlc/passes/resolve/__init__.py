@@ -100,19 +100,18 @@ class Resolve:
 def _elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, _Use]:
     """The references, by number, whose target is no id of the graph."""
     uses: dict[int, _Use] = {}
-    for number, target in enumerate(targets):
-        if target is None:
-            one = graph.pending[number]
-            holder = graph.get(one.source)
-            if holder is not None:
-                uses[number] = _Use(holder, one.target, one.kind, one.name, one.ordinal, one.edge)
+    for number in [number for number, target in enumerate(targets) if target is None]:
+        one = graph.pending[number]
+        holder = graph.get(one.source)
+        if holder is not None:
+            uses[number] = _Use(holder, one.target, one.kind, one.name, one.ordinal, one.edge)
     return uses
 
 
 def _attributes(graph: Graph) -> Iterator[_Use]:
     for holder_kind, named in _ATTRIBUTES.items():
         for element in graph.of_kind(holder_kind):
-            for name, kind in named.items():
+            for name, kind in named.items() if element.attrs else ():
                 for id in _ids(element.attrs.get(name)):
                     yield _Use(element, id, kind, attribute=name)
 

@@ -22,12 +22,19 @@ class Targets:
         self._graph = graph
 
     @cached_property
-    def _by_fragment(self) -> dict[str, list[Element]]:
+    def _prefixed(self) -> dict[str, list[Element]]:
+        """Elements whose ids several files have, by that id: in the graph the file is before it."""
         index: dict[str, list[Element]] = {}
         for element in self._graph:
-            if element.source:
+            if "#" in element.id and element.source:
                 index.setdefault(element.id.rpartition("#")[2], []).append(element)
         return index
+
+    def _named(self, fragment: str) -> list[Element]:
+        """Elements of all files with this id."""
+        plain = self._graph.get(fragment)
+        found = self._prefixed.get(fragment, [])
+        return found if plain is None or "#" in fragment or not plain.source else [*found, plain]
 
     @cached_property
     def _files(self) -> dict[str, set[str]]:
@@ -52,7 +59,7 @@ class Targets:
         library, fragment = split(target)
         found = self._in(fragment, self.files(file, library))
         if found is None and _is_unmistakable(fragment):
-            found = _first(self._by_fragment.get(fragment, ()))
+            found = _first(self._named(fragment))
         return found
 
     def files(self, file: str, library: str) -> tuple[str, ...]:
@@ -64,7 +71,7 @@ class Targets:
         return tuple(sorted(exact or named))
 
     def _in(self, fragment: str, files: tuple[str, ...]) -> Element | None:
-        found = self._by_fragment.get(fragment, ())
+        found = self._named(fragment)
         return _first(element for element in found if element.source in files)
 
 

@@ -1,0 +1,196 @@
+"""CPU time and memory of the XMI front end on generated models, and on real ones.
+
+    python benchmarks/xmi.py --sizes 1 10 100 --metamodel PATH/uml.ecore
+
+All numbers of one run are of one machine in one state: what counts are the ratios to lxml, to
+expat and to pyecore, and the calibration loop. Every number is the least of several processes.
+With SYSMLC_CORPUS set four real models are measured too. Exit code 1 when a budget is missed.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from xmi_model import MEGABYTE, write
+
+_WORK = Path(__file__).with_name("xmi_work.py")
+_REAL = (
+    "papyrus/Alf.library.uml",
+    "papyrus/fUML-Tests.uml",
+    "magicdraw/fUML-Tests.mdxml",
+    "magicdraw/Tank_control_2.mdzip",
+)
+_SUFFIX = {"papyrus": ".uml", "magicdraw": ".xml"}
+_MILLI = 1000
+
+BUDGET = {"papyrus": 60.0, "magicdraw": 30.0}
+"""Milliseconds of CPU time for each megabyte, from XML to the resolved graph."""
+
+MEMORY = 8.0
+"""Peak of the resident memory, as a multiple of the file's size, from 10 MB on."""
+
+ALL_OUTPUTS = 0.6
+"""Seconds of CPU time of a whole process, from a model of 1 MB to all outputs."""
+
+PYECORE = 15.0
+"""How many times less CPU time than pyecore."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Least CPU time in ms/MB of each lap, and memory as a multiple of the size."""
+
+    times: dict[str, float]
+    memory: float
+    megabytes: float
+
+    @property
+    def total(self) -> float:
+        return sum(self.times.values())
+
+
+def calibration() -> float:
+    """CPU time of a million additions."""
+    start = time.process_time()
+    total = 0
+    for number in range(1_000_000):
+        total += number
+    return time.process_time() - start
+
+
+def measure(work: str, path: Path, rounds: int, metamodel: str = "") -> Row:
+    """The best of several processes that do the same."""
+    return min((_once(work, path, metamodel) for _ in range(rounds)), key=lambda row: row.total)
+
+
+def _once(work: str, path: Path, metamodel: str) -> Row:
+    command = [sys.executable, str(_WORK), work, str(path), metamodel]
+    done = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    megabytes = done["size"] / MEGABYTE
+    times = {lap: _MILLI * seconds / megabytes for lap, seconds in done["times"].items()}
+    return Row(times, done["memory"] / done["size"], megabytes)
+
+
+def all_outputs(path: Path, rounds: int) -> float:
+    """CPU seconds of ``sysmlc`` from the model to all files, start-up included."""
+    sysmlc = str(Path(sysconfig.get_path("scripts")) / "sysmlc")
+    seconds = []
+    for _ in range(rounds):
+        with tempfile.TemporaryDirectory() as folder:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            subprocess.run([sysmlc, str(path), "-o", folder], check=True, capture_output=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        user = after.ru_utime - before.ru_utime
+        seconds.append(user + after.ru_stime - before.ru_stime)
+    return min(seconds)
+
+
+class Report:
+    """Prints lines and remembers whether a budget was missed."""
+
+    def __init__(self) -> None:
+        self.is_good = True
+
+    def line(self, name: str, text: str) -> None:
+        print(f"{name:<34} {text}", flush=True)
+
+    def budget(self, name: str, text: str, value: float, limit: float, unit: str) -> None:
+        """A line with a limit that the value must not exceed."""
+        met = value <= limit
+        self.is_good &= met
+        self.line(name, f"{text}  budget {limit:g} {unit}: {'met' if met else 'MISSED'}")
+
+
+def generated(options: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Path]]:
+    """The generated files, each removed when the next is made."""
+    for dialect in options.dialects:
+        for size in sorted(options.sizes):
+            path = folder / f"plant{size:g}{_SUFFIX[dialect]}"
+            with path.open("wb") as stream:
+                write(stream, size, options.seed, dialect)
+            yield dialect, path
+            path.unlink()
+
+
+def report_file(report: Report, path: Path, budget: float, options: argparse.Namespace) -> Row:
+    """Lines about one file; the row of ours."""
+    rounds = options.rounds if path.stat().st_size < 50 * MEGABYTE else 1
+    ours = measure("ours", path, rounds)
+    laps = " + ".join(f"{name} {ms:.1f}" for name, ms in ours.times.items())
+    text = f"{ours.total:6.1f} ms/MB ({laps}), memory {ours.memory:.1f} x"
+    report.budget(f"{path.name} ({ours.megabytes:.1f} MB)", text, ours.total, budget, "ms/MB")
+    if path.suffix != ".mdzip":
+        for work in ("lxml", "expat"):
+            other = measure(work, path, rounds)
+            ratio = f"ours is {ours.total / other.total:.1f} x"
+            report.line(
+                f"  {work}", f"{other.total:6.1f} ms/MB, memory {other.memory:.1f} x; {ratio}"
+            )
+    return ours
+
+
+def report_pyecore(report: Report, path: Path, ours: Row, metamodel: str) -> None:
+    """The line about pyecore, which reads only the dialect of Eclipse."""
+    if not metamodel:
+        report.line("  pyecore", "was not run: no --metamodel")
+        return
+    other = measure("pyecore", path, 1, metamodel)
+    ratio = other.total / ours.total
+    text = f"{other.total:6.1f} ms/MB, memory {other.memory:.1f} x; {ratio:.1f} x as long as ours"
+    report.budget("  pyecore", text, PYECORE / ratio, 1.0, f"({PYECORE:g} x)")
+
+
+def report_generated(report: Report, options: argparse.Namespace, folder: Path) -> None:
+    """Lines about generated files of all sizes and dialects."""
+    totals: dict[str, list[float]] = {}
+    for dialect, path in generated(options, folder):
+        ours = report_file(report, path, BUDGET[dialect], options)
+        totals.setdefault(dialect, []).append(ours.total)
+        if ours.megabytes > 5 and dialect == "papyrus":
+            report.budget("  memory", f"{ours.memory:6.1f} x", ours.memory, MEMORY, "x")
+        if dialect == "papyrus" and ours.megabytes < 50:
+            report_pyecore(report, path, ours, options.metamodel)
+        if dialect == "papyrus" and ours.megabytes < 2:
+            seconds = all_outputs(path, options.rounds)
+            report.budget("  to all outputs", f"{seconds:6.2f} s", seconds, ALL_OUTPUTS, "s")
+    for dialect, rows in totals.items():
+        if len(rows) > 1:
+            report.line(f"{dialect}: largest to smallest", f"{rows[-1] / rows[0]:6.2f} x per MB")
+
+
+def report_real(report: Report, options: argparse.Namespace) -> None:
+    """Lines about the models of the corpus that are there."""
+    corpus = Path(os.environ.get("SYSMLC_CORPUS", "")) / "xmi"
+    for name in _REAL if "SYSMLC_CORPUS" in os.environ else ():
+        dialect = "papyrus" if name.endswith(".uml") else "magicdraw"
+        report_file(report, corpus / name, BUDGET[dialect], options)
+
+
+def main() -> int:
+    """Print the measurements; 1 when a budget is missed."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sizes", type=float, nargs="+", default=[1.0, 10.0], metavar="MB")
+    parser.add_argument("--dialects", nargs="+", choices=sorted(BUDGET), default=sorted(BUDGET))
+    parser.add_argument("--metamodel", default="", help="UML.ecore, to measure pyecore with")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rounds", type=int, default=5)
+    options = parser.parse_args()
+    report = Report()
+    report.line("calibration loop", f"{min(calibration() for _ in range(5)):6.3f} s")
+    with tempfile.TemporaryDirectory() as folder:
+        report_generated(report, options, Path(folder))
+    report_real(report, options)
+    return 0 if report.is_good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
