@@ -287,3 +287,36 @@ def test_a_snapshot_is_recognised_by_its_namespace_and_place():
     assert FRONTEND.links(snapshot(COMPANY)) == []
     lone = source(SNAPSHOT % COMPANY, "company.xml")
     assert FRONTEND.detect(lone) < 1.0
+
+
+def test_the_library_itself_is_better_than_its_snapshots(tmp_path):
+    whole = model(
+        "<packagedElement xmi:type='uml:Class' xmi:id='robot' name='Robot'>"
+        "<ownedAttribute xmi:type='uml:Property' xmi:id='arm' name='whole arm'/></packagedElement>"
+    ).data.replace(b"xmi:id='m'", b"xmi:id='l'")
+    with zipfile.ZipFile(tmp_path / "Company Library.mdzip", "w") as zipped:
+        zipped.writestr("com.nomagic.magicdraw.uml_model.model", whole)
+    archive(tmp_path, model(), snapshot(COMPANY))
+    made = compile_model(Request((tmp_path / "plant.mdzip",)))
+    assert [file.path.partition("!")[0] for file in made.inputs] == [
+        "Company Library.mdzip",
+        "plant.mdzip",
+        "plant.mdzip",
+    ]
+    assert not library(made.graph)
+    assert made.graph["arm"].name == "whole arm"
+    assert made.graph.target(made.graph["p"], Edge.TYPED_BY) is made.graph["robot"]
+
+
+def test_archives_that_use_the_same_library_share_its_elements(tmp_path):
+    other = model(
+        MODEL.replace("'cell'", "'cell2'").replace("'p'", "'p2'"), name="other.mdzip!x.model"
+    ).data.replace(b"xmi:id='m'", b"xmi:id='m2'")
+    archive(tmp_path, model(), snapshot(COMPANY), snapshot(SYSML, "b"))
+    with zipfile.ZipFile(tmp_path / "other.mdzip", "w") as zipped:
+        zipped.writestr("com.nomagic.magicdraw.uml_model.model", other)
+        zipped.writestr(snapshot(COMPANY).name.partition("!")[2], snapshot(COMPANY).data)
+    made = compile_model(Request((tmp_path,)))
+    users = made.graph.sources(made.graph["robot"], Edge.TYPED_BY)
+    assert sorted(one.id for one in users) == ["p", "p2"]
+    assert [found.rule.code for found in made.diagnostics] == []

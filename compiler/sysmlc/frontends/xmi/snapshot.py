@@ -144,21 +144,24 @@ def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
     made = parser()
     name, limit = source.name, DEFAULT_LIMITS.depth
     found: list[Entry] = []
-    written: list[tuple[str, str | None]] = []
+    features: list[str] = []
+    types: list[str | None] = []
+    local: dict[str, str] = {}
     stack: list[Entry | None] = [None]
 
     def start(tag: str, values: dict[str, str]) -> None:
         above = stack[-1]
-        feature = tag.rpartition("}")[2]
+        feature = local.get(tag) or local.setdefault(tag, tag.rpartition("}")[2])
         id = values.get("ID")
         if id:
             owner = above.id if above is not None else ""
-            stack.append(Entry(id, feature, len(written), name, owner, values))
+            stack.append(Entry(id, feature, len(features), name, owner, values))
         else:
             if above is not None and "href" in values:
                 above.refer(feature, values["href"])
             stack.append(above)
-        written.append((feature, values.get(_TYPE)))
+        features.append(feature)
+        types.append(values.get(_TYPE))
         if len(stack) > limit:
             too_deep(source, made)
 
@@ -173,4 +176,4 @@ def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
     made.StartElementHandler = start
     made.EndElementHandler = end
     parse(source, made)
-    return found, Counter(type_name or feature for feature, type_name in written)
+    return found, Counter(t or f for t, f in zip(types, features, strict=True))

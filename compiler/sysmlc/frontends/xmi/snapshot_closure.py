@@ -79,8 +79,13 @@ def _needs(snapshots: Snapshots, entry: Entry) -> Iterator[str]:
     for feature in _NEEDED & entry.values.keys():
         yield from entry.values[feature].split()
     for inside in snapshots.owned(entry.id):
-        if inside.feature in _OWNED:
+        if inside.feature in _OWNED and not _is_empty(snapshots, inside):
             yield inside.id
+
+
+def _is_empty(snapshots: Snapshots, entry: Entry) -> bool:
+    """Snapshots keep slots whose values they leave out."""
+    return entry.feature == "slot" and not snapshots.owned(entry.id)
 
 
 def type_of(entry: Entry) -> str:

@@ -39,14 +39,11 @@ class LibraryElements:
         """Add the entries, with the owners above them and the edges between them."""
         found = [entry for entry in entries if not self._is_taken(entry.id)]
         for entry in found:
-            self._name(entry)
+            self.ids[entry.id] = canonical(self._snapshots, entry) or entry.id
         for entry in found:
             self._add(entry)
         for entry in found:
             self._connect(entry)
-
-    def _name(self, entry: Entry) -> None:
-        self.ids[entry.id] = canonical(self._snapshots, entry) or entry.id
 
     # -- elements ------------------------------------------------------------------------------
 
