@@ -211,6 +211,27 @@ def test_owners_without_end_are_refused():
     assert raised.value.fault is Fault.LIMIT
 
 
+@pytest.mark.parametrize(
+    ("spoil", "reason"),
+    [
+        (lambda text: text[:-12], "not well-formed XML: unclosed token"),
+        (
+            lambda text: text.replace(b"<packet>", b"<!DOCTYPE x [<!ENTITY e 'f'>]><packet>"),
+            "DOCTYPE",
+        ),
+    ],
+)
+def test_a_damaged_file_is_located_and_left_out(spoil, reason):
+    spoilt = Source("plant_mtip.xml", spoil(STRUCTURE.data))
+    assert FRONTEND.detect(spoilt) == 1.0
+    sink, graph = Sink(), Graph()
+    FRONTEND.read([spoilt, packet(data("Class", "z"), name="z.xml")], graph, sink, Coverage())
+    (found,) = sink
+    assert (found.rule.code, [element.id for element in graph]) == ("SM185", ["z"])
+    assert reason in found.message
+    assert found.subject.place.offset > 0
+
+
 def test_other_files_are_left_to_others():
     assert FRONTEND.detect(STRUCTURE) == 1.0
     for text in (b"<packet/>", b"<x><packet mtipVersion=''/></x>", b"", b"<uml:Model/>"):

@@ -3,13 +3,18 @@
 import re
 from collections.abc import Sequence
 
-from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.huds.lowering import lower
-from sysmlc.frontends.huds.records import read
+from sysmlc.frontends.huds.records import Record, read
+from sysmlc.frontends.huds.rules import MALFORMED
 from sysmlc.ir import Graph
-from sysmlc.sources import Source
+from sysmlc.sources import Fault, Source, SourceError
 
-_ROOT = re.compile(rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*)*<packet[\s>]", re.DOTALL)
+_ROOT = re.compile(
+    rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>\[]*(\[.*?\])?\s*>\s*)*<packet[\s>]",
+    re.DOTALL,
+)
+"""A DOCTYPE is refused later, with its place."""
 
 
 class HudsFrontend:
@@ -28,9 +33,25 @@ class HudsFrontend:
         return ()
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph. Raises SourceError for a damaged one."""
+        """Read the files into the graph; a damaged file is reported and left out.
+
+        Raises SourceError for what exceeds the limits.
+        """
         for source in sorted(sources, key=lambda one: one.name):
-            lower(source.name, read(source), graph, sink, coverage)
+            records = _records(source, sink)
+            if records is not None:
+                lower(source.name, records, graph, sink, coverage)
+
+
+def _records(source: Source, sink: Sink) -> list[Record] | None:
+    try:
+        return read(source)
+    except SourceError as problem:
+        if problem.fault is Fault.LIMIT:
+            raise
+        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+        sink.report(MALFORMED, subject, file=source.name, problem=problem.message)
+        return None
 
 
 FRONTEND = HudsFrontend()

@@ -2,6 +2,17 @@
 
 from sysmlc.diagnostics import Severity, rule
 
+MALFORMED = rule(
+    "SM185",
+    "malformed-mtip-file",
+    Severity.ERROR,
+    "'{file}' cannot be read: {problem}",
+    why="The file is damaged, or it asks for something that safe reading refuses. Nothing of it "
+    "is in the graph, because half a model gives wrong outputs.",
+    help="export the model again",
+    wrong="<packet><data></packet>",
+    right="<packet><data></data></packet>",
+)
 UNSUPPORTED = rule(
     "SM181",
     "unsupported-mtip-type",
