@@ -320,3 +320,19 @@ def test_archives_that_use_the_same_library_share_its_elements(tmp_path):
     users = made.graph.sources(made.graph["robot"], Edge.TYPED_BY)
     assert sorted(one.id for one in users) == ["p", "p2"]
     assert [found.rule.code for found in made.diagnostics] == []
+
+
+def test_an_id_that_many_files_have_does_not_lead_into_a_snapshot():
+    inside = '<uml:Package ID="_0" name="Library"/><uml:Package ID="_1" name="More"/>'
+    imports = (
+        "<packageImport xmi:type='uml:PackageImport' xmi:id='i%d'><importedPackage href='%s'/>"
+        "</packageImport>"
+    )
+    hrefs = (
+        "http://www.omg.org/spec/UML/20110701/PrimitiveTypes.xmi#_0",
+        "Company.mdzip#_0",
+        "PROJECT-1?resource=x#_1",
+    )
+    written = "".join(imports % pair for pair in enumerate(hrefs))
+    graph = read(model(written), snapshot(inside)).graph
+    assert [r.target for r in graph.pending] == [hrefs[0], "_0", "_1"]

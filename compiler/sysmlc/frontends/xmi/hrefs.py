@@ -50,6 +50,14 @@ def is_in_project(href: str, fragment: str) -> bool:
     return not fragment.startswith(_ROOT) and _PROJECT.match(href) is not None
 
 
+def can_lead_into(library: str, path: str, id: str) -> bool:
+    """Whether a reference to the id in the file ``path`` can mean an element of the library.
+
+    The id alone tells when it is the same in no two models; ``_0`` is in many.
+    """
+    return is_unmistakable(id) or is_in_project(path, id) or path == library != ""
+
+
 def base_name(path: str) -> str:
     """Last part of a path or URI, without an archive's entry."""
     return unquote(posixpath.basename(path.partition("!")[0].partition("?")[0]))

@@ -2,10 +2,11 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
 from sysmlc.diagnostics.coverage import Loss
+from sysmlc.frontends.xmi import hrefs
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.profiles import last_segment, mangled
 from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
@@ -34,12 +35,19 @@ def add(
     unit: Unit, contexts: Sequence[Context], models: Sequence[Source], snapshots: Snapshots
 ) -> None:
     """Add what the models refer to in the snapshots to the graph, and tell the unit its ids."""
-    hrefs = [found for model in models for found in _hrefs(model)]
-    wanted = dict.fromkeys(id for _, id in hrefs if not unit.has(id))
+    found = [href for model in models for href in _hrefs(model)]
+    files = _files(found, snapshots)
+    wanted = {id: None for path, id in found if _is_there(snapshots, files, path, id)}
     wanted.update(dict.fromkeys(_stereotypes(contexts, snapshots)))
-    made = LibraryElements(snapshots, unit.graph, _files(hrefs, snapshots), unit.has)
-    made.add(needed(snapshots, wanted))
-    unit.library.update(made.ids)
+    made = LibraryElements(snapshots, unit.graph, files, unit.has)
+    made.add(needed(snapshots, (id for id in wanted if not unit.has(id))))
+    for id, known in made.ids.items():
+        unit.library[id] = known, files[snapshots.entries[id].source]
+
+
+def _is_there(snapshots: Snapshots, files: Mapping[str, str], path: str, id: str) -> bool:
+    entry = snapshots.entries.get(id)
+    return entry is not None and hrefs.can_lead_into(files[entry.source], path, id)
 
 
 def _hrefs(model: Source) -> Iterator[tuple[str, str]]:
@@ -66,12 +74,12 @@ def _stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[
                 yield entry.id
 
 
-def _files(hrefs: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
+def _files(found: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
     """Names of the libraries by snapshot."""
     written: dict[str, Counter[str]] = {}
-    for path, id in hrefs:
+    for path, id in found:
         entry = snapshots.entries.get(id)
-        if entry is not None and path and "?" not in path:
+        if entry is not None and path and "?" not in path and "://" not in path:
             written.setdefault(entry.source, Counter())[path] += 1
     return {source: _name(source, written.get(source, Counter())) for source in snapshots.counts}
 

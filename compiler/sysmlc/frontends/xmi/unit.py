@@ -121,7 +121,7 @@ class Unit:
         self.files = [Lowered(document) for document in documents]
         self.links = Links()
         self.profiles = Profiles()
-        self.library: dict[str, str] = {}
+        self.library: dict[str, tuple[str, str]] = {}
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
         self._holders: dict[str, list[Lowered]] = {}
         for file in self.files if len(self.files) > 1 else ():
@@ -187,15 +187,18 @@ class Unit:
         """
         found = self.find(lowered, target, is_href)
         if found is None and is_href:
-            return self.library.get(target.rpartition("#")[2]) or hrefs.normalised(
-                target, lowered.document.name
-            )
+            return self._in_library(target) or hrefs.normalised(target, lowered.document.name)
         if found is None:
             return target
         holder, row = found
         if not holder.own[row] and holder.verdicts[row] in _NOT_KEPT:
             return None
         return holder.gids[row] or None
+
+    def _in_library(self, target: str) -> str | None:
+        path, _, id = target.rpartition("#")
+        known, file = self.library.get(id, ("", ""))
+        return known if hrefs.can_lead_into(file, path, id) else None
 
     def flush(self) -> None:
         """Give all references to the graph, in the order in which they were found."""

@@ -178,11 +178,13 @@ class _Answers:
         found = known(target, {use.path for use in uses}, {use.kind for use in uses})
         if found is None:
             return target
+        if found.owner == "PrimitiveTypes":
+            return PRIMITIVE_TYPES + found.name
         self.known[found.href] = found
         return found.href
 
     def _add(self, href: str, uses: list[_Use]) -> None:
-        if href in self.known and not href.startswith(PRIMITIVE_TYPES):
+        if href in self.known:
             origin = min(uses, key=_Use.place).holder.id
             add(self.graph, self.known[href], origin)
         else:
