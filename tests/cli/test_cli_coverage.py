@@ -193,6 +193,13 @@ def test_a_missing_file_is_exit_code_2(here):
     assert "SM170" in done.stderr
 
 
+def test_a_folder_without_models_has_no_table(here):
+    (here.folder / "empty").mkdir()
+    done = here.sysmlc("coverage", "empty")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert "SM173" in done.stderr
+
+
 def test_a_name_cannot_steer_the_terminal(here):
     here.write("plant.uml", PLANT.replace('name="settling"', 'name="&#x9b;2J"'))
     assert "\x9b" not in here.sysmlc("coverage", "plant.uml").stdout

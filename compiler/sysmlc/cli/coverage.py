@@ -69,7 +69,7 @@ def command(
     made = [_cover(unit.files, loaded) for unit in units]
     code = max(_report_errors(one) for one in made)
     files = [file for one in made for file in _shown(one)]
-    if code < 2:
+    if code < 2 and (files or form != "text"):
         _print(files, form, every)
     ctx.exit(max(code, int(_is_below(files, fail_under))))
 
