@@ -5,7 +5,7 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, TypeVar
 
 from sysmlc import resources
@@ -131,7 +131,11 @@ class Invocation:
 
 Statement = Assignment | Send | Invocation
 
+_REMEMBERED = 4096
+"""Texts whose expressions are kept: guards and ranges are asked for again by every pass."""
 
+
+@lru_cache(_REMEMBERED)
 def parse_expression(text: str) -> Expression:
     """The expression that the text is. Raises ExpressionError."""
     from sysmlc.logic._expression_tree import to_expression

@@ -1,6 +1,7 @@
 """Substitution into formulas, constant folding, and satisfiability over small domains."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
@@ -10,6 +11,8 @@ from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 
 _LIMIT = 4096
 """Valuations tried; beyond them the answer is that a formula may be true and may be false."""
+_REMEMBERED = 1 << 16
+"""Answers that are kept: machines of one kind ask the same questions."""
 _TIDY_LIMIT = 300
 """The same for what only serves the reader."""
 
@@ -59,7 +62,15 @@ def is_satisfiable(formula: Formula, known: Mapping[str, Domain], limit: int = _
     """
     if isinstance(formula, Const):
         return bool(formula.value)
-    found = {(v.name, v.primed): known[v.name] for v in f.variables(formula)}
+    found = tuple((v.name, v.primed, known[v.name]) for v in f.variables(formula))
+    return _is_satisfiable(formula, found, limit)
+
+
+@lru_cache(_REMEMBERED)
+def _is_satisfiable(
+    formula: Formula, variables: tuple[tuple[str, bool, Domain], ...], limit: int
+) -> bool:
+    found = {(name, primed): domain for name, primed, domain in variables}
     now = {name: domain for (name, primed), domain in found.items() if not primed}
     then = {name: domain for (name, primed), domain in found.items() if primed}
     if domains.count(now) * domains.count(then) > limit:

@@ -6,6 +6,7 @@ out over the values of the variables, and a primed variable as X before its prop
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
@@ -31,6 +32,10 @@ LIMIT = 20_000
 
 class TooLargeError(Exception):
     """A comparison over so many values that its formula would be of no use."""
+
+
+_REMEMBERED = 1 << 14
+"""Comparisons whose cases are kept: machines of one kind have the same."""
 
 
 def spin(contract: Contract) -> str:
@@ -89,7 +94,15 @@ def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
         ):
             return f"!{_atom(name, primed, value, known)}"
         case _:
-            return _cases(formula, variables, {}, {}, known)
+            found = tuple((one.name, known[one.name]) for one in variables)
+            return _all_cases(formula, tuple(variables), found)
+
+
+@lru_cache(_REMEMBERED)
+def _all_cases(
+    formula: Formula, variables: tuple[Var, ...], known: tuple[tuple[str, Domain], ...]
+) -> str:
+    return _cases(formula, [*variables], {}, {}, dict(known))
 
 
 def _atom(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) -> str:
