@@ -130,6 +130,17 @@ def test_what_has_no_place_in_the_notation_is_reported():
     assert found.message == "1 of the 2 elements that diagram 'Use' shows are not drawn: Pump"
 
 
+def test_a_use_case_diagram_has_no_comment_that_was_left_out_and_is_not_empty():
+    graph = parse_text(
+        'UseCase u "Start"\nClass c "Pump"\nComment n body="Later"\n  -> references u\n'
+        'View v "Use" subkind="diagram" diagram="uc"\n  -> references u\n'
+        'View w "Pumps" subkind="diagram" diagram="uc"\n  -> references c\n'
+    )
+    (file,), sink = emitted(graph)
+    assert "Later" not in file.text
+    assert [found.rule.code for found in sink] == ["SM702"]
+
+
 def test_the_frame_may_be_a_shape_too():
     """Papyrus draws the block itself, and the parts inside it."""
     graph = parse_text(

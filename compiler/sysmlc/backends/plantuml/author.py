@@ -1,7 +1,7 @@
 """Diagrams as their authors drew them: their choice of elements and lines, our notation."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sysmlc.backends.plantuml import (
@@ -17,7 +17,14 @@ from sysmlc.backends.plantuml.author_choice import Choice
 from sysmlc.backends.plantuml.bindings import Binding, bindings
 from sysmlc.backends.plantuml.relations import Relation
 from sysmlc.backends.plantuml.text import plain
-from sysmlc.backends.plantuml.views import BoxView, Diagram, GraphView, InternalView, View
+from sysmlc.backends.plantuml.views import (
+    BoxView,
+    Diagram,
+    GraphView,
+    InternalView,
+    UseCaseView,
+    View,
+)
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
@@ -121,7 +128,10 @@ class _Drawer:
         ids = {one.id for one in figures}
         inside = [r for r in self._relations if author_boxes.is_inside(choice, r, ids)]
         cases = [one for one in figures if one.kind is Kind.USE_CASE]
-        return uc.view(self.graph, cases, [one for one in figures if one not in cases], inside)
+        actors = [one for one in figures if one not in cases]
+        made = uc.view(self.graph, cases, actors, inside)
+        notes = (note for note in made.notes if not choice.ids.isdisjoint(note.shows))
+        return replace(made, notes=tuple(notes))
 
     def _sequence(self, choice: Choice) -> View | None:
         about = author_behaviours.behaviour(choice, Kind.INTERACTION)
@@ -143,6 +153,8 @@ def _is_empty(view: View) -> bool:
         return not view.boxes
     if isinstance(view, GraphView):
         return not view.nodes
+    if isinstance(view, UseCaseView):
+        return not (view.actors or view.cases or view.subjects)
     return isinstance(view, InternalView) and not (view.frame.parts or view.frame.ports)
 
 
