@@ -118,7 +118,7 @@ def _choice(game: Game, node: TokenNode) -> Iterator[Conjunct]:
         yield from _branch_update(game, edge)
     fires = f.both(
         game.starts(node),
-        f.either(*map(game.opened, branches)),
+        game.decides(node),
         f.negate(game.ended(node.region)),
     )
     arrives = [f.both(f.primed(at(e)), f.negate(game.kept(e))) for e in branches]

@@ -159,11 +159,16 @@ class Game:
             case Firing.NEVER:
                 return f.FALSE
             case Firing.CHOICE:
-                branches = self.graph.outgoing(target)
-                opened = f.either(*map(self.opened, branches)) if branches else f.TRUE
-                return f.both(self._others(edge), opened)
+                return f.both(self._others(edge), self.decides(target))
             case _:
                 return f.both(self._others(edge), self.is_free(target))
+
+    def decides(self, node: TokenNode) -> Formula:
+        """Some branch of the decision is open, as far as that is not clear anyway."""
+        branches = self.graph.outgoing(node)
+        if node.exhaustive or not branches:
+            return f.TRUE
+        return f.either(*map(self.opened, branches))
 
     def _others(self, edge: TokenEdge) -> Formula:
         """A token is on every other edge into the same node."""

@@ -155,7 +155,10 @@ def _add_failure(draft: Draft, node: Element) -> None:
 
 def _after(draft: Draft, node: Element) -> str:
     """What the flows of a call leave when it has ended by itself."""
-    label, region = f"the end of {draft.drawing.labels[node.id]}", draft.drawing.region[node.id]
+    label, region = (
+        f"the normal end of {draft.drawing.labels[node.id]}",
+        draft.drawing.region[node.id],
+    )
     if not draft.outgoing[node.id]:
         return draft.extra(node, "end", NodeKind.SINK, label, region).id
     draft.exits[node.id] = draft.extra(node, "end", NodeKind.MERGE, label, region).id
