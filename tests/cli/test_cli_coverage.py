@@ -8,6 +8,7 @@ from jsonschema import Draft202012Validator
 
 from sysmlc import resources
 from sysmlc.diagnostics.coverage import covered_tenths, tenths
+from sysmlc.diagnostics.coverage_report import FileReport
 from sysmlc.diagnostics.render import coverage
 from sysmlc.driver import Request
 from sysmlc.driver.covering import cover
@@ -85,6 +86,14 @@ def test_colours_are_for_terminals_and_move_no_column(plant):
     assert "\x1b" not in plain
     assert "\x1b[31munsupported\x1b[0m" in coloured
     assert re.sub(r"\x1b\[\d+m", "", coloured) == plain
+
+
+def test_what_a_front_end_only_counts_is_said_to_have_no_place():
+    totals = {"mapped": 5, "approximated": 1, "unsupported": 2, "external": 0}
+    totals["ignored_notation"] = 4
+    file = FileReport("big.xml", totals, {"sysml.Slot": totals}, ())
+    last = coverage.text([file]).splitlines()[-1]
+    assert last == "big.xml: 3 of these elements without a place"
 
 
 def test_three_examples_are_shown_unless_all_are_asked_for(here):

@@ -34,6 +34,7 @@ def text(files: Sequence[FileReport], *, color: bool = False, every: bool = Fals
     """Tables of files and types, worst first, then examples of what is lost (or ``every`` one)."""
     total = added(file.totals for file in files)
     blocks = [_headline(total), *_tables(files, color), *_details(files, color, every)]
+    blocks += _unlisted(files)
     return "\n\n".join(blocks) + "\n"
 
 
@@ -117,6 +118,15 @@ def _details(files: Sequence[FileReport], color: bool, every: bool) -> Iterator[
             word = _painted(verdict.value, _COLORS[verdict]) if color else verdict.value
             head = f"{visible(one.name)}: {len(members)} {word}, {visible(reason)}{code}"
             yield "\n".join([head, *_examples(members, every)])
+
+
+def _unlisted(files: Sequence[FileReport]) -> Iterator[str]:
+    """Losses of front ends that count and keep no places."""
+    for file in files:
+        counted = sum(file.totals[verdict.value] for verdict in LOSSES)
+        listed = sum(x.loss.elements for x in file.losses if x.loss.verdict in LOSSES)
+        if counted > listed:
+            yield f"{visible(file.file)}: {counted - listed:,} of these elements without a place"
 
 
 def _general(lost: LostElement) -> str:
