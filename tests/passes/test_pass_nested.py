@@ -73,8 +73,12 @@ def test_each_flow_property_is_turned_round_at_a_conjugated_port(conjugated):
 
 @pytest.mark.parametrize(
     ("outer", "inner", "expected"),
-    [("", "", "in"), (" conjugated=true", "", "out"), ("", " conjugated=true", "out")]
-    + [(" conjugated=true", " conjugated=true", "in")],
+    [
+        ("", "", "in"),
+        (" conjugated=true", "", "out"),
+        ("", " conjugated=true", "out"),
+        (" conjugated=true", " conjugated=true", "in"),
+    ],
 )
 def test_a_conjugated_port_turns_round_what_is_nested_in_it(outer, inner, expected):
     model = TYPES.replace('"data"\n    -> typed-by one', f'"data"{inner}\n    -> typed-by one')
