@@ -10,7 +10,7 @@ from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activity_rules import sketch
+from sysmlc.passes.activity_sketch import sketch
 
 spot = pytest.importorskip("spot")
 

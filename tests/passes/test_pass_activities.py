@@ -8,8 +8,10 @@ from sysmlc.ir.verify import verify
 from sysmlc.logic.token_game import State, is_complete
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activity_rules import sketch
+from sysmlc.passes.activity_sketch import sketch
 
+LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
+"""What the models of rules about limits are over."""
 RULES = {code: rule for code, rule in catalogue().items() if "SM450" <= code <= "SM499"}
 
 
@@ -35,7 +37,7 @@ def codes(sink: Sink) -> list[str]:
 
 @pytest.mark.parametrize("code", sorted(RULES))
 def test_each_rule_is_found_in_its_wrong_model_and_not_in_its_right_one(code):
-    options = {"max_markings": 3} if code == "SM455" else {}
+    options = LIMITS.get(code, {})
     _, sink = tokens(RULES[code].wrong, **options)
     assert code in codes(sink)
     found = next(d for d in sink if d.rule.code == code)
@@ -605,6 +607,24 @@ def test_a_long_condition_gets_a_name():
     graph = only(sketch(chain + "\n".join(f"a{n} -> a{n + 1}" for n in range(8))))
     assert graph.quiets == (("", "over"),)
     assert only(sketch("initial i\naction x\ni -> x")).quiets == ()
+
+
+def nested(levels: int) -> str:
+    lines = [f'{"  " * n}Structured s{n} "" subkind="structured"' for n in range(1, levels + 1)]
+    return "\n".join(
+        ['Activity a "a"', *lines, f'{"  " * levels}  Action x "x" subkind="opaque"\n']
+    )
+
+
+def test_structured_nodes_may_be_nested_as_deep_as_anybody_draws():
+    assert only(nested(100)).finishes
+
+
+@pytest.mark.parametrize("levels", [101, 1500])
+def test_spoilt_models_with_deeper_nesting_are_reported(levels):
+    made, sink = tokens(nested(levels))
+    assert made == []
+    assert codes(sink) == ["SM479"]
 
 
 # -- size --------------------------------------------------------------------------------------

@@ -24,11 +24,13 @@ class Activities:
     """Makes token graphs.
 
     ``max_markings`` bounds the search for a second token on a flow; activities with more than
-    ``collapse_over`` edges lose the control nodes that only pass tokens on.
+    ``collapse_over`` edges lose the control nodes that only pass tokens on. Structured nodes that
+    are nested deeper than ``max_depth`` are not followed.
     """
 
     max_markings: int = 20_000
     collapse_over: int = 40
+    max_depth: int = 100
 
     name: ClassVar[str] = "activities"
     after: ClassVar[tuple[str, ...]] = ("classify", "flows")
@@ -50,6 +52,7 @@ class Activities:
     def _token_graph(
         self, graph: Graph, activity: Element, raising: Raising, sink: Sink
     ) -> TokenGraph:
+        self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read(graph, activity, sink)
         if not drawing.nodes:
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
@@ -60,6 +63,15 @@ class Activities:
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
         return activity_search.named(tokens, inputs.names)
+
+    def _check_depth(self, graph: Graph, activity: Element, sink: Sink) -> None:
+        depth = {activity.id: 0}
+        for element in graph.subtree(activity):
+            depth[element.id] = depth.get(element.owner or "", 0) + (element is not activity)
+            if depth[element.id] > self.max_depth and element.kind is Kind.STRUCTURED:
+                subject, limit = graph.subject(element), self.max_depth
+                sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
+                raise activity_drawing.CannotPlayError
 
 
 def _is_drawn_elsewhere(activity: Element) -> bool:
