@@ -217,8 +217,8 @@ def _many_drops(root: Element, random: Random) -> None:
 def _rename_attribute(root: Element, random: Random) -> None:
     element, other = any_element(root, random), any_element(root, random)
     if element.attrib and other.attrib:
-        value = element.attrib.pop(random.choice(list(element.attrib)))
-        element.set(random.choice(list(other.attrib)), value)
+        name = random.choice(list(other.attrib))
+        element.set(name, element.attrib.pop(random.choice(list(element.attrib))))
 
 
 def _move_to_root(root: Element, random: Random) -> None:

@@ -25,7 +25,7 @@ from fuzz.guard import MEGABYTE, Bounds, Ended, Guard
 
 SECONDS = 5
 MEMORY = 1024 * MEGABYTE
-ARGS = ("-o", "out", "--emit", "+graph,+ecore,+ir", "--verify-each")
+ARGS = ("-o", "out", "--emit", "+graph,+ecore,+ir", "--diagrams", "both", "--verify-each")
 _EVERY = 20
 """One mutant of so many is compiled again with another hash seed."""
 _EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*/*.uml"))
