@@ -2,14 +2,19 @@
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from html import unescape
 
-from sysmlc.diagnostics import Coverage, Subject, Verdict
+from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
+from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
+from sysmlc.ir import Edge
 from sysmlc.sources import Source
+
+_Use = tuple[Document, Node]
 
 _EXTERNAL = re.compile(rb"<(?:[\w.-]+:)?ExternalReference\b[^>]*")
 _PATH = re.compile(rb"""\bPath\s*=\s*(?:"([^"]+)|'([^']+))""")
@@ -23,7 +28,7 @@ def links(source: Source) -> list[str]:
     return list(dict.fromkeys(paths))
 
 
-def account(context: Context, coverage: Coverage) -> None:
+def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
     """Count every element of each file once, and report what is not read or leads nowhere."""
     for document in context.documents:
         counts = coverage.file(document.name)
@@ -40,8 +45,8 @@ def account(context: Context, coverage: Coverage) -> None:
         for (tag, verdict), number in table.items():
             counts.count(tag, verdict, number)
         _report_lost(context, document, lost)
-    _report_missing(context)
-    context.report_repeated()
+    _report_missing(context, sources)
+    context.report_ids()
 
 
 def _report_lost(context: Context, document: Document, lost: dict[str, list[Node]]) -> None:
@@ -50,41 +55,66 @@ def _report_lost(context: Context, document: Document, lost: dict[str, list[Node
         context.report(rules.UNSUPPORTED, document, nodes[0], count=count, tag=tag)
 
 
-def _report_missing(context: Context) -> None:
-    together: dict[Missing, list[tuple[Document, Node]]] = {}
+_EDGES = {
+    "InternalElement": Edge.TYPED_BY,
+    "ExternalInterface": Edge.TYPED_BY,
+    "Attribute": Edge.TYPED_BY,
+    "SupportedRoleClass": Edge.REALIZES,
+    "RoleRequirements": Edge.REALIZES,
+}
+"""The edge that is missing when the reference of an element leads nowhere; else a general."""
+
+
+def _report_missing(context: Context, sources: Sequence[Source]) -> None:
+    together: dict[Missing, list[_Use]] = {}
     for missing, uses in context.missing.items():
         for document, node in uses:
-            if missing.what == "class":
-                _report_class(context, missing, document, node)
-            elif missing.what == "alias":
-                element = f"'{path_of(node)}'"
-                context.report(
-                    rules.UNDECLARED_ALIAS, document, node, element=element, alias=missing.name
-                )
+            _mark(context, node)
+            if missing.what in _SINGLE:
+                _report_single(context, missing, document, node)
             else:
                 together.setdefault(missing, []).append((document, node))
+    places = [document.place(node) for uses in together.values() for document, node in uses]
+    locations = locate(sources, places) if places else {}
     for missing, uses in together.items():
-        _report_outside(context, missing, uses)
+        _report_outside(context, missing, uses, locations)
 
 
-def _report_class(context: Context, missing: Missing, document: Document, node: Node) -> None:
-    context.report(
-        rules.MISSING_CLASS,
-        document,
-        node,
-        element=f"'{path_of(node)}'",
-        family="class",
-        path=missing.name,
-    )
+def _mark(context: Context, node: Node) -> None:
+    """Name the edge that is missing, so that later rules do not complain of what follows."""
+    holders = (context.graph.get(one.element) for one in (node, *node.above()))
+    holder = next((one for one in holders if one is not None), None)
+    if holder is not None:
+        known = holder.attrs.get("unresolved")
+        names = {str(name) for name in known} if isinstance(known, tuple) else set()
+        names.add(_EDGES.get(node.tag, Edge.SPECIALIZES).value)
+        context.graph.set(holder, unresolved=tuple(sorted(names)))
 
 
-def _report_outside(context: Context, missing: Missing, uses: list[tuple[Document, Node]]) -> None:
+_SINGLE = {"class": rules.MISSING_CLASS, "alias": rules.UNDECLARED_ALIAS}
+"""What is told at each reference; a file or library that is missing takes down many."""
+
+
+def _report_single(context: Context, missing: Missing, document: Document, node: Node) -> None:
+    name = missing.name
+    facts = {"element": f"'{path_of(node)}'", "family": "class", "path": name, "alias": name}
+    context.report(_SINGLE[missing.what], document, node, **facts)
+
+
+def _report_outside(
+    context: Context, missing: Missing, uses: list[_Use], locations: dict[Place, Location]
+) -> None:
     document, node = uses[0]
     rule = rules.MISSING_CLASS_LIBRARY if missing.what == "library" else rules.MISSING_FILE
-    count = "1 element" if len(uses) == 1 else f"{len(uses)} elements"
+    count = "1 element refers" if len(uses) == 1 else f"{len(uses)} elements refer"
     subject = Subject(missing.name, place=document.place(node))
-    names = [path_of(one) for _, one in uses]
-    notes = tuple(names[:10]) + ((f"and {len(names) - 10} more",) if len(names) > 10 else ())
+    notes = tuple(_note(*use, locations) for use in uses)
     context.sink.report(
         rule, subject, notes=notes, library=missing.name, file=missing.name, count=count
     )
+
+
+def _note(document: Document, node: Node, locations: dict[Place, Location]) -> str:
+    found = locations.get(document.place(node))
+    where = "" if found is None else f" ({document.name}:{found.line}:{found.column})"
+    return path_of(node) + where

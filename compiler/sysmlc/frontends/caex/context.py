@@ -32,8 +32,9 @@ class Context:
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
         self._plain: dict[str, tuple[Document, Node]] = {}
-        self._repeated: set[str] = set()
+        self._repeated: dict[str, list[tuple[Document, Node]]] = {}
         self._shared: set[tuple[str, str]] = set()
+        self._anonymous: dict[Document, list[Node]] = {}
         self._know_ids()
         self._know_roots()
 
@@ -43,10 +44,12 @@ class Context:
                 id = node.attributes.get("ID")
                 if id:
                     if id in self.nodes:
-                        self._repeated.add(id)
+                        self._repeated.setdefault(id, [self.nodes[id]]).append((document, node))
                     else:
                         self.nodes[id] = (document, node)
                     self._plain.setdefault(plain(id), (document, node))
+                elif node.tag == "InternalElement":
+                    self._anonymous.setdefault(document, []).append(node)
 
     def _know_roots(self) -> None:
         names = Counter(
@@ -96,9 +99,22 @@ class Context:
         """The id, made different when the graph has it."""
         return f"{id}~{node.ordinal}" if id in self.graph else id
 
-    def find(self, id: str) -> tuple[Document, Node] | None:
-        """The node with the id: literally, else without regard to braces and case."""
-        return self.nodes.get(id) or self._plain.get(plain(id))
+    def find(self, id: str, document: Document | None = None) -> tuple[Document, Node] | None:
+        """The node with the id: literally, else without regard to braces, case and alias.
+
+        Of several files that have the id, ``document`` is the one that is meant.
+        """
+        if id in self._repeated:
+            alike = self._repeated[id]
+            return next((one for one in alike if one[0] is document), alike[0])
+        return self.nodes.get(id) or self._plain.get(plain(id.rpartition("@")[2]))
+
+    def tell_lenient(self, document: Document, node: Node, id: str) -> None:
+        """Tell that an id was found only by leaving braces and case aside."""
+        known = self._plain.get(plain(id)) if id not in self.nodes else None
+        if known is not None:
+            meant = known[1].attributes["ID"]
+            self.report(rules.LENIENT_ID, document, node, element=node.name, id=id, meant=meant)
 
     # -- classes -------------------------------------------------------------------------------
 
@@ -129,13 +145,18 @@ class Context:
         """The node as the subject of a finding: its path, its element, its place."""
         return Subject(path_of(node), node.element, document.place(node))
 
-    def report_repeated(self) -> None:
-        """Ids that several elements have."""
-        for document in self.documents:
-            for node in document.root.walk():
-                id = node.attributes.get("ID")
-                if id in self._repeated and self.nodes[id][1] is not node:
+    def report_ids(self) -> None:
+        """Ids that several elements of one file have, and elements that have none."""
+        for id, alike in self._repeated.items():
+            seen: set[Document] = set()
+            for document, node in alike:
+                if document in seen:
                     self.report(rules.REPEATED_ID, document, node, id=id, element=node.name)
+                seen.add(document)
+        for document, nodes in self._anonymous.items():
+            first, *others = nodes
+            more = f", nor have {len(others)} more elements of the file" if others else ""
+            self.report(rules.NO_ID, document, first, element=path_of(first), more=more)
 
 
 def path_of(node: Node) -> str:

@@ -7,7 +7,7 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import DIRECTIONS, Family, value_of
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _CARDINALITY = ("MinOccur", "MaxOccur")
 
@@ -123,8 +123,9 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     element = context.add(Kind.PORT, node, document, owner.id)
     declared = interface_class(context, node, document)
     _redefine(context, owner, node, element)
+    element.attrs.update(port_attributes(node))
     for child in node.of("Attribute"):
-        _tell(context, element, child)
+        mark(child)
     own = _own_interface(context, owner, node, document, element, declared)
     type = own or declared
     if type is not None:
@@ -165,34 +166,40 @@ def _own_interface(
     return made
 
 
-def _tell(context: Context, port: Element, node: Node) -> None:
-    """An attribute of an interface says how the port is: direction, cardinality, or a value."""
+def port_attributes(node: Node) -> dict[str, AttrValue]:
+    """What the attributes of an interface say: direction, cardinality, category, values."""
+    said: dict[str, AttrValue] = {}
+    for child in node.of("Attribute"):
+        _tell(said, child)
+    return said
+
+
+def _tell(said: dict[str, AttrValue], node: Node) -> None:
     value = node.text("Value") or node.text("DefaultValue") or ""
     if node.name == "Direction" and value.strip().lower() in DIRECTIONS:
-        port.attrs["direction"] = DIRECTIONS[value.strip().lower()]
+        said["direction"] = DIRECTIONS[value.strip().lower()]
     elif node.name == "Cardinality":
-        _cardinality(port, node)
+        _cardinality(said, node)
     elif node.name == "Category" and value:
-        port.attrs["category"] = value
+        said["category"] = value
     else:
-        _values(port, node)
-    mark(node)
+        _values(said, node)
 
 
-def _cardinality(port: Element, node: Node) -> None:
+def _cardinality(said: dict[str, AttrValue], node: Node) -> None:
     found = {child.name: (child.text("Value") or "").strip() for child in node.of("Attribute")}
     lower, upper = (found.get(name) or "" for name in _CARDINALITY)
     if lower or upper:
         bounds = (lower or "0", upper or "*")
-        port.attrs["multiplicity"] = bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
+        said["multiplicity"] = bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
 
 
-def _values(port: Element, top: Node) -> None:
+def _values(said: dict[str, AttrValue], top: Node) -> None:
     waiting = [(top, f"value.{top.name}")]
     while waiting:
         node, key = waiting.pop()
         value = node.text("Value")
         value = node.text("DefaultValue") if value is None else value
         if value is not None:
-            port.attrs[key] = value_of(value, node.attributes.get("AttributeDataType", ""))
+            said[key] = value_of(value, node.attributes.get("AttributeDataType", ""))
         waiting += [(child, f"{key}.{child.name}") for child in node.of("Attribute")]

@@ -50,21 +50,23 @@ class CaexFrontend:
             documents = [d for source in ordered if (d := _read(source, sink)) is not None]
             context = Context(documents, graph, sink, Standard().provide)
             _lower(context)
-            account.account(context, coverage)
+            account.account(context, coverage, ordered)
 
 
 def _lower(context: Context) -> None:
     types = []
     for document in context.documents:
         libraries.header(context, document)
+    libraries.tie_aliases(context)
+    for document in context.documents:
         types += libraries.lower(context, document)
     libraries.specialise(context, types)
     for type in libraries.in_order(types):
         features.lower_own(context, type)
     sites = Sites(context)
-    for type in types:
-        if type.family in (Family.SYSTEM_UNIT, Family.ROLE):
-            sites.lower_class(type)
+    held = [type for type in types if type.family in (Family.SYSTEM_UNIT, Family.ROLE)]
+    for type in libraries.in_order_of_parts(context, held):
+        sites.lower_class(type)
     for document in context.documents:
         for node in document.root.of("InstanceHierarchy"):
             sites.lower_hierarchy(node, document)

@@ -21,9 +21,18 @@ def own(context: Context, site: Site) -> Type:
     graph.add(made)
     site.own = Type(id, site.node, site.document, Family.SYSTEM_UNIT)
     site.own.base = site.declared
+    _retype(site, site.own)
     if site.declared is not None:
         graph.connect(Edge.SPECIALIZES, id, site.declared.id)
     return site.own
+
+
+def _retype(site: Site, own: Type) -> None:
+    """Let the class above know that its part has another type."""
+    above = site.parent.own if site.parent is not None else None
+    known = above.members.get(("InternalElement", site.node.name)) if above is not None else None
+    if above is not None and known is not None and known.node is site.node:
+        above.members["InternalElement", site.node.name] = known._replace(type=own)
 
 
 def instance(context: Context, site: Site) -> str:

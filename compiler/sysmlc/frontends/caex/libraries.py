@@ -93,6 +93,38 @@ def in_order(types: list[Type]) -> Iterator[Type]:
                 yield one
 
 
+def in_order_of_parts(context: Context, types: list[Type]) -> list[Type]:
+    """The classes, each after those that it specialises and those of its internal elements.
+
+    Where classes hold each other the first one stands first.
+    """
+    done: dict[Type, None] = {}
+    started: set[Type] = set()
+    for type in types:
+        waiting = [(type, False)]
+        while waiting:
+            one, is_left = waiting.pop()
+            if is_left:
+                done[one] = None
+            elif one not in started:
+                started.add(one)
+                waiting.append((one, True))
+                waiting += [(needed, False) for needed in _needed(context, one)]
+    return [type for type in done if not type.document.is_built_in]
+
+
+def _needed(context: Context, type: Type) -> Iterator[Type]:
+    if type.base is not None:
+        yield type.base
+    inside = list(type.node.of("InternalElement"))
+    for node in inside:
+        inside += node.of("InternalElement")
+        path = node.attributes.get("RefBaseSystemUnitPath", "").strip()
+        found = context.types.find(path, Family.SYSTEM_UNIT, type.document) if path else None
+        if isinstance(found, Type):
+            yield found
+
+
 def header(context: Context, document: Document) -> None:
     """The file itself, and the files that it refers to by alias."""
     root = document.root
@@ -129,6 +161,15 @@ def _alias(context: Context, document: Document, node: Node) -> None:
         path=path,
     )
     context.graph.rename(element, alias)
+
+
+def tie_aliases(context: Context) -> None:
+    """Let each alias lead to the file that it means, where that is part of the unit."""
+    for document in context.documents:
+        for node in document.root.of("ExternalReference"):
+            target = f"{_file(document.name, node.attributes.get('Path', ''))}#"
+            if target in context.graph:
+                context.graph.connect(Edge.REFERENCES, node.element, target)
 
 
 def _file(name: str, path: str) -> str:

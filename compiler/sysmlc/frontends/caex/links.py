@@ -56,7 +56,7 @@ class Links:
         if not text:
             self._context.report(rules.OPEN_LINK, document, node, element=node.name, side=side)
             return None
-        found = self._found(text)
+        found = self._found(text, document, node)
         if isinstance(found, Problem):
             self._context.report(
                 rules.DANGLING_LINK,
@@ -69,14 +69,16 @@ class Links:
             )
         return found
 
-    def _found(self, text: str) -> End | Problem:
+    def _found(self, text: str, document: Document, node: Node) -> End | Problem:
         """An interface by its id; by the id of its owner and its name; by a path."""
-        direct = self._context.find(text)
+        direct = self._context.find(text, document)
         if direct is not None:
+            self._context.tell_lenient(document, node, text)
             return self._of_node(direct[1])
         for at in (i for i, sign in enumerate(text) if sign == ":"):
-            owner = self._context.find(text[:at]) or self._by_path(text[:at])
+            owner = self._context.find(text[:at], document) or self._by_path(text[:at])
             if owner is not None:
+                self._context.tell_lenient(document, node, text[:at])
                 return self._of_name(owner[1], text[at + 1 :])
         return Problem("no element has that id" if _is_id(text) else "it names no interface")
 

@@ -5,10 +5,15 @@ from sysmlc.frontends.caex import features
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
+from sysmlc.frontends.caex.libraries import mark
+from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member
 from sysmlc.frontends.caex.vocabulary import value_of
-from sysmlc.ir import Edge, Kind
+from sysmlc.ir import Edge, Element, Kind
+
+REPEATED = frozenset({"Constraint", "RefSemantic"})
+"""What a repeated attribute holds that says what its class says."""
 
 
 def lower(context: Context, site: Site) -> None:
@@ -22,32 +27,45 @@ def lower(context: Context, site: Site) -> None:
 
 def _attribute(context: Context, site: Site, node: Node) -> None:
     known = site.declared.find("Attribute", node.name) if site.declared else None
-    if known is None:
+    if known is None or says_more(context.types, site.document, node, known):
         features.attribute(context, own(context, site), node, site.document)
         return
-    waiting = [(node, known, "")]
+    waiting = [(node, known)]
     while waiting:
-        one, member, slot = waiting.pop()
+        one, member = waiting.pop()
         one.verdict = Verdict.MAPPED
-        slot = _value(context, site, one, member) or slot
-        for child in one.of("Attribute"):
-            inner = member.type.find("Attribute", child.name) if member.type else None
-            if inner is None:
-                features.attribute(context, own(context, site), child, site.document)
-            else:
-                waiting.append((child, inner, slot))
+        _value(context, site, one, member)
+        _description(context, site, one, member)
+        for child in one.children:
+            inner = member.type.find(child.tag, child.name) if member.type else None
+            if child.tag == "Attribute" and inner is not None:
+                waiting.append((child, inner))
+            elif child.tag in REPEATED:
+                mark(child)
 
 
-def _value(context: Context, site: Site, node: Node, known: Member) -> str:
+def _value(context: Context, site: Site, node: Node, known: Member) -> None:
     """A slot for the value, unless it is the one that the class gives."""
     text = node.text("Value")
     if text is None or text == known.node.text("Value"):
-        return ""
+        return
     owner = instance(context, site)
-    data_type = node.attributes.get("AttributeDataType", "")
+    data_type = known.node.attributes.get("AttributeDataType", "")
     slot = context.add(Kind.SLOT, node, site.document, owner, value=value_of(text, data_type))
     context.graph.connect(Edge.INSTANCE_OF, slot.id, known.id)
-    return slot.id
+
+
+def _description(context: Context, site: Site, node: Node, known: Member) -> None:
+    """What is told of an attribute in an instance alone, where no slot can carry it."""
+    text = node.text("Description")
+    if node.element or not (text or "").strip() or text == known.node.text("Description"):
+        return
+    owner = instance(context, site)
+    id = context.free(f"{owner}/{node.name}/Description", node)
+    comment = Element(id, Kind.COMMENT, "", owner, node.ordinal, site.document.name)
+    comment.attrs["body"] = str(text).strip()
+    context.graph.add(comment)
+    context.graph.connect(Edge.REFERENCES, id, known.id)
 
 
 def _interface(context: Context, site: Site, node: Node) -> None:
@@ -59,8 +77,7 @@ def _interface(context: Context, site: Site, node: Node) -> None:
     while waiting:
         one, member = waiting.pop()
         one.verdict, one.element = Verdict.MAPPED, member.id
-        for child in one.walk():
-            child.verdict = child.verdict or Verdict.MAPPED
+        _port_values(context, site, one, member)
         id = one.attributes.get("ID")
         if id:
             site.interface_ids.append((member.id, id))
@@ -68,3 +85,20 @@ def _interface(context: Context, site: Site, node: Node) -> None:
             inner = member.type.find(child.tag, child.name) if member.type else None
             if inner is not None:
                 waiting.append((child, inner))
+
+
+def _port_values(context: Context, site: Site, node: Node, known: Member) -> None:
+    """A slot for what the attributes of an interface say here and not in the class."""
+    said = features.port_attributes(node)
+    of_class = context.graph[known.id].attrs
+    new = {key: value for key, value in said.items() if of_class.get(key) != value}
+    for child in node.of("Attribute"):
+        mark(child)
+    if not new:
+        return
+    owner = instance(context, site)
+    id = context.free(f"{owner}/{node.name}", node)
+    slot = Element(id, Kind.SLOT, node.name, owner, node.ordinal, site.document.name)
+    slot.attrs.update(new)
+    context.graph.add(slot)
+    context.graph.connect(Edge.INSTANCE_OF, id, known.id)

@@ -30,7 +30,7 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
     seen: list[Node] = []
     while is_mirror(context, node) and node not in seen:
         seen.append(node)
-        found = context.find(master_id(node))
+        found = context.find(master_id(node), document)
         next_node = found[1] if found else None
         if next_node is not None and node.tag == "Attribute":
             next_node = _attribute(next_node, node)
@@ -38,6 +38,8 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
             _report(context, document, seen[0], master_id(node))
             return None
         node = next_node
+    if seen:
+        context.tell_lenient(document, seen[0], master_id(seen[0]))
     if node in seen:
         _report(context, document, seen[0], master_id(seen[0]), is_circle=True)
         return None

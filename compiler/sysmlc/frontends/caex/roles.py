@@ -3,6 +3,7 @@
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.types import Type
@@ -21,7 +22,7 @@ def lower(context: Context, sites: Sites) -> None:
         for role in _roles(context, site):
             if role in inherited:
                 continue
-            context.graph.connect(Edge.REALIZES, _client(site), role.id)
+            context.graph.connect(Edge.REALIZES, _client(context, site), role.id)
             if site.own is not None:
                 of_class.setdefault(site.own, set()).add(role)
 
@@ -32,10 +33,12 @@ def _above(site: Site) -> list[Type]:
     return [] if is_class or site.declared is None else list(site.declared.chain())
 
 
-def _client(site: Site) -> str:
+def _client(context: Context, site: Site) -> str:
     if site.own is not None:
         return site.own.id
-    return site.instance if site.is_known or not site.part else site.part
+    if site.is_known or not site.part:
+        return instance(context, site)
+    return site.part
 
 
 def _roles(context: Context, site: Site) -> list[Type]:

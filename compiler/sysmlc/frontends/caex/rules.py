@@ -17,7 +17,7 @@ MISSING_CLASS_LIBRARY = rule(
     "SM131",
     "missing-class-library",
     Severity.WARNING,
-    "the library '{library}' is not in the file; {count} refer to classes of it",
+    "the library '{library}' is not in the file; {count} to classes of it",
     why="What the classes bring along is not known: no attributes, interfaces or parts.",
     help="give the file that holds it as a further input, or declare it as ExternalReference",
     wrong='<RoleClass Name="Gate" RefBaseClassPath="PlantRoles/Resource"/>',
@@ -28,7 +28,7 @@ MISSING_FILE = rule(
     "SM132",
     "missing-external-file",
     Severity.WARNING,
-    "the file '{file}' is not part of the compile unit; {count} refer to classes of it",
+    "the file '{file}' is not part of the compile unit; {count} to classes of it",
     why="What the classes bring along is not known: no attributes, interfaces or parts.",
     help="put the file where the ExternalReference says, or correct its path",
     wrong='<ExternalReference Path="libs/gone.aml" Alias="Roles"/>',
@@ -159,4 +159,27 @@ MAPPING = rule(
     wrong='<AttributeNameMapping SystemUnitAttributeName="len" RoleAttributeName="length"/>',
     right='<AttributeNameMapping SystemUnitAttributeName="l" RoleAttributeName="length"/>\n'
     "where the element has an attribute 'l' and the role one named 'length'",
+)
+LENIENT_ID = rule(
+    "SM145",
+    "inexact-id",
+    Severity.INFO,
+    "'{element}' says '{id}', the ID is '{meant}'",
+    why="AutomationML compares IDs as they are written. Other tools do not find this one.",
+    help="write the ID in the same way in both places",
+    wrong='<InternalElement Name="a" ID="{1ac5c9b2}"/>\n'
+    '<InternalLink Name="l" RefPartnerSideA="1AC5C9B2:out" RefPartnerSideB="7a2d:in"/>',
+    right='<InternalElement Name="a" ID="{1ac5c9b2}"/>\n'
+    '<InternalLink Name="l" RefPartnerSideA="{1ac5c9b2}:out" RefPartnerSideB="7a2d:in"/>',
+)
+NO_ID = rule(
+    "SM146",
+    "element-without-id",
+    Severity.INFO,
+    "'{element}' has no ID{more}",
+    why="AutomationML gives every internal element an ID. Without one a renamed element is "
+    "another element, for an overlay and for a comparison.",
+    help="let the engineering tool give IDs",
+    wrong='<InternalElement Name="a"/>',
+    right='<InternalElement Name="a" ID="1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"/>',
 )

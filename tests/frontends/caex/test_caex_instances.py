@@ -1,0 +1,364 @@
+"""Inheritance, instances, mirrors and links (rules 7 to 14)."""
+
+import pytest
+from reading_caex import Read, aml_2, classes, interfaces, plant, roles, types
+
+PORTS = interfaces('<InterfaceClass Name="P"/>')
+
+
+# -- rules 7, 8 and 11: inheritance ------------------------------------------------------------
+
+
+def test_a_class_inherits_what_its_base_has_and_holds_no_copy():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="Base"><Attribute Name="x"/><ExternalInterface Name="p" ID="1"/>'
+            '<InternalElement Name="e" ID="2"/></SystemUnitClass>'
+            '<SystemUnitClass Name="Derived" RefBaseClassPath="Lib/Base"/>'
+        )
+    )
+    assert reading.to("Lib::Derived", "specializes") == ["Lib::Base"]
+    assert reading.owned("Lib::Derived") == []
+
+
+def test_overriding_is_by_name_and_replaces_the_whole_attribute():
+    inner = '<Attribute Name="{}"/>'
+    reading = Read(
+        classes(
+            f'<SystemUnitClass Name="Base"><Attribute Name="b">{inner.format("n1")}'
+            f"{inner.format('n2')}</Attribute></SystemUnitClass>"
+            '<SystemUnitClass Name="Derived" RefBaseClassPath="Lib/Base">'
+            f'<Attribute Name="b">{inner.format("n2")}</Attribute></SystemUnitClass>'
+        )
+    )
+    assert reading.to("Lib::Derived::b", "redefines", "Property") == ["Lib::Base::b"]
+    assert reading.owned("Lib::Derived::b", "DataType") == ["Property n2"]
+    assert reading.to("Lib::Derived::b", "specializes", "DataType") == []
+
+
+def test_an_attribute_of_another_name_overrides_nothing():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="Base"><Attribute Name="b"/></SystemUnitClass>'
+            '<SystemUnitClass Name="Derived" RefBaseClassPath="Lib/Base">'
+            '<Attribute Name="B"/></SystemUnitClass>'
+        )
+    )
+    assert reading.to("Lib::Derived::B", "redefines") == []
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "findings"),
+    [
+        ("Roles/B", "Roles/A", ["SM134: the class 'A' specialises itself: A -> B -> A"]),
+        ("Roles/A", "Roles/A", ["SM134: the class 'A' specialises itself: A -> A"]),
+        ("", "Roles/A", []),
+    ],
+)
+def test_a_circle_of_base_classes_is_cut_and_told(a, b, findings):
+    reading = Read(
+        roles(
+            f'<RoleClass Name="A" RefBaseClassPath="{a}"/>'
+            f'<RoleClass Name="B" RefBaseClassPath="{b}"/>'
+        )
+    )
+    assert reading.findings == findings
+    assert reading.to("Roles::A", "specializes") == []
+    assert reading.to("Roles::B", "specializes") == ["Roles::A"]
+
+
+def test_what_specialises_a_circle_is_no_part_of_it():
+    reading = Read(
+        roles(
+            '<RoleClass Name="X" RefBaseClassPath="Roles/A"/>'
+            '<RoleClass Name="A" RefBaseClassPath="Roles/B"/>'
+            '<RoleClass Name="B" RefBaseClassPath="Roles/A"/>'
+        )
+    )
+    assert reading.findings == ["SM134: the class 'A' specialises itself: A -> B -> A"]
+    assert reading.to("Roles::X", "specializes") == ["Roles::A"]
+
+
+def test_interface_classes_and_attribute_types_inherit_in_the_same_way():
+    reading = Read(
+        interfaces(
+            '<InterfaceClass Name="A"/><InterfaceClass Name="B" RefBaseClassPath="Interfaces/A"/>'
+        )
+        + types(
+            '<AttributeType Name="Length"/>'
+            '<AttributeType Name="Width" RefAttributeType="Types/Length"/>'
+        )
+    )
+    assert reading.to("Interfaces::B", "specializes") == ["Interfaces::A"]
+    assert reading.to("Types::Width", "specializes") == ["Types::Length"]
+
+
+def test_an_attribute_type_types_nested_attributes_too():
+    reading = Read(
+        types('<AttributeType Name="Length"/>')
+        + classes(
+            '<SystemUnitClass Name="Box"><Attribute Name="size">'
+            '<Attribute Name="w" RefAttributeType="Types/Length"/></Attribute></SystemUnitClass>'
+        )
+    )
+    assert reading.to("Lib::Box::size::w", "typed-by") == ["Types::Length"]
+
+
+# -- rules 9 and 10: instances -----------------------------------------------------------------
+
+SWITCH = classes(
+    '<SystemUnitClass Name="Motor"><Attribute Name="power" AttributeDataType="xs:double"/>'
+    "</SystemUnitClass>"
+    '<SystemUnitClass Name="Switch">'
+    '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.0</Value></Attribute>'
+    '<ExternalInterface Name="p" ID="c-p"/>'
+    '<InternalElement Name="m" ID="c-m" RefBaseSystemUnitPath="Lib/Motor"/>'
+    "</SystemUnitClass>"
+)
+
+
+def switch(inside, path="Lib/Switch"):
+    return SWITCH + plant(
+        f'<InternalElement Name="sw" ID="sw" RefBaseSystemUnitPath="{path}">{inside}'
+        "</InternalElement>"
+    )
+
+
+def test_an_instance_of_a_class_says_again_what_the_class_says():
+    reading = Read(
+        switch(
+            '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.0</Value></Attribute>'
+            '<ExternalInterface Name="p" ID="i-p"/>'
+            '<InternalElement Name="m" ID="i-m" RefBaseSystemUnitPath="Lib/Motor"/>'
+        )
+    )
+    assert reading.to("Plant::sw", "instance-of") == ["Lib::Switch"]
+    assert reading.owned("Plant::sw") == ["Instance m"]
+    assert reading.to("Plant::sw::m", "represents") == ["Lib::Switch::m"]
+    assert reading.one("Plant::sw").attrs["interface_ids"] == (("c-p", "i-p"),)
+    assert reading.findings == reading.infos == []
+
+
+def test_a_value_of_an_instance_is_a_slot_and_no_default_of_the_class():
+    reading = Read(
+        switch(
+            '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.2</Value></Attribute>'
+            '<InternalElement Name="m" ID="i-m"><Attribute Name="power" '
+            'AttributeDataType="xs:double"><Value>5</Value></Attribute></InternalElement>'
+        )
+    )
+    assert reading.one("Plant::sw::length").attrs["value"] == 1.2
+    assert reading.to("Plant::sw::length", "instance-of") == ["Lib::Switch::length"]
+    assert reading.one("Plant::sw::m::power").attrs["value"] == 5.0
+    assert reading.to("Plant::sw::m::power", "instance-of") == ["Lib::Motor::power"]
+    assert reading.one("Lib::Switch::length").attrs["default"] == 1.0
+
+
+def test_added_members_make_a_specialised_block():
+    reading = Read(switch('<Attribute Name="colour"/><ExternalInterface Name="q" ID="i-q"/>'))
+    assert reading.to("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
+    assert reading.to("Plant::sw", "specializes", "Class") == ["Lib::Switch"]
+    assert reading.owned("Plant::sw", "Class") == ["Property colour", "Port q"]
+
+
+def test_absent_members_mean_nothing():
+    reading = Read(switch(""))
+    assert reading.owned("Plant::sw") == []
+    assert reading.to("Plant::sw", "instance-of") == ["Lib::Switch"]
+    assert reading.findings == []
+
+
+def test_an_element_without_class_has_a_block_of_its_own():
+    reading = Read(switch('<Attribute Name="colour"/>', path=""))
+    assert reading.to("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
+    own = reading.one("Plant::sw", "Class")
+    assert (own.role, own.attrs["subkind"]) == ("block", "internal-element")
+    assert reading.owned("Plant::sw", "Class") == ["Property colour"]
+
+
+def test_an_attribute_that_says_more_than_that_of_its_class_is_kept():
+    reading = Read(
+        switch(
+            '<Attribute Name="length" AttributeDataType="xs:double" Unit="m"><Value>1.0</Value>'
+            '<Constraint Name="c"><OrdinalScaledType><RequiredMaxValue>2</RequiredMaxValue>'
+            "</OrdinalScaledType></Constraint></Attribute>"
+        )
+    )
+    assert reading.owned("Plant::sw", "Class") == ["Property length", "Constraint c"]
+    assert reading.to("Plant::sw::length", "redefines") == ["Lib::Switch::length"]
+    assert reading.one("Plant::sw::c").attrs["body"] == "length <= 2.0"
+    assert reading.totals == {"mapped": 16}
+
+
+# -- rule 12: mirrors --------------------------------------------------------------------------
+
+
+def test_a_mirror_is_a_reference_to_its_master():
+    reading = Read(
+        plant(
+            '<InternalElement Name="cell" ID="0">'
+            '<InternalElement Name="a" ID="1"><Attribute Name="x"/></InternalElement>'
+            '<InternalElement Name="m" ID="2" RefBaseSystemUnitPath="1"/>'
+            '<InternalElement Name="n" ID="3" RefBaseSystemUnitPath="2"/></InternalElement>'
+        )
+    )
+    for name in ("m", "n"):
+        mirror = reading.one(f"Plant::cell::{name}", "Property")
+        assert (mirror.role, mirror.attrs.get("aggregation")) == ("reference", None)
+        assert reading.to(f"Plant::cell::{name}", "mirrors", "Property") == ["Plant::cell::a"]
+        (type_,) = reading.graph.targets(mirror, "typed-by")
+        assert type_ is reading.one("Plant::cell::a", "Class")
+    assert reading.findings == []
+
+
+def test_interfaces_and_attributes_are_mirrored_by_the_id_of_an_interface_or_owner():
+    reading = Read(
+        PORTS
+        + plant(
+            '<InternalElement Name="cell" ID="0"><InternalElement Name="a" ID="1">'
+            '<Attribute Name="x"/>'
+            '<ExternalInterface Name="p" ID="2" RefBaseClassPath="Interfaces/P"/>'
+            '</InternalElement><InternalElement Name="b" ID="3">'
+            '<Attribute Name="y" RefAttributeType="1/x"/>'
+            '<ExternalInterface Name="q" ID="4" RefBaseClassPath="2"/></InternalElement>'
+            "</InternalElement>"
+        )
+    )
+    assert reading.to("Plant::cell::b::y", "mirrors") == ["Plant::cell::a::x"]
+    assert reading.to("Plant::cell::b::q", "mirrors") == ["Plant::cell::a::p"]
+    assert reading.to("Plant::cell::b::q", "typed-by") == ["Interfaces::P"]
+    assert reading.findings == []
+
+
+GONE = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
+
+
+@pytest.mark.parametrize(
+    ("a", "findings"),
+    [
+        (
+            "2",
+            [
+                "SM143: 'a' is a mirror of itself, by way of '2'",
+                "SM143: 'b' is a mirror of itself, by way of '1'",
+            ],
+        ),
+        (
+            GONE,
+            [
+                f"SM138: 'a' is a mirror of '{GONE}', which does not exist",
+                f"SM138: 'b' is a mirror of '{GONE}', which does not exist",
+            ],
+        ),
+        ("", []),
+    ],
+)
+def test_mirrors_of_each_other_and_of_nothing_are_errors(a, findings):
+    reading = Read(
+        plant(
+            '<InternalElement Name="cell" ID="0">'
+            f'<InternalElement Name="a" ID="1" RefBaseSystemUnitPath="{a}"/>'
+            '<InternalElement Name="b" ID="2" RefBaseSystemUnitPath="1"/></InternalElement>'
+        )
+    )
+    assert reading.findings == findings
+
+
+# -- rules 13 and 14: links --------------------------------------------------------------------
+
+
+def cell(side_a, side_b, more=""):
+    return PORTS + plant(
+        '<InternalElement Name="cell" ID="0"><ExternalInterface Name="f" ID="9"/>'
+        '<InternalElement Name="a" ID="1"><ExternalInterface Name="out" ID="10">'
+        '<ExternalInterface Name="pin" ID="11"/></ExternalInterface></InternalElement>'
+        '<InternalElement Name="b" ID="2"><ExternalInterface Name="Ch. 1^In:x" ID="20"/>'
+        f"</InternalElement>{more}"
+        f'<InternalLink Name="l" RefPartnerSideA="{side_a}" RefPartnerSideB="{side_b}"/>'
+        "</InternalElement>"
+    )
+
+
+@pytest.mark.parametrize(
+    ("side", "end"),
+    [
+        ("10", "a.out"),
+        ("11", "a.pin"),
+        ("9", "f"),
+        ("1:out", "a.out"),
+        ("{1}:out", "a.out"),
+        ("Plant/cell/a:out", "a.out"),
+        ("2:Ch. 1^In:x", "b.Ch. 1^In:x"),
+    ],
+)
+def test_each_way_to_write_the_side_of_a_link(side, end):
+    reading = Read(aml_2(cell(side, "20")))
+    assert reading.links() == {"l": (end, "b.Ch. 1^In:x")}
+    assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    ("side", "problem"),
+    [
+        ("connection A0", "it names no interface"),
+        ("7f1c1f6e-45f8-4a4c-8d6a-6d2f5f3b8a01", "no element has that id"),
+        ("1:in", "'a' has no interface 'in'"),
+        ("1", "that is no interface but 'a'"),
+    ],
+)
+def test_a_side_that_leads_nowhere_is_told_and_the_rest_is_a_dependency(side, problem):
+    reading = Read(aml_2(cell(side, "20")))
+    assert reading.links() == {}
+    assert reading.findings == [f"SM135: link 'l': its side A says '{side}', and {problem}"]
+    link = reading.one("Plant::cell::l", "Dependency")
+    assert link.attrs["subkind"] == "internal-link"
+    known = [*reading.graph.targets(link, "client"), *reading.graph.targets(link, "supplier")]
+    assert "20" in [element.id for element in known]
+
+
+def test_an_open_side_is_an_info():
+    reading = Read(cell("10", ""))
+    assert reading.findings == []
+    assert reading.infos == ["SM136: link 'l' has no side B"]
+    assert reading.to("Plant::cell::l", "client") == ["Plant::cell::a::out"]
+
+
+def test_links_of_a_class_are_its_own_and_are_not_repeated_by_its_instances():
+    inside = (
+        '<InternalElement Name="a" ID="{0}a"><ExternalInterface Name="p" ID="{0}p"/>'
+        '</InternalElement><InternalElement Name="b" ID="{0}b"><ExternalInterface Name="q" '
+        'ID="{0}q"/></InternalElement>'
+        '<InternalLink Name="l" RefPartnerSideA="{0}p" RefPartnerSideB="{0}q"/>'
+    )
+    reading = Read(
+        classes(f'<SystemUnitClass Name="C">{inside.format("c")}</SystemUnitClass>')
+        + plant(
+            '<InternalElement Name="x" ID="x" RefBaseSystemUnitPath="Lib/C">'
+            f"{inside.format('x')}</InternalElement>"
+        )
+    )
+    connectors = [c for c in reading.graph if c.kind.value == "Connector"]
+    assert [reading.graph.qualified_name(c) for c in connectors] == ["Lib::C::l"]
+
+
+def test_two_instances_of_a_class_are_wired_differently():
+    parts = "".join(
+        f'<InternalElement Name="{n}" ID="c{n}"><ExternalInterface Name="p" ID="c{n}p"/>'
+        "</InternalElement>"
+        for n in "abc"
+    )
+    tops = "".join(
+        f'<InternalElement Name="{top}" ID="{top}" RefBaseSystemUnitPath="Lib/C">'
+        + "".join(
+            f'<InternalElement Name="{n}" ID="{top}{n}"><ExternalInterface Name="p" '
+            f'ID="{top}{n}p"/></InternalElement>'
+            for n in "abc"
+        )
+        + f'<InternalLink Name="l{top}" RefPartnerSideA="{top}ap" RefPartnerSideB="{top}{to}p"/>'
+        "</InternalElement>"
+        for top, to in (("x", "b"), ("y", "c"))
+    )
+    reading = Read(classes(f'<SystemUnitClass Name="C">{parts}</SystemUnitClass>') + plant(tops))
+    assert reading.links() == {"lx": ("a.p", "b.p"), "ly": ("a.p", "c.p")}
+    assert reading.owned("Plant::x", "Instance")[-1] == "Connector lx"
+    assert reading.owned("Plant::y", "Instance")[-1] == "Connector ly"

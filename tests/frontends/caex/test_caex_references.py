@@ -1,0 +1,238 @@
+"""Class paths, aliases and ids: how a reference finds what it means (rules 1 to 6)."""
+
+import pytest
+from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles
+
+BRACKETS = classes(
+    '<SystemUnitClass Name="B/2"><SystemUnitClass Name="T.1"/></SystemUnitClass>'
+    '<SystemUnitClass Name="http://a.b/c"/>'
+)
+
+
+# -- rule 1: separators and brackets -----------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "found"),
+    [
+        ("Lib/[B/2]", "Lib::B/2"),
+        ("[Lib]/[B/2]", "Lib::B/2"),
+        ("[Lib]/[B/2]/[T.1]", "Lib::B/2::T.1"),
+        ("Lib/[B/2]/T.1", "Lib::B/2::T.1"),
+        ("Lib/[http://a.b/c]", "Lib::http://a.b/c"),
+    ],
+)
+def test_one_part_or_all_parts_of_a_path_may_stand_in_brackets(path, found):
+    reading = Read(BRACKETS + plant(f'<InternalElement Name="x" RefBaseSystemUnitPath="{path}"/>'))
+    assert reading.to("Plant::x", "instance-of") == [found]
+    assert reading.findings == []
+
+
+def test_without_brackets_a_separator_separates():
+    reading = Read(BRACKETS + plant('<InternalElement Name="x" RefBaseSystemUnitPath="Lib/B/2"/>'))
+    assert reading.findings == [
+        "SM130: 'Plant::x' refers to the class 'Lib/B/2', which does not exist"
+    ]
+
+
+# -- rule 2: one kind at a time ----------------------------------------------------------------
+
+
+def test_a_path_finds_classes_of_its_own_kind_though_others_have_the_same_path():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="Unit">'
+            '<InternalElement Name="Valve" ID="inner"/><SystemUnitClass Name="Valve"/>'
+            "</SystemUnitClass>"
+        )
+        + roles('<RoleClass Name="Unit"/>', "Lib")
+        + plant(
+            '<InternalElement Name="v" RefBaseSystemUnitPath="Lib/Unit/Valve">'
+            '<RoleRequirements RefBaseRoleClassPath="Lib/Unit"/></InternalElement>'
+        )
+    )
+    (general,) = reading.graph.targets(reading.one("Plant::v"), "instance-of")
+    assert reading.graph.qualified_name(general) == "Lib::Unit::Valve"
+    assert "subkind" not in general.attrs
+    (role,) = reading.graph.targets(reading.one("Plant::v"), "realizes")
+    assert role.attrs["subkind"] == "role-class"
+    assert reading.findings == []
+
+
+def test_a_role_path_does_not_find_a_system_unit_class():
+    reading = Read(
+        classes('<SystemUnitClass Name="A"/>')
+        + roles('<RoleClass Name="B"/>', "Lib")
+        + plant(
+            '<InternalElement Name="v"><SupportedRoleClass RefRoleClassPath="Lib/A"/>'
+            "</InternalElement>"
+        )
+    )
+    assert reading.findings == [
+        "SM130: 'Plant::v::SupportedRoleClass' refers to the class 'Lib/A', which does not exist"
+    ]
+
+
+# -- rule 3: nesting is no inheritance ---------------------------------------------------------
+
+
+def test_a_nested_class_inherits_nothing_from_the_one_around_it():
+    reading = Read(
+        roles('<RoleClass Name="A"><Attribute Name="x"/><RoleClass Name="B"/></RoleClass>')
+    )
+    assert reading.to("Roles::A::B", "specializes") == []
+
+
+def test_the_bare_name_of_the_class_around_means_that_class():
+    reading = Read(
+        roles('<RoleClass Name="A"><RoleClass Name="B" RefBaseClassPath="A"/></RoleClass>')
+    )
+    assert reading.to("Roles::A::B", "specializes") == ["Roles::A"]
+    assert reading.findings == []
+
+
+def test_another_bare_name_means_a_library():
+    reading = Read(
+        roles('<RoleClass Name="A"><RoleClass Name="B" RefBaseClassPath="C"/></RoleClass>')
+    )
+    assert reading.to("Roles::A::B", "specializes") == []
+    assert reading.findings == [
+        "SM131: the library 'C' is not in the file; 1 element refers to classes of it"
+    ]
+
+
+# -- rule 4: aliases ---------------------------------------------------------------------------
+
+BASE = aml(roles('<RoleClass Name="Base"/>', "Shared"), "libs/base.aml")
+
+
+def uses(path, alias="Al", more=""):
+    return aml(
+        f'<ExternalReference Path="{path}" Alias="{alias}"/>'
+        + roles('<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/>' + more),
+        "plant/main.aml",
+    )
+
+
+@pytest.mark.parametrize("path", ["../libs/base.aml", "..%2Flibs/base.aml", "./../libs/./base.aml"])
+def test_an_alias_leads_into_another_file_of_the_unit(path):
+    reading = Read(uses(path), BASE)
+    assert reading.to("Roles::Gate", "specializes") == ["Shared::Base"]
+    assert reading.to("Al", "references") == ["plant.aml"]
+    assert reading.findings == []
+
+
+def test_a_file_that_is_not_there_is_told_once_with_all_that_it_takes_down():
+    more = '<RoleClass Name="Door" RefBaseClassPath="Al@Shared/Base"/>'
+    reading = Read(uses("../libs/gone.aml", more=more), BASE)
+    assert reading.findings == [
+        "SM132: the file 'libs/gone.aml' is not part of the compile unit; "
+        "2 elements refer to classes of it"
+    ]
+    (found,) = reading.sink
+    assert found.notes == (
+        "Roles::Gate (plant/main.aml:1:165)",
+        "Roles::Door (plant/main.aml:1:223)",
+    )
+    assert (found.subject.place.file, found.subject.place.ordinal) == ("plant/main.aml", 3)
+
+
+def test_an_alias_without_declaration_is_an_error_at_its_place():
+    reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
+    assert reading.findings == [
+        "SM133: 'Roles::Gate' uses the alias 'Al', which no ExternalReference declares"
+    ]
+
+
+def test_what_an_element_refers_to_in_vain_is_told_in_the_graph():
+    reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
+    assert reading.one("Roles::Gate").attrs["unresolved"] == ("specializes",)
+
+
+# -- rule 5: ids -------------------------------------------------------------------------------
+
+
+def linked(side_a, side_b):
+    return interfaces('<InterfaceClass Name="P"/>') + plant(
+        '<InternalElement Name="cell" ID="{AB-0}">'
+        '<InternalElement Name="a" ID="{AB-1}"><ExternalInterface Name="out"/></InternalElement>'
+        '<InternalElement Name="b" ID="ab-2"><ExternalInterface Name="in"/></InternalElement>'
+        f'<InternalLink Name="l" RefPartnerSideA="{side_a}" RefPartnerSideB="{side_b}"/>'
+        "</InternalElement>"
+    )
+
+
+def test_ids_are_compared_as_they_are_written():
+    reading = Read(aml_2(linked("{AB-1}:out", "ab-2:in")))
+    assert reading.links() == {"l": ("a.out", "b.in")}
+    assert reading.findings == []
+
+
+def test_ids_that_differ_in_braces_and_case_are_found_with_an_info():
+    reading = Read(aml_2(linked("ab-1:out", "{AB-2}:in")))
+    assert reading.links() == {"l": ("a.out", "b.in")}
+    assert reading.infos == [
+        "SM145: 'l' says 'ab-1', the ID is '{AB-1}'",
+        "SM145: 'l' says '{AB-2}', the ID is 'ab-2'",
+    ]
+
+
+def test_an_id_that_differs_otherwise_is_not_found():
+    reading = Read(aml_2(linked("ab-3:out", "ab-2:in")))
+    assert reading.links() == {}
+    assert reading.findings == [
+        "SM135: link 'l': its side A says 'ab-3:out', and it names no interface"
+    ]
+
+
+def test_an_id_of_two_elements_is_told_and_the_first_is_meant():
+    reading = Read(plant('<InternalElement Name="a" ID="1"/><InternalElement Name="b" ID="1"/>'))
+    assert reading.findings == ["SM137: the ID '1' of 'b' is used by another element too"]
+    assert (
+        len({reading.one("Plant::a", "Instance").id, reading.one("Plant::b", "Instance").id}) == 2
+    )
+
+
+def test_an_element_without_id_is_told_once_a_file():
+    reading = Read(
+        plant('<InternalElement Name="a"/><InternalElement Name="b"/>')
+        + classes('<SystemUnitClass Name="C"/>')
+    )
+    assert reading.infos == ["SM146: 'Plant::a' has no ID, nor have 1 more elements of the file"]
+
+
+# -- rule 6: role requirements -----------------------------------------------------------------
+
+THREE_ROLES = roles('<RoleClass Name="A"/><RoleClass Name="B"/><RoleClass Name="C"/>')
+
+
+@pytest.mark.parametrize(
+    ("form", "inside"),
+    [
+        (
+            aml_2,
+            '<SupportedRoleClass RefRoleClassPath="Roles/A"/>'
+            '<SupportedRoleClass RefRoleClassPath="Roles/B"/>'
+            '<RoleRequirements RefBaseRoleClassPath="Roles/A"/>',
+        ),
+        (
+            aml,
+            '<RoleRequirements RefBaseRoleClassPath="Roles/A"/>'
+            '<RoleRequirements RefBaseRoleClassPath="Roles/B"/>',
+        ),
+    ],
+)
+def test_an_element_realizes_each_of_its_roles_once(form, inside):
+    body = THREE_ROLES + plant(f'<InternalElement Name="x" ID="1">{inside}</InternalElement>')
+    reading = Read(form(body))
+    assert reading.to("Plant::x", "realizes", "Class") == ["Roles::A", "Roles::B"]
+    assert reading.findings == []
+
+
+def test_role_requirements_without_a_path_are_no_role():
+    body = THREE_ROLES + plant(
+        '<InternalElement Name="x" ID="1"><RoleRequirements/></InternalElement>'
+    )
+    reading = Read(aml_2(body))
+    assert reading.to("Plant::x", "realizes", "Class") == []
+    assert reading.findings == []
