@@ -63,12 +63,13 @@ class Context:
 
     def subtree(self, row: int, verdict: Verdict) -> int:
         """Give the row and all its content one verdict; return the row after."""
-        end = self.document.ends[row]
-        self.verdicts[row:end] = [verdict] * (end - row)
-        gid = self.gids[row]
-        if not gid and self.document.parents[row] >= 0:
-            gid = self.gids[self.document.parents[row]]
-        self.gids[row:end] = [gid] * (end - row)
+        end, above = self.document.ends[row], self.document.parents[row]
+        gid = self.gids[row] or (self.gids[above] if above >= 0 else "")
+        if end == row + 1:
+            self.verdicts[row], self.gids[row] = verdict, gid
+        else:
+            self.verdicts[row:end] = [verdict] * (end - row)
+            self.gids[row:end] = [gid] * (end - row)
         return end
 
     def next_row(self, row: int) -> int:

@@ -74,15 +74,22 @@ class Document:
 
     def children(self, row: int, feature: str = "") -> Iterator[int]:
         """Rows of the children, all or those of one feature."""
-        child, end = row + 1, self.ends[row]
+        end = self.ends[row]
+        if end == row + 1:
+            return iter(())
+        ends, features = self.ends, self.features
+        found = []
+        child = row + 1
         while child < end:
-            if not feature or self.features[child] == feature:
-                yield child
-            child = self.ends[child]
+            if not feature or features[child] == feature:
+                found.append(child)
+            child = ends[child]
+        return iter(found)
 
     def targets(self, row: int, feature: str) -> list[str]:
         """Local ids that the row's feature refers to, as attribute list or as children."""
-        ids = self.tokens(self.attributes[row].get(feature, ""))
+        written = self.attributes[row].get(feature)
+        ids = self.tokens(written) if written else []
         return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
 
     def tokens(self, value: str) -> list[str]:
