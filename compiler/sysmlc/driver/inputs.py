@@ -12,7 +12,7 @@ from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
 
-SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".ir"})
+SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".aml", ".amlx", ".caex", ".ir"})
 """How files in a folder end that are worth a look; files that are named may end in anything."""
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 GROUP = "sysmlc.backends"
 """Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
 
-_FRONTENDS = ("sysmlc.frontends.xmi", "sysmlc.frontends.huds", "sysmlc.frontends.ir")
+_FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "ir"))
 _BACKENDS = {
     name: f"sysmlc.backends.{name}"
     for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable")

@@ -40,6 +40,16 @@ def entries(
         raise SourceError(f"damaged archive: {reason}", archive.name) from None
 
 
+def names(archive: Source) -> list[str]:
+    """Names of all entries, as the archive has them. Raises SourceError for a damaged archive."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
+            return opened.namelist()
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as problem:
+        reason = _CUT_SHORT if str(problem) == _NO_TABLE else str(problem)
+        raise SourceError(f"damaged archive: {reason}", archive.name) from None
+
+
 def _read_all(
     archive: Source, opened: zipfile.ZipFile, wanted: Callable[[str], bool], limits: Limits
 ) -> Iterator[Source]:

@@ -4,7 +4,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from sysmlc.sources.archive import entries, is_archive
+from sysmlc.sources import package
+from sysmlc.sources.archive import entries, is_archive, names
 from sysmlc.sources.encoding import in_utf8
 from sysmlc.sources.error import SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
@@ -59,6 +60,8 @@ def load(
     source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
         return [in_utf8(source)]
+    if package.is_package(name, listed := names(source)):
+        package.check(name, listed, entries(source, package.is_relationships, limits))
     found = entries(source, wanted, limits) or entries(source, _is_plain_entry, limits)
     if all(is_library_entry(source.name.partition("!")[2]) for source in found):
         raise SourceError("the archive holds no model", name)

@@ -13,19 +13,25 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
+from sysmlc.sources.encoding import codec
 
 _Use = tuple[Document, Node]
 
-_EXTERNAL = re.compile(rb"<(?:[\w.-]+:)?ExternalReference\b[^>]*")
-_PATH = re.compile(rb"""\bPath\s*=\s*(?:"([^"]+)|'([^']+))""")
+_EXTERNAL = re.compile(r"<(?:[\w.-]+:)?ExternalReference\b[^>]*")
+_PATH = re.compile(r"""\bPath\s*=\s*(?:"([^"]+)|'([^']+))""")
 
 
 def links(source: Source) -> list[str]:
-    """Files that external references name, each once and in order."""
-    tags = _EXTERNAL.findall(source.data)
-    found = (match for tag in tags if (match := _PATH.search(tag)))
-    paths = (unescape((m[1] or m[2]).decode("utf-8", "replace")) for m in found)
-    return list(dict.fromkeys(paths))
+    """Files that external references name, each once and in order.
+
+    Those of a file in a package lead to other parts of it, which are read with it.
+    """
+    if "!" in source.name:
+        return []
+    mark, name = codec(source.data)
+    text = source.data[mark:].decode(name, "replace")
+    found = (match for tag in _EXTERNAL.findall(text) if (match := _PATH.search(tag)))
+    return list(dict.fromkeys(unescape(match[1] or match[2]) for match in found))
 
 
 def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
