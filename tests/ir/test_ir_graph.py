@@ -2,7 +2,7 @@
 
 import pytest
 from graphs import EDGES, graphs
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sysmlc.ir import Edge, Element, Graph, Kind, parse_text, verify
@@ -72,6 +72,7 @@ def test_derived_values_are_kept_by_type():
     assert list(graph.derived(str)) == []
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(graphs(), st.data())
 def test_any_sequence_of_changes_leaves_a_consistent_graph(graph, data):
     for _ in range(4):
