@@ -1,4 +1,4 @@
-"""What of the real models is read may grow, and never shrinks unseen: a golden line for each file."""
+"""What of the real models is read never shrinks unseen: a golden line for each file."""
 
 import os
 from pathlib import Path
