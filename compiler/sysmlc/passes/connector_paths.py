@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import ends, features, generals, redefined, type_of
 
 _GATE = """\
@@ -56,8 +56,11 @@ def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
 
 def _breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
     """The first step that is no feature of what is before it; what is not known ends the search."""
-    at: Element | None = owner
+    at: Element | None = _classifier(graph, owner)
     for step in (*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)):
+        if step.kind is Kind.INSTANCE:
+            at = graph.target(step, Edge.INSTANCE_OF)
+            continue
         if at is None or step.attrs.get("external") or _is_partly_known(graph, at):
             return
         if not _has(graph, at, step):
@@ -66,6 +69,13 @@ def _breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Elemen
                 yield at, step
             return
         at = type_of(graph, step)
+
+
+def _classifier(graph: Graph, owner: Element) -> Element | None:
+    """What has the features that paths start from: of an instance what classifies it."""
+    if owner.kind is Kind.INSTANCE:
+        return graph.target(owner, Edge.INSTANCE_OF)
+    return owner
 
 
 def _is_partly_known(graph: Graph, classifier: Element) -> bool:

@@ -165,6 +165,8 @@ def _check_relation(
 
 def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element) -> None:
     own, general = (graph.target(one, Edge.TYPED_BY) for one in (feature, other))
+    if own is not None and own.subkind == "attribute":
+        return  # In AutomationML an attribute with attributes replaces the inherited one wholly.
     if own is None or general is None or _narrower(graph, own, general):
         return
     sink.report(
@@ -200,12 +202,21 @@ def _may_relate(
     owner, former = graph.owner(feature), graph.owner(other)
     if owner is None or former is None:
         return False
-    if hierarchy.is_above(former, owner):
+    if hierarchy.is_above(former, owner) or _is_of_role(graph, owner, former, hierarchy):
         return True
     # Association ends relate through the classifiers at the other side; that is not followed.
     if Kind.ASSOCIATION in (owner.kind, former.kind) or owner.kind not in CLASSIFIERS:
         return True
     return edge is Edge.SUBSETS and owner is former
+
+
+def _is_of_role(graph: Graph, owner: Element, former: Element, hierarchy: _Hierarchy) -> bool:
+    """Whether the owner plays the role that has the feature: AutomationML maps one on the other."""
+    if former.subkind != "role-class":
+        return False
+    family = (owner, *generals(graph, owner))
+    roles = [role for one in family for role in graph.targets(one, Edge.REALIZES)]
+    return any(role is former or hierarchy.is_above(former, role) for role in roles)
 
 
 def _narrower(graph: Graph, narrow: Element, wide: Element) -> bool:

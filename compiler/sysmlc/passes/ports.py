@@ -210,7 +210,11 @@ def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
 
 def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     blocks: dict[str, list[Element]] = {}
+    # AutomationML leaves directions open by design; an overlay adds them.
+    plants = {one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex"}
     for port in ports:
+        if port.source in plants:
+            continue
         if port.owner is not None and "direction" not in port.attrs:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():

@@ -9,7 +9,7 @@ from sysmlc.backends.plantuml.connections import Connection, Path, connections
 from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import opposite
+from sysmlc.ir.query import generals, opposite
 
 FORMS = {"in": "portin", "out": "portout"}
 """How ports are drawn, by direction."""
@@ -20,7 +20,7 @@ _PORT_WIDTH = 24
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All internal block diagrams, in the order of the model."""
-    for block in graph.of_kind(*_CLASSES):
+    for block in graph.of_kind(*_CLASSES, Kind.INSTANCE):
         found = connections(graph, block)
         if found and not block.attrs.get("external"):
             yield from _of_block(graph, block, found)
@@ -34,12 +34,30 @@ def _of_block(graph: Graph, block: Element, found: list[Connection]) -> Iterator
         yield Diagram(
             kind="ibd",
             name=split.numbered(whole, index, len(parts)),
-            frame=plain(f"ibd [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"),
+            frame=plain(f"ibd [{_keyword(graph, block)}] {_title(graph, block)}"),
             heading=("Internal block diagram", whole),
             view=drawing.view(),
             about=block.id,
             footer=plain(split.footer(index, len(parts), whole)),
         )
+
+
+def _keyword(graph: Graph, block: Element) -> str:
+    return " ".join(labels.keywords(graph, _classifier(graph, block)))
+
+
+def _title(graph: Graph, block: Element) -> str:
+    """Name of the block; an instance is told with what classifies it."""
+    classifier = _classifier(graph, block)
+    if classifier is block:
+        return labels.name(block)
+    return f"{labels.name(block)} : {labels.name(classifier)}"
+
+
+def _classifier(graph: Graph, block: Element) -> Element:
+    """What has the parts and ports inside the frame: of an instance what classifies it."""
+    found = graph.target(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else None
+    return block if found is None else found
 
 
 def _divided(
@@ -79,11 +97,23 @@ def _nested_count(top: str, found: list[Connection]) -> int:
 
 def _top_parts(graph: Graph, block: Element, found: list[Connection]) -> list[Element]:
     """Parts and references of the block, with inherited and foreign ones that connectors name."""
-    own = [item for item in graph.owned(block) if item.kind is Kind.PROPERTY]
+    own = list(_properties(graph, block))
     named = [end.top for c in found for end in (c.source, c.target) if end.top]
     wanted = [item for item in own if item.role in _DRAWN_ROLES]
     ids = dict.fromkeys([*(item.id for item in wanted), *named])
     return [graph[id] for id in ids]
+
+
+def _properties(graph: Graph, block: Element) -> Iterator[Element]:
+    """Properties of the block; of an instance all that its classifier has, inherited ones too."""
+    if block.kind is not Kind.INSTANCE:
+        yield from (item for item in graph.owned(block) if item.kind is Kind.PROPERTY)
+        return
+    classifier = _classifier(graph, block)
+    family = (classifier, *generals(graph, classifier))
+    found = [p for one in family for p in graph.owned(one) if p.kind is Kind.PROPERTY]
+    gone = {old.id for one in found for old in graph.targets(one, Edge.REDEFINES)}
+    yield from (item for item in found if item.id not in gone)
 
 
 @dataclass(slots=True)
@@ -103,7 +133,7 @@ class _Drawing:
             self.aliases.make("frame", self.block.name, "block"),
             " ",
             "frame",
-            tuple(self._ports((), self.block)),
+            tuple(self._ports((), _classifier(self.graph, self.block))),
             parts,
             (self.block.id,),
         )

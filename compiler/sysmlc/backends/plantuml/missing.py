@@ -112,7 +112,8 @@ def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
 
 def _is_ours(item: Element) -> bool:
     is_drawing = item.kind is Kind.VIEW and item.subkind == "diagram"
-    return not item.attrs.get("external") and not is_drawing
+    is_file = item.kind is Kind.DOCUMENT and item.subkind == "caex"
+    return not item.attrs.get("external") and not is_drawing and not is_file
 
 
 def _report(

@@ -77,7 +77,7 @@ class Context:
         element = Element(id, kind, name, owner, node.ordinal, document.name, given)
         if document.is_built_in:
             element.source, element.ordinal = "", -1
-            element.attrs["external"] = True
+            element.attrs.update(external=True, library=True)
         self.graph.add(element)
         node.element = id
         node.verdict = Verdict.MAPPED

@@ -78,6 +78,7 @@ def _lower(context: Context) -> None:
     for document in context.documents:
         drawn.lower(document)
         metadata.lower(context, document)
+    libraries.set_apart(context)
 
 
 @contextmanager

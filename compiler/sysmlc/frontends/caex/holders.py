@@ -2,7 +2,7 @@
 
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.site import Site
-from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
@@ -24,7 +24,26 @@ def own(context: Context, site: Site) -> Type:
     _retype(site, site.own)
     if site.declared is not None:
         graph.connect(Edge.SPECIALIZES, id, site.declared.id)
+    if site.is_known and above is not None:
+        _redefine_part(context, site, above, id)
     return site.own
+
+
+def _redefine_part(context: Context, site: Site, above: Site, type_: str) -> None:
+    """A part of the class whose instance has more in it: redefined, with the other type."""
+    graph, owner = context.graph, own(context, above)
+    id = context.free(f"{type_}#part", site.node)
+    made = Element(
+        id, Kind.PROPERTY, site.node.name, owner.id, site.node.ordinal, site.document.name
+    )
+    made.attrs.update(role="part", aggregation="composite")
+    graph.add(made)
+    graph.connect(Edge.TYPED_BY, id, type_)
+    graph.connect(Edge.REDEFINES, id, site.part)
+    owner.members["InternalElement", site.node.name] = Member(id, site.own, site.node)
+    if site.instance:
+        graph.replace_targets(Edge.REPRESENTS, graph[site.instance], [graph[id]])
+    site.part = id
 
 
 def _retype(site: Site, own: Type) -> None:

@@ -9,7 +9,7 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
-from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES, ROLES, Family
+from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES, ROLES, STANDARD, Family
 from sysmlc.ir import Edge, Kind
 
 
@@ -23,7 +23,14 @@ def lower(context: Context, document: Document) -> list[Type]:
 def library(context: Context, document: Document, node: Node) -> Iterator[Type]:
     """Add one library; its classes in document order."""
     family, class_tag, subkind = LIBRARIES[node.tag]
-    context.add(Kind.PACKAGE, node, document, None, subkind=subkind, version=node.text("Version"))
+    context.add(
+        Kind.PACKAGE,
+        node,
+        document,
+        None,
+        subkind=subkind,
+        version=node.text("Version"),
+    )
     waiting = [(child, node) for child in reversed(node.children) if child.tag == class_tag]
     while waiting:
         child, above = waiting.pop()
@@ -93,6 +100,16 @@ def in_order(types: list[Type]) -> Iterator[Type]:
                 yield one
 
 
+def set_apart(context: Context) -> None:
+    """Mark the standard libraries that files hold as the built-in ones are: not of the plant."""
+    graph = context.graph
+    for document in context.documents:
+        for node in document.root.of(*LIBRARIES):
+            if node.name in STANDARD:
+                for element in graph.subtree(graph[node.element]):
+                    element.attrs.update(external=True, library=True)
+
+
 def in_order_of_parts(context: Context, types: list[Type]) -> list[Type]:
     """The classes, each after those that it specialises and those of its internal elements.
 
@@ -142,9 +159,7 @@ def header(context: Context, document: Document) -> None:
     context.graph.rename(element, root.attributes.get("FileName", "") or document.name)
     for node in root.of("ExternalReference"):
         _alias(context, document, node)
-    for node in root.of("SourceDocumentInformation", "AdditionalInformation"):
-        mark(node)
-    for node in root.of("SuperiorStandardVersion"):
+    for node in root.of("SuperiorStandardVersion", "Description"):
         node.verdict = Verdict.MAPPED
 
 

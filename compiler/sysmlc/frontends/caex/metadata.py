@@ -10,16 +10,25 @@ from sysmlc.frontends.caex.libraries import mark
 from sysmlc.ir import Edge, Element, Kind
 
 _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
-_KEPT = frozenset({"Revision", "AdditionalInformation", "SourceObjectInformation"})
+_KEPT = frozenset(
+    {
+        "Revision",
+        "AdditionalInformation",
+        "SourceObjectInformation",
+        "SourceDocumentInformation",
+        "WriterHeader",
+    }
+)
 
 
 def lower(context: Context, document: Document) -> None:
     """Add what is said about the elements of a file; those of the file itself are read before."""
     for node in document.root.walk():
         element = context.graph.get(node.element)
-        if element is None or element.kind is Kind.DOCUMENT:
+        if element is None:
             continue
-        _texts(context, node, element)
+        if element.kind is not Kind.DOCUMENT:
+            _texts(context, node, element)
         for child in node.children:
             _child(context, document, child, element)
 

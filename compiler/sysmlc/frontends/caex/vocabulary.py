@@ -45,6 +45,15 @@ ROLE_REFERENCES = {
 }
 """Elements that say which role something plays: the attribute that names the role class."""
 
+STANDARD = frozenset(
+    {
+        "AutomationMLBaseRoleClassLib",
+        "AutomationMLInterfaceClassLib",
+        "AutomationMLBaseAttributeTypeLib",
+    }
+)
+"""Libraries of IEC 62714-1: the same whoever holds them, so that none is drawn."""
+
 BASE_ROLE = ("AutomationMLBaseRoleClassLib", "AutomationMLBaseRole")
 BASE_INTERFACE = ("AutomationMLInterfaceClassLib", "AutomationMLBaseInterface")
 """Paths of the classes that all roles and interfaces of the standard specialise."""
