@@ -33,6 +33,7 @@ class Context:
         self.verdicts = lowered.verdicts
         self.applications: list[int] = []
         self.extensions: list[int] = []
+        self.parts: list[int] = []
         self.triggers: list[tuple[Element, int]] = []
         self.deferred: list[tuple[Completion, Element, int]] = []
         self.ends: list[tuple[Element, int]] = []

@@ -16,6 +16,7 @@ from sysmlc.frontends.xmi import (
     enterprise_architect_profiles,
     links,
     lowering,
+    parts,
     remembered,
     rules,
     snapshot_parts,
@@ -66,9 +67,9 @@ class XmiFrontend:
             documents = [document for document in read if document is not None]
             unit = Unit(documents, graph)
             contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
-            models, parts = snapshot_parts.split(models)
-            if beside or parts:
-                snapshots = snapshot_use.read([*beside, *parts], sink)
+            models, inside = snapshot_parts.split(models)
+            if beside or inside:
+                snapshots = snapshot_use.read([*beside, *inside], sink)
                 snapshot_use.add(unit, contexts, models, snapshots)
                 snapshot_use.account(snapshots, beside, unit, coverage)
             _finish(unit, contexts, sink, coverage)
@@ -87,6 +88,8 @@ class XmiFrontend:
 
 
 def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:
+    for context in contexts:
+        parts.join(context)
     for context in contexts:
         applications.note_namespaces(context)
         enterprise_architect_profiles.localise(context)

@@ -45,6 +45,17 @@ REPEATED_ID = rule(
     wrong="<packagedElement xmi:id='a'/><packagedElement xmi:id='a'/>",
     right="<packagedElement xmi:id='a'/><packagedElement xmi:id='b'/>",
 )
+MISSING_PART = rule(
+    "SM119",
+    "missing-part",
+    Severity.WARNING,
+    "'{owner}' contains '{href}', {problem}",
+    why="Papyrus can keep parts of a model in files of their own. The model is incomplete without "
+    "them: outputs do not show what such a file holds.",
+    help="give the file as a further input; or load and save the whole model in the modelling tool",
+    wrong='<packagedElement xmi:type="uml:Package" href="Deleted.uml#_robots"/>',
+    right='<packagedElement xmi:type="uml:Package" href="Robots.uml#_robots"/>',
+)
 LONG_LIST = rule(
     "SM128",
     "long-list",

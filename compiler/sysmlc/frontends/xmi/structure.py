@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.parts import is_part
 from sysmlc.frontends.xmi.shapes import may_be_value
 from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -78,7 +79,10 @@ def reference(context: Context, row: int, feature: str) -> int:
     parent = document.parents[row]
     owner = context.owner(row)
     href = document.attributes[row].get("href", "")
-    if owner is None or feature in ("packagedElement", "nestedPackage"):
+    if owner is not None and is_part(context, row, feature):
+        context.verdicts[row] = Verdict.EXTERNAL
+        context.parts.append(row)
+    elif owner is None or feature in ("packagedElement", "nestedPackage"):
         context.verdicts[row] = Verdict.EXTERNAL if href else Verdict.MAPPED
     elif not context.lowered.own[parent]:
         edge = v.FOLDED_REFERENCES.get(feature)
