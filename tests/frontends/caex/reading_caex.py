@@ -61,8 +61,13 @@ class Read:
 
     @property
     def findings(self):
-        """All but infos."""
-        return [told(found) for found in self.sink if found.severity is not Severity.INFO]
+        """All but infos, and but for SM140: the models here have first what is referred to."""
+        told_of = [found for found in self.sink if found.rule.code != "SM140"]
+        return [told(found) for found in told_of if found.severity is not Severity.INFO]
+
+    @property
+    def order(self):
+        return [told(found) for found in self.sink if found.rule.code == "SM140"]
 
     @property
     def infos(self):

@@ -2,15 +2,16 @@
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from html import unescape
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.locate import Location, locate
-from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex import measures, rules
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
+from sysmlc.frontends.caex.vocabulary import ORDER
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.encoding import codec
@@ -40,6 +41,7 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
         counts = coverage.file(document.name)
         table: Counter[tuple[str, Verdict]] = Counter()
         lost: dict[str, list[Node]] = {}
+        misplaced: list[tuple[Node, Node]] = []
         for node in document.root.walk():
             verdict = node.verdict or Verdict.UNSUPPORTED
             table[node.tag, verdict] += 1
@@ -48,11 +50,37 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
                     table[tag, verdict] += 1
             if node.verdict is None:
                 lost.setdefault(node.tag, []).append(node)
+            if node.children:
+                misplaced += _misplaced(node)
         for (tag, verdict), number in table.items():
             counts.count(tag, verdict, number)
         _report_lost(context, document, lost)
+        _report_order(context, document, misplaced)
     _report_missing(context, sources)
     context.report_ids()
+    measures.report_strange(context)
+
+
+def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:
+    """Children that stand after one that the schema has behind them, each with that one."""
+    highest, before = -1, parent
+    for child in parent.children:
+        rank = ORDER.get(child.tag, highest)
+        if rank < highest:
+            yield child, before
+        else:
+            highest, before = rank, child
+
+
+def _report_order(context: Context, document: Document, misplaced: list[tuple[Node, Node]]) -> None:
+    """Once a file: what writes one element in the wrong place writes all like it there."""
+    if misplaced:
+        node, before = misplaced[0]
+        above = node.parent or node
+        count = "1 place" if len(misplaced) == 1 else f"{len(misplaced)} places"
+        name = path_of(above) or document.name
+        facts = {"tag": node.tag, "element": name, "before": before.tag, "count": count}
+        context.report(rules.ELEMENT_ORDER, document, node, **facts)
 
 
 def _report_lost(context: Context, document: Document, lost: dict[str, list[Node]]) -> None:

@@ -16,6 +16,7 @@ def lower_own(context: Context, type: Type) -> None:
     """Add the attributes and interfaces that stand directly below a class."""
     if type.family is Family.ATTRIBUTE:
         constraints.lower(context, context.graph[type.id], type.node, type.document)
+        measures.complete_type(context, type)
     for child in type.node.children:
         if child.tag == "Attribute":
             attribute(context, type, child, type.document)
@@ -54,7 +55,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
     declared = _attribute_type(context, node, document)
     _redefine(context, owner, node, element)
     structure = _structure(context, owner, node, document, element, declared)
-    measures.type_value(context, element, node, structure or declared)
+    measures.type_value(context, element, node, document, structure or declared)
     constraints.lower(context, element, node, document)
     owner.members["Attribute", node.name] = Member(element.id, structure or declared, node)
     return structure

@@ -183,3 +183,14 @@ NO_ID = rule(
     wrong='<InternalElement Name="a"/>',
     right='<InternalElement Name="a" ID="1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"/>',
 )
+UNKNOWN_UNIT = rule(
+    "SM147",
+    "unknown-unit",
+    Severity.WARNING,
+    "the unit '{unit}' of '{element}'{more} {problem}",
+    why="CAEX takes any text as a unit. One that is not known has no quantity kind, so that "
+    "nothing can be converted or compared.",
+    help="write its symbol or UN/ECE code; symbols are those of ISO 80000, as 'm/s' or 'm^3/h'",
+    wrong='<Attribute Name="length" AttributeDataType="xs:double" Unit="xs:anyUnit"/>',
+    right='<Attribute Name="length" AttributeDataType="xs:double" Unit="mm"/>',
+)
