@@ -154,6 +154,23 @@ def test_ids_in_attributes_become_ids_of_the_graph():
     assert codes(sink) == ["SM151"]
 
 
+@pytest.mark.parametrize(
+    ("holder", "attribute"),
+    [
+        ('Action x subkind="call-operation"', "on_port"),
+        ("Trigger x", "port"),
+        ("ConnectorEnd x", "defining_end"),
+        ("Message x", "connector"),
+        ("Operation x", "raised_exception"),
+    ],
+)
+def test_an_attribute_that_names_what_does_not_exist_is_told(holder, attribute):
+    graph, sink = refined(f'{holder} {attribute}="gone"\n', "resolve")
+    assert (codes(sink), graph["x"].attrs.get(attribute)) == (["SM151"], None)
+    _, sink = refined(f'{holder} {attribute}="x"\n', "resolve")
+    assert codes(sink) == []
+
+
 def test_a_long_list_that_leads_nowhere_is_one_finding():
     text = 'Class gate "Gate"\n  Operation open "open"\n' + "    ?> method x{} Activity\n" * 6
     numbered = text.format(*range(6))

@@ -32,6 +32,11 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL_FLOW: {"interrupts": Kind.STRUCTURED},
     Kind.OBJECT_FLOW: {"interrupts": Kind.STRUCTURED},
     Kind.ITEM_FLOW: {"item_property": Kind.PROPERTY},
+    Kind.ACTION: {"on_port": Kind.PORT},
+    Kind.TRIGGER: {"port": Kind.PORT},
+    Kind.CONNECTOR_END: {"defining_end": Kind.PROPERTY},
+    Kind.MESSAGE: {"connector": Kind.CONNECTOR},
+    Kind.OPERATION: {"raised_exception": Kind.CLASS},
     Kind.STRUCTURED: dict.fromkeys(("test", "body_part", "setup_part", "clauses"), Kind.ACTION),
 }
 """Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
