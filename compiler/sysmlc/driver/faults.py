@@ -15,6 +15,16 @@ MISSING_FILE = rule(
     wrong="sysmlc modle.uml",
     right="sysmlc model.uml",
 )
+NOT_THERE = rule(
+    "SM148",
+    "external-data-not-there",
+    Severity.INFO,
+    "the model refers to what is not there: '{file}'{more}",
+    why="Geometry, logic and other documents are recorded but not read. A reference to a file "
+    "that is not beside the model, or outside of its folder, may be out of date.",
+    wrong='<Attribute Name="refURI"><Value>file:///geometry/gone.dae</Value></Attribute>',
+    right='<Attribute Name="refURI"><Value>file:///geometry/gate.dae</Value></Attribute>',
+)
 UNOPENED = rule(
     "SM179",
     "unopened-file",

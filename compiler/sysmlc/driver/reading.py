@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sysmlc.diagnostics import Rule, Sink
+from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
-from sysmlc.frontends.base import Frontend
+from sysmlc.frontends.base import Frontend, Mentioning
 from sysmlc.sources import Roots, Source, SourceError, load
 
 
@@ -67,6 +67,23 @@ class _Reader:
                 target = self._roots.resolve(path, href)
                 if target is not None:
                     self.read(target, None)
+            self._check_mentioned(path, found)
+
+    def _check_mentioned(self, path: Path, found: Recognised) -> None:
+        """Tell which files of other languages are not there; parts of a package are checked."""
+        source, frontend = found.source, found.frontend
+        if not isinstance(frontend, Mentioning) or "!" in source.name:
+            return
+        gone: dict[str, Place] = {}
+        for href, place in frontend.mentioned(source):
+            if self._roots.resolve(path, href) is None:
+                gone.setdefault(href.partition("#")[0], place)
+        if gone:
+            first = next(iter(gone))
+            more = f" and {len(gone) - 1} more" if len(gone) > 1 else ""
+            subject = Subject(source.name, place=gone[first])
+            notes = tuple(gone)
+            self._sink.report(faults.NOT_THERE, subject, notes=notes, file=first, more=more)
 
 
 def _sources(path: Path, root: Path, sink: Sink) -> list[Source]:

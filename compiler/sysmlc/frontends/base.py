@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
 from sysmlc.cache import Cache
-from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
 
@@ -37,6 +37,14 @@ class Caching(Protocol):
 
     def with_cache(self, cache: Cache) -> Frontend:
         """The same front end, with a cache to keep it in."""
+
+
+@runtime_checkable
+class Mentioning(Protocol):
+    """A front end whose files refer to others that are not read, but should be there."""
+
+    def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
+        """Paths of such files, as the source writes them, each with its place."""
 
 
 @runtime_checkable

@@ -86,6 +86,8 @@ OTHER_KINDS = (
 )
 """Kinds with a meaning of their own that no diagram has a place for."""
 
+_FILES = frozenset({"caex", "collada", "plcopen", "external-data"})
+"""Subkinds of documents that stand for files, of the model and of others it refers to."""
 _NAMES_SHOWN = 3
 
 
@@ -112,7 +114,7 @@ def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
 
 def _is_ours(item: Element) -> bool:
     is_drawing = item.kind is Kind.VIEW and item.subkind == "diagram"
-    is_file = item.kind is Kind.DOCUMENT and item.subkind == "caex"
+    is_file = item.kind is Kind.DOCUMENT and item.subkind in _FILES
     return not item.attrs.get("external") and not is_drawing and not is_file
 
 

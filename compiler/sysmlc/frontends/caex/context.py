@@ -31,6 +31,7 @@ class Context:
         self.nodes: dict[str, tuple[Document, Node]] = {}
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
+        self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
         self._plain: dict[str, tuple[Document, Node]] = {}
         self._repeated: dict[str, list[tuple[Document, Node]]] = {}

@@ -1,12 +1,12 @@
 """Attributes and external interfaces: value properties and ports of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import constraints, measures, mirrors
+from sysmlc.frontends.caex import constraints, documents, measures, mirrors, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import DIRECTIONS, Family, value_of
+from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE, DIRECTIONS, Family, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _CARDINALITY = ("MinOccur", "MaxOccur")
@@ -53,6 +53,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         semantics=_semantics(node),
     )
     declared = _attribute_type(context, node, document)
+    _multiply(element, declared)
     _redefine(context, owner, node, element)
     structure = _structure(context, owner, node, document, element, declared)
     measures.type_value(context, element, node, document, structure or declared)
@@ -69,6 +70,17 @@ def _attribute_type(context: Context, node: Node, document: Document) -> Type | 
         context.mirrors.append((document, node))
         return None
     return context.type(path, Family.ATTRIBUTE, document, node)
+
+
+def _multiply(element: Element, declared: Type | None) -> None:
+    """A list has any number of values; CAEX 2.15 tells it by its semantics (IEC 62714-1)."""
+    semantics = element.attrs.get("semantics")
+    told = semantics if isinstance(semantics, tuple) else ()
+    for name in ("ListType", "OrderedListType"):
+        if name in told or (declared is not None and declared.conforms(*BASE_ATTRIBUTE, name)):
+            element.attrs["multiplicity"] = "*"
+            if name == "OrderedListType":
+                element.attrs["ordered"] = True
 
 
 def _redefine(context: Context, owner: Type, node: Node, element: Element) -> None:
@@ -124,7 +136,8 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     element = context.add(Kind.PORT, node, document, owner.id)
     declared = interface_class(context, node, document)
     _redefine(context, owner, node, element)
-    element.attrs.update(port_attributes(node))
+    said = port_attributes(node)
+    element.attrs.update(said)
     for child in node.of("Attribute"):
         mark(child)
     own = _own_interface(context, owner, node, document, element, declared)
@@ -132,6 +145,11 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     if type is not None:
         context.graph.connect(Edge.TYPED_BY, element.id, type.id)
     owner.members["ExternalInterface", node.name] = Member(element.id, type, node)
+    meaning = special.meaning(declared)
+    if meaning:
+        context.special[element.id] = meaning
+    if meaning in special.DOCUMENTS:
+        documents.lower(context, node, document, owner.id, element.id, meaning, said)
     return own
 
 

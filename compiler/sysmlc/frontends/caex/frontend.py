@@ -8,6 +8,7 @@ from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.caex import (
     account,
     detect,
+    documents,
     features,
     libraries,
     mappings,
@@ -38,6 +39,10 @@ class CaexFrontend:
     def links(self, source: Source) -> Sequence[str]:
         """The files that its external references name."""
         return account.links(source)
+
+    def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
+        """The files of other languages that it refers to: they are not read."""
+        return list(documents.mentioned(source))
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph; see docs/automationml.md.

@@ -157,6 +157,8 @@ def header(context: Context, document: Document) -> None:
         superior_standard=root.text("SuperiorStandardVersion"),
     )
     context.graph.rename(element, root.attributes.get("FileName", "") or document.name)
+    if not any(True for _ in root.of(*LIBRARIES, "InstanceHierarchy")):
+        context.report(rules.NO_MODEL, document, root, file=document.name)
     for node in root.of("ExternalReference"):
         _alias(context, document, node)
     for node in root.of("SuperiorStandardVersion", "Description"):

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex import rules, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.site import Site
@@ -49,7 +49,11 @@ class Links:
         if holder is None or len(found) < 2:
             self._dependency(node, document, holder, ends)
         elif not self._is_of_class(holder, found):
-            self._connector(node, document, holder, found)
+            meanings = {self._context.special.get(end.port, "") for end in found}
+            if meanings == {special.PPR} or meanings == {special.ORDER}:
+                self._relation(node, document, holder, found, meanings.pop())
+            else:
+                self._connector(node, document, holder, found)
 
     def _end(self, node: Node, document: Document, side: str) -> End | Problem | None:
         text = node.attributes.get(SIDES[side], "").strip()
@@ -152,6 +156,28 @@ class Links:
         for part in end.site.parts_below(end.site.root):
             graph.connect(Edge.PATH, made.id, part)
 
+    def _relation(
+        self, node: Node, document: Document, holder: Site, ends: list[End], meaning: str
+    ) -> None:
+        """Who does what with what, or what follows on what: no wire, but a dependency."""
+        graph, top = self._context.graph, holder.root
+        owner = top.instance or (top.own.id if top.own else None)
+        subkind = special.PPR if meaning == special.PPR else "succession"
+        made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind=subkind)
+        first, second = self._in_order(ends) if meaning == special.ORDER else _by_part(ends)
+        if {first.site.ppr, second.site.ppr} == {"process", "resource"}:
+            graph.set(made, role="allocate")
+        graph.connect(Edge.CLIENT, made.id, _standing_for(first.site))
+        graph.connect(Edge.SUPPLIER, made.id, _standing_for(second.site))
+        if not top.instance and owner is not None:
+            self._drawn.add((owner, _key(ends, top)))
+
+    def _in_order(self, ends: list[End]) -> tuple[End, End]:
+        """The later one first, as it depends on the earlier: that one has the way out."""
+        one, other = ends
+        ways = [self._context.graph[end.port].attrs.get("direction") for end in ends]
+        return (one, other) if ways[1] == "out" or ways[0] == "in" else (other, one)
+
     def _dependency(
         self,
         node: Node,
@@ -166,6 +192,21 @@ class Links:
         made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind="internal-link")
         for edge, id in zip((Edge.CLIENT, Edge.SUPPLIER), known, strict=False):
             self._context.graph.connect(edge, made.id, id)
+
+
+_DEPENDS = ("process", "resource", "product")
+"""A process needs the resource that does it; both are there for a product."""
+
+
+def _by_part(ends: list[End]) -> tuple[End, End]:
+    ranks = {name: rank for rank, name in enumerate(_DEPENDS)}
+    one, other = sorted(ends, key=lambda end: ranks.get(end.site.ppr, len(ranks)))
+    return one, other
+
+
+def _standing_for(site: Site) -> str:
+    own = site.own.id if site.own is not None else ""
+    return site.instance or site.part or own
 
 
 def _key(ends: list[End], top: Site) -> frozenset[tuple[str, ...]]:

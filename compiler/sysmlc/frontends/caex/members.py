@@ -1,7 +1,7 @@
 """Attributes and interfaces of internal elements: those of their class, and new ones."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import features
+from sysmlc.frontends.caex import documents, features, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
@@ -23,6 +23,35 @@ def lower(context: Context, site: Site) -> None:
             _attribute(context, site, child)
         elif child.tag == "ExternalInterface":
             _interface(context, site, child)
+        elif child.tag == "RoleRequirements" and child.children:
+            _required(context, site, child)
+
+
+def _required(context: Context, site: Site, requirements: Node) -> None:
+    """What an element needs to play its role, and has not already."""
+    for node in requirements.of("Attribute", "ExternalInterface"):
+        if node.tag == "ExternalInterface":
+            _interface(context, site, node)
+        elif site.type is not None and site.type.find(node.tag, node.name) is not None:
+            keep(context, site, node, requirements)
+        else:
+            features.attribute(context, own(context, site), node, site.document)
+
+
+def keep(context: Context, site: Site, node: Node, requirements: Node) -> None:
+    """A value that the role requires of an attribute that the element has anyway."""
+    value = node.text("Value")
+    owner = site.own.id if site.own is not None else site.instance or site.part
+    mark(node)
+    if value is None or not owner:
+        return
+    role = requirements.attributes.get("RefBaseRoleClassPath", "")
+    id = context.free(f"{owner}/{node.name}#required", node)
+    made = Element(id, Kind.METADATA, "RoleRequirements", owner, node.ordinal)
+    made.source = site.document.name
+    made.attrs.update({"role_class": role, "attribute": node.name, "required": value})
+    context.graph.add(made)
+    context.graph.connect(Edge.REFERENCES, id, owner)
 
 
 def _attribute(context: Context, site: Site, node: Node) -> None:
@@ -102,3 +131,6 @@ def _port_values(context: Context, site: Site, node: Node, known: Member) -> Non
     slot.attrs.update(new)
     context.graph.add(slot)
     context.graph.connect(Edge.INSTANCE_OF, id, known.id)
+    meaning = context.special.get(known.id, "")
+    if meaning in special.DOCUMENTS:
+        documents.lower(context, node, site.document, owner, known.id, meaning, new)

@@ -37,6 +37,9 @@ def _texts(context: Context, node: Node, element: Element) -> None:
     for text in node.all_texts("Description") if node.texts or node.children else ():
         if text.strip():
             _comment(context, element, text)
+    version = node.text("Version") if node.texts or node.children else None
+    if version and "version" not in element.attrs:
+        context.graph.set(element, version=version)
     change = node.attributes.get("ChangeMode", "")
     if change and change != "state":
         context.graph.set(element, change_mode=change)

@@ -1,6 +1,7 @@
 """Roles: what a class or an internal element realises (thesis, Table 3.1)."""
 
 from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex import special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance
@@ -14,17 +15,29 @@ from sysmlc.ir import Edge
 def lower(context: Context, sites: Sites) -> None:
     """Draw the realizations: once each, and not again where the class realises the role."""
     of_class: dict[Type, set[Type]] = {}
+    played: dict[Type, str] = {}
     ordered = sorted(sites, key=lambda site: bool(site.root.instance))
     for site in ordered:
         if site.type is None:
             continue
         inherited = {r for t in _above(site) for r in of_class.get(t, ())}
+        site.ppr = next((played[t] for t in _above(site) if played.get(t)), "")
         for role in _roles(context, site):
             if role in inherited:
                 continue
+            _play(context, site, special.ppr(role), played)
             context.graph.connect(Edge.REALIZES, _client(context, site), role.id)
             if site.own is not None:
                 of_class.setdefault(site.own, set()).add(role)
+
+
+def _play(context: Context, site: Site, ppr: str, played: dict[Type, str]) -> None:
+    """Note that something is a product, process or resource."""
+    if ppr:
+        site.ppr = ppr
+        context.graph.set(context.graph[_client(context, site)], ppr=ppr)
+        if site.own is not None:
+            played.setdefault(site.own, ppr)
 
 
 def _above(site: Site) -> list[Type]:

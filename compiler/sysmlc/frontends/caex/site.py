@@ -11,6 +11,7 @@ class Site:
     ``declared`` is the class that it refers to; ``own`` the class made for what that one has
     not (for a class at the top: itself). ``part`` is the property that stands for it in the
     class above, ``instance`` the Instance that holds its values (empty while there are none).
+    ``ppr`` is product, process, resource or empty.
     """
 
     __slots__ = (
@@ -24,6 +25,7 @@ class Site:
         "own",
         "parent",
         "part",
+        "ppr",
         "root",
     )
 
@@ -36,6 +38,7 @@ class Site:
         self.own: Type | None = None
         self.part = ""
         self.instance = ""
+        self.ppr = ""
         self.is_known = False
         self.is_mirror = False
         self.interface_ids: list[tuple[AttrValue, ...]] = []

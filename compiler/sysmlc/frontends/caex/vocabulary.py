@@ -94,6 +94,7 @@ ORDER = {
 
 BASE_ROLE = ("AutomationMLBaseRoleClassLib", "AutomationMLBaseRole")
 BASE_INTERFACE = ("AutomationMLInterfaceClassLib", "AutomationMLBaseInterface")
+BASE_ATTRIBUTE = ("AutomationMLBaseAttributeTypeLib",)
 """Paths of the classes that all roles and interfaces of the standard specialise."""
 
 PRIMITIVES = {

@@ -41,21 +41,8 @@ def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
     if namespaces.is_xmi(lowered.document.namespace(0)):
         context.verdicts[0] = Verdict.MAPPED
         row = 1
-    _walk(context, row)
+    Swift(context, _FEATURES, _TYPES).walk(row, _root, _row)
     return context
-
-
-def _walk(context: Context, row: int) -> None:
-    """All rows from here on; roots are the first row and what is right below ``xmi:XMI``."""
-    parents, above_roots = context.document.parents, row - 1
-    swift = Swift(context, _FEATURES, _TYPES)
-    end = len(parents)
-    while row < end:
-        if parents[row] == above_roots:
-            row = _root(context, row)
-            continue
-        following = swift.rows(row, above_roots)
-        row = following if following > row else _row(context, row)
 
 
 def _root(context: Context, row: int) -> int:

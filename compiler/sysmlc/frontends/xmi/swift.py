@@ -1,6 +1,6 @@
 """The way that most rows of a large file go: elements made as the plan of their shape says."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
@@ -28,8 +28,12 @@ class _Plans(dict[Shape, Plan | None]):
         return made
 
 
+Way = Callable[[Context, int], int]
+"""Lowers one row, perhaps with its content; returns the first row after."""
+
+
 class Swift:
-    """Lowers the rows of one document for which there is a plan."""
+    """Lowers the rows of one document, those for which there is a plan at once."""
 
     def __init__(
         self, context: Context, features: Mapping[str, object], types: Mapping[str, object]
@@ -37,11 +41,12 @@ class Swift:
         self._context = context
         self._plans = _Plans(context, features, types)
 
-    def rows(self, row: int, above_roots: int) -> int:
-        """Lower rows from this one on; return the first that goes another way.
+    def walk(self, row: int, root: Way, other: Way) -> None:
+        """Lower all rows from this one on: roots by ``root``, rows without a plan by ``other``.
 
-        Everything is in one frame, because a call for each row, or for each attribute, would
-        cost as much as the work itself: half of the budget of the whole front end.
+        Roots are this row and what is right below the row before. Everything is in one frame,
+        because a call for each row, or for each attribute, would cost as much as the work
+        itself: half of the budget of the whole front end.
         """
         context = self._context
         document, lowered, graph, links = (
@@ -61,24 +66,28 @@ class Swift:
             links.targets.append,
             links.rows.append,
         )
-        end = len(features)
+        end, above_roots = len(features), row - 1
         while row < end:
             above = parents[row]
             if above == above_roots:
-                break
+                row = root(context, row)
+                continue
             values = attributes[row]
             shape = (features[row], types[row], *values)
             plan = plans[shape]
             if plan is None:
-                break
+                row = other(context, row)
+                continue
             kind, subkind, type_name, owners, detail, may_be_metaclass, is_done, steps = plan
             owner, id, name = gids[above], values[id_key], values.get("name", "")
             is_special = may_be_metaclass and name.startswith("base_")
             if is_special or id in clashes or (owners and not context.may_own(owner, kind)):
-                break
+                row = other(context, row)
+                continue
             made = new(id, kind, name, owner or None, ordinals[row], file)
             if made is None:
-                break
+                row = other(context, row)
+                continue
             if subkind:
                 made.attrs = {"subkind": subkind}
             gids[row] = id
@@ -96,9 +105,9 @@ class Swift:
                     context.attribute(made, row, step, value)
                 elif value != default:
                     made.attrs[key] = value
-            attributes[row] = _TAKEN if is_done else values
+            if is_done:
+                attributes[row] = _TAKEN
             row += 1
-        return row
 
 
 _TAKEN: dict[str, str] = {}

@@ -1,0 +1,626 @@
+"""What each element of CAEX becomes: the rows of the table in docs/automationml.md."""
+
+import pytest
+from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
+
+from sysmlc.ir.query import quantity_kind_of, unit_of
+
+
+def value(name, text, data_type="xs:string"):
+    start = f'<Attribute Name="{name}" AttributeDataType="{data_type}">'
+    return f"{start}<Value>{text}</Value></Attribute>"
+
+
+# -- files and libraries -----------------------------------------------------------------------
+
+
+def test_a_file_is_a_document_with_what_its_header_says():
+    reading = Read(
+        aml(
+            "<Description>a gate</Description>"
+            "<SuperiorStandardVersion>AutomationML 2.10</SuperiorStandardVersion>"
+            '<SourceDocumentInformation OriginName="editor" OriginVersion="5"/>'
+            "<Copyright>us</Copyright>"
+        )
+    )
+    document = reading.one("plant.aml")
+    assert (document.kind.value, document.subkind) == ("Document", "caex")
+    assert document.attrs["version"] == "3.0"
+    assert document.attrs["description"] == "a gate"
+    assert document.attrs["superior_standard"] == "AutomationML 2.10"
+    assert document.attrs["copyright"] == "us"
+    origin = reading.one("plant.aml::SourceDocumentInformation")
+    assert origin.attrs["origin_name"] == "editor"
+    assert reading.totals == {"mapped": 5}
+
+
+def test_an_external_reference_is_an_import_named_as_its_alias():
+    reading = Read('<ExternalReference Path="libs/a.aml" Alias="A"/>')
+    found = reading.one("A")
+    assert (found.kind.value, found.subkind, found.attrs["path"]) == (
+        "Import",
+        "alias",
+        "libs/a.aml",
+    )
+
+
+def test_libraries_and_hierarchies_are_packages():
+    reading = Read("".join([plant(""), interfaces(""), roles(""), classes(""), types("")]))
+    packages = {e.name: e.subkind for e in reading.graph if e.kind.value == "Package"}
+    assert packages == {
+        "Plant": "instance-hierarchy",
+        "Interfaces": "interface-class-lib",
+        "Roles": "role-class-lib",
+        "Lib": "system-unit-class-lib",
+        "Types": "attribute-type-lib",
+    }
+
+
+def test_classes_are_blocks_interface_blocks_and_value_types():
+    reading = Read(
+        classes('<SystemUnitClass Name="C"><SystemUnitClass Name="N"/></SystemUnitClass>')
+        + roles('<RoleClass Name="C"/>')
+        + interfaces('<InterfaceClass Name="C"/>')
+        + types('<AttributeType Name="C"/>')
+    )
+    found = {
+        name: (element.kind.value, element.role, element.attrs.get("abstract"))
+        for name in ("Lib::C", "Lib::C::N", "Roles::C", "Interfaces::C", "Types::C")
+        for element in [reading.one(name)]
+    }
+    assert found == {
+        "Lib::C": ("Class", "block", None),
+        "Lib::C::N": ("Class", "block", None),
+        "Roles::C": ("Class", "block", True),
+        "Interfaces::C": ("Class", "interface block", None),
+        "Types::C": ("DataType", "value type", None),
+    }
+
+
+def test_standard_libraries_are_there_for_files_that_omit_them_and_are_not_of_the_plant():
+    path = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Resource"
+    reading = Read(roles(f'<RoleClass Name="R" RefBaseClassPath="{path}"/>'))
+    (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
+    assert reading.graph.qualified_name(general) == path.replace("/", "::")
+    assert general.attrs["external"] is general.attrs["library"] is True
+    assert reading.findings == []
+
+
+def test_a_standard_library_in_the_file_is_used_and_is_not_of_the_plant_either():
+    reading = Read(
+        roles('<RoleClass Name="AutomationMLBaseRole"/>', "AutomationMLBaseRoleClassLib")
+        + roles(
+            '<RoleClass Name="R" '
+            'RefBaseClassPath="AutomationMLBaseRoleClassLib/AutomationMLBaseRole"/>'
+        )
+    )
+    (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
+    assert (general.source, general.attrs["external"]) == ("plant.aml", True)
+
+
+# -- internal elements -------------------------------------------------------------------------
+
+
+def test_an_internal_element_is_a_part_of_its_class_or_of_a_block_of_its_own():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="M"/><SystemUnitClass Name="C">'
+            '<InternalElement Name="a" ID="1" RefBaseSystemUnitPath="Lib/M"/>'
+            '<InternalElement Name="b" ID="2"/>'
+            '<InternalElement Name="c" ID="3" RefBaseSystemUnitPath="Lib/M">'
+            '<Attribute Name="x"/></InternalElement></SystemUnitClass>'
+        )
+    )
+    for name in "abc":
+        part = reading.one(f"Lib::C::{name}", "Property")
+        assert (part.role, part.attrs["aggregation"]) == ("part", "composite")
+    assert reading.to("Lib::C::a", "typed-by") == ["Lib::M"]
+    assert reading.to("Lib::C::b", "typed-by", "Property") == ["Lib::C::b"]
+    assert reading.one("Lib::C::b", "Class").subkind == "internal-element"
+    assert reading.to("Lib::C::c", "specializes", "Class") == ["Lib::M"]
+    assert reading.owned("Lib::C::c", "Class") == ["Property x"]
+
+
+def test_a_part_that_its_class_knows_is_redefined_where_an_instance_puts_more_into_it():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="M"/><SystemUnitClass Name="C">'
+            '<InternalElement Name="m" ID="1" RefBaseSystemUnitPath="Lib/M"/></SystemUnitClass>'
+        )
+        + plant(
+            '<InternalElement Name="top" ID="2" RefBaseSystemUnitPath="Lib/C">'
+            '<InternalElement Name="m" ID="3" RefBaseSystemUnitPath="Lib/M">'
+            '<InternalElement Name="new" ID="4"/></InternalElement></InternalElement>'
+        )
+    )
+    assert reading.to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
+    (type_,) = reading.graph.targets(reading.one("Plant::top::m", "Property"), "typed-by")
+    assert type_ is reading.one("Plant::top::m", "Class")
+    assert reading.to("Plant::top::m", "specializes", "Class") == ["Lib::M"]
+
+
+# -- attributes --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("data_type", "text", "read", "primitive"),
+    [
+        ("xs:double", "1.5", 1.5, "Real"),
+        ("xs:int", "3", 3, "Integer"),
+        ("xs:boolean", "true", True, "Boolean"),
+        ("xs:string", "x", "x", "String"),
+        ("", "x", "x", "String"),
+        ("xs:double", "lambda: 1", "lambda: 1", "Real"),
+    ],
+)
+def test_an_attribute_is_a_value_property_with_default_and_type(data_type, text, read, primitive):
+    reading = Read(
+        classes(f'<SystemUnitClass Name="C">{value("v", text, data_type)}</SystemUnitClass>')
+    )
+    found = reading.one("Lib::C::v")
+    assert (found.role, found.attrs["default"]) == ("value", read)
+    assert [r.name for r in reading.graph.pending if r.source == found.id] == [primitive]
+
+
+def test_value_and_default_are_both_kept_where_they_differ():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="C"><Attribute Name="v"><DefaultValue>a</DefaultValue>'
+            '<Value>b</Value></Attribute><Attribute Name="w"><DefaultValue>a</DefaultValue>'
+            "</Attribute></SystemUnitClass>"
+        )
+    )
+    v, w = reading.one("Lib::C::v").attrs, reading.one("Lib::C::w").attrs
+    assert (v["default"], v["default_value"]) == ("b", "a")
+    assert (w["default"], w.get("default_value")) == ("a", None)
+
+
+def test_an_attribute_with_attributes_has_a_data_type_of_its_own():
+    reading = Read(
+        classes(
+            f'<SystemUnitClass Name="C"><Attribute Name="s">{value("x", "1")}</Attribute>'
+            "</SystemUnitClass>"
+        )
+    )
+    assert reading.to("Lib::C::s", "typed-by", "Property") == ["Lib::C::s"]
+    assert reading.owned("Lib::C::s", "DataType") == ["Property x"]
+
+
+@pytest.mark.parametrize(
+    ("list_type", "ordered"), [("ListType", None), ("OrderedListType", True), ("Direction", None)]
+)
+def test_lists_are_of_any_number_of_values(list_type, ordered):
+    path = f"AutomationMLBaseAttributeTypeLib/{list_type}"
+    reading = Read(
+        classes(
+            f'<SystemUnitClass Name="C"><Attribute Name="v" RefAttributeType="{path}"/>'
+            "</SystemUnitClass>"
+        )
+    )
+    attrs = reading.one("Lib::C::v").attrs
+    assert attrs.get("multiplicity") == (None if list_type == "Direction" else "*")
+    assert attrs.get("ordered") is ordered
+
+
+def test_a_list_of_caex_2_is_told_by_its_semantics():
+    reading = Read(
+        aml_2(
+            classes(
+                '<SystemUnitClass Name="C"><Attribute Name="v">'
+                '<RefSemantic CorrespondingAttributePath="OrderedListType"/></Attribute>'
+                "</SystemUnitClass>"
+            )
+        )
+    )
+    attrs = reading.one("Lib::C::v").attrs
+    assert (attrs["multiplicity"], attrs["ordered"]) == ("*", True)
+    assert attrs["semantics"] == ("OrderedListType",)
+
+
+def test_semantics_are_kept_wherever_they_are():
+    reference = '<RefSemantic CorrespondingAttributePath="ECLASS:0173-1#02-AAB"/>'
+    reading = Read(
+        types(f'<AttributeType Name="T">{reference}</AttributeType>')
+        + classes(
+            f'<SystemUnitClass Name="C"><Attribute Name="v">{reference}{reference}</Attribute>'
+            "</SystemUnitClass>"
+        )
+    )
+    assert reading.one("Types::T").attrs["semantics"] == ("ECLASS:0173-1#02-AAB",)
+    assert len(reading.one("Lib::C::v").attrs["semantics"]) == 2
+
+
+# -- units -------------------------------------------------------------------------------------
+
+
+def measured(unit, more="", of_type=""):
+    return Read(
+        types(f'<AttributeType Name="Length" AttributeDataType="xs:double"{of_type}/>')
+        + classes(
+            '<SystemUnitClass Name="C">'
+            f'<Attribute Name="v" AttributeDataType="xs:double" Unit="{unit}"{more}/>'
+            "</SystemUnitClass>"
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("unit", "symbol", "quantity"),
+    [
+        ("m", "m", "length"),
+        ("m/s", "m/s", "speed"),
+        ("m^3/h", "m³/h", "volume flow rate"),
+        ("SEC", "s", "time"),
+        ("C62", "1", "dimensionless"),
+        ("Celsius", "°C", "thermodynamic temperature"),
+        ("mbps", "Mbit/s", "transfer rate"),
+    ],
+)
+def test_a_unit_is_known_by_symbol_spelling_and_code(unit, symbol, quantity):
+    reading = measured(unit)
+    found = reading.one("Lib::C::v")
+    assert found.attrs["unit"] == unit
+    assert unit_of(reading.graph, found).attrs["symbol"] == symbol
+    assert quantity_kind_of(reading.graph, found).name == quantity
+    assert reading.findings == []
+
+
+@pytest.mark.parametrize("of_type", [' Unit="m"', ""])
+def test_an_attribute_has_the_unit_of_its_type_or_its_own(of_type):
+    reading = measured("mm", ' RefAttributeType="Types/Length"', of_type)
+    found = reading.one("Lib::C::v")
+    assert unit_of(reading.graph, found).attrs["symbol"] == "mm"
+    plain = measured("m", ' RefAttributeType="Types/Length"', ' Unit="m"')
+    assert plain.to("Lib::C::v", "typed-by") == ["Types::Length"]
+    assert unit_of(plain.graph, plain.one("Lib::C::v")).attrs["symbol"] == "m"
+
+
+def test_an_unknown_unit_is_told_once_a_file_and_kept_as_it_is():
+    reading = measured("furlong")
+    assert reading.findings == ["SM147: the unit 'furlong' of 'v' is not known"]
+    found = reading.one("Lib::C::v")
+    assert unit_of(reading.graph, found).attrs["symbol"] == "furlong"
+    assert quantity_kind_of(reading.graph, found) is None
+
+
+@pytest.mark.parametrize("text", ["string", "xs:anyUnit"])
+def test_the_name_of_a_type_is_no_unit(text):
+    reading = measured(text)
+    assert reading.findings == [f"SM147: the unit '{text}' of 'v' is the name of a type"]
+    assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
+
+
+def test_no_unit_is_nothing_to_tell():
+    reading = measured("")
+    assert reading.findings == []
+    assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
+
+
+# -- constraints -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("scale", "data_type", "body", "language"),
+    [
+        (
+            "<OrdinalScaledType><RequiredMaxValue>5</RequiredMaxValue>"
+            "<RequiredMinValue>1</RequiredMinValue></OrdinalScaledType>",
+            "xs:double",
+            "v >= 1.0 && v <= 5.0",
+            "sysmlc",
+        ),
+        (
+            "<NominalScaledType><RequiredValue>a</RequiredValue>"
+            "<RequiredValue>b</RequiredValue></NominalScaledType>",
+            "xs:string",
+            'v == "a" || v == "b"',
+            "sysmlc",
+        ),
+        ("<UnknownType><Requirements>be kind</Requirements></UnknownType>", "", "be kind", ""),
+    ],
+)
+def test_a_constraint_is_an_expression_or_a_text(scale, data_type, body, language):
+    reading = Read(
+        classes(
+            f'<SystemUnitClass Name="C"><Attribute Name="v" AttributeDataType="{data_type}">'
+            f'<Constraint Name="c">{scale}</Constraint></Attribute></SystemUnitClass>'
+        )
+    )
+    found = reading.one("Lib::C::c")
+    assert (found.attrs["body"], found.attrs.get("language", "")) == (body, language)
+    assert reading.to("Lib::C::c", "references") == ["Lib::C::v"]
+
+
+# -- interfaces (rule 15) ----------------------------------------------------------------------
+
+STANDARD = "AutomationMLInterfaceClassLib/AutomationMLBaseInterface"
+
+
+def test_an_interface_is_a_port_with_direction_cardinality_and_category():
+    cardinality = f'<Attribute Name="Cardinality">{value("MinOccur", "1")}{value("MaxOccur", "4")}'
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="C"><ExternalInterface Name="p" ID="1" '
+            f'RefBaseClassPath="{STANDARD}/Port">{value("Direction", "InOut")}{cardinality}'
+            f"</Attribute>{value('Category', 'energy')}{value('voltage', '24')}"
+            "</ExternalInterface></SystemUnitClass>"
+        )
+    )
+    attrs = reading.one("Lib::C::p").attrs
+    assert (attrs["direction"], attrs["multiplicity"]) == ("inout", "1..4")
+    assert (attrs["category"], attrs["value.voltage"]) == ("energy", "24")
+    assert reading.to("Lib::C::p", "typed-by") == [f"{STANDARD}/Port".replace("/", "::")]
+
+
+def test_what_an_instance_says_of_an_interface_is_a_slot():
+    reading = Read(
+        classes('<SystemUnitClass Name="C"><ExternalInterface Name="p" ID="1"/></SystemUnitClass>')
+        + plant(
+            '<InternalElement Name="i" ID="2" RefBaseSystemUnitPath="Lib/C">'
+            f'<ExternalInterface Name="p" ID="3">{value("tag", "A1")}</ExternalInterface>'
+            "</InternalElement>"
+        )
+    )
+    assert reading.one("Plant::i::p").attrs["value.tag"] == "A1"
+    assert reading.to("Plant::i::p", "instance-of") == ["Lib::C::p"]
+
+
+def test_nested_interfaces_are_ports_of_a_class_of_their_own():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="C"><ExternalInterface Name="p" ID="1">'
+            '<ExternalInterface Name="pin" ID="2"/></ExternalInterface></SystemUnitClass>'
+        )
+    )
+    assert reading.to("Lib::C::p", "typed-by", "Port") == ["Lib::C::p"]
+    assert reading.owned("Lib::C::p", "Class") == ["Port pin"]
+
+
+# -- roles (rule 6, Table 3.1) -----------------------------------------------------------------
+
+
+def test_what_a_role_requires_and_an_element_has_not_becomes_its_own():
+    reading = Read(
+        roles('<RoleClass Name="R"><Attribute Name="load"/></RoleClass>')
+        + plant(
+            '<InternalElement Name="i" ID="1"><Attribute Name="mass"><Value>2</Value></Attribute>'
+            '<RoleRequirements RefBaseRoleClassPath="Roles/R">'
+            f"{value('load', '5')}{value('mass', '3')}"
+            '<ExternalInterface Name="grip" ID="2"/></RoleRequirements></InternalElement>'
+        )
+    )
+    assert reading.owned("Plant::i", "Class") == [
+        "Property mass",
+        "Property load",
+        "Metadata RoleRequirements",
+        "Port grip",
+    ]
+    assert reading.one("Plant::i::RoleRequirements").attrs["required"] == "3"
+    assert reading.totals == {"mapped": 14}
+
+
+def test_roles_that_a_class_plays_are_not_said_again_by_its_instances():
+    role = '<SupportedRoleClass RefRoleClassPath="Roles/A"/>'
+    reading = Read(
+        roles('<RoleClass Name="A"/><RoleClass Name="B"/>')
+        + classes(f'<SystemUnitClass Name="C">{role}</SystemUnitClass>')
+        + plant(
+            f'<InternalElement Name="i" ID="1" RefBaseSystemUnitPath="Lib/C">{role}'
+            '<SupportedRoleClass RefRoleClassPath="Roles/B"/></InternalElement>'
+        )
+    )
+    assert reading.to("Lib::C", "realizes") == ["Roles::A"]
+    assert reading.to("Plant::i", "realizes") == ["Roles::B"]
+
+
+def mapped(attribute, interface="p"):
+    return Read(
+        interfaces('<InterfaceClass Name="P"/>')
+        + roles(
+            '<RoleClass Name="R"><Attribute Name="length"/>'
+            '<ExternalInterface Name="plug" ID="r1"/></RoleClass>'
+        )
+        + plant(
+            '<InternalElement Name="i" ID="1"><Attribute Name="len"/>'
+            '<ExternalInterface Name="p" ID="2"/>'
+            '<RoleRequirements RefBaseRoleClassPath="Roles/R"><MappingObject>'
+            f'<AttributeNameMapping SystemUnitAttributeName="{attribute}" '
+            'RoleAttributeName="length"/><InterfaceNameMapping '
+            f'SystemUnitInterfaceName="{interface}" RoleInterfaceName="plug"/>'
+            "</MappingObject></RoleRequirements></InternalElement>"
+        )
+    )
+
+
+def test_a_mapping_object_says_which_feature_is_which_of_the_role():
+    reading = mapped("len")
+    assert reading.to("Plant::i::len", "redefines") == ["Roles::R::length"]
+    assert reading.to("Plant::i::p", "redefines") == ["Roles::R::plug"]
+    assert reading.findings == []
+
+
+def test_a_mapping_of_what_is_not_there_is_an_error():
+    assert mapped("l").findings == [
+        "SM144: a mapping object of 'i' names 'l', which does not exist"
+    ]
+
+
+# -- facets and groups (rule 16) ---------------------------------------------------------------
+
+BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
+
+
+def playing(role):
+    return f'<RoleRequirements RefBaseRoleClassPath="{role}"/>'
+
+
+def test_a_facet_shows_features_of_its_element_and_a_group_the_masters_of_its_mirrors():
+    reading = Read(
+        roles(f'<RoleClass Name="MyFacet" RefBaseClassPath="{BASE_ROLE}/Facet"/>')
+        + plant(
+            '<InternalElement Name="cell" ID="0"><InternalElement Name="a" ID="1">'
+            '<Attribute Name="x"/><Attribute Name="y"/>'
+            f'<InternalElement Name="plc" ID="2"><Attribute Name="x"/>{playing("Roles/MyFacet")}'
+            '</InternalElement></InternalElement><InternalElement Name="g" ID="3">'
+            f"{value('AssociatedFacet', 'plc')}"
+            '<InternalElement Name="m" ID="4" RefBaseSystemUnitPath="1"/>'
+            f"{playing(BASE_ROLE + '/Group')}</InternalElement></InternalElement>"
+        )
+    )
+    assert reading.to("Plant::cell::a::plc", "references", "Facet") == ["Plant::cell::a::x"]
+    assert reading.to("Plant::cell::g", "references", "Group") == ["Plant::cell::a"]
+    assert reading.one("Plant::cell::g").attrs["associated_facet"] == "plc"
+    assert reading.findings == []
+
+
+def test_a_role_that_is_only_called_facet_makes_none():
+    reading = Read(
+        roles('<RoleClass Name="Facet"/>')
+        + plant(f'<InternalElement Name="a" ID="1">{playing("Roles/Facet")}</InternalElement>')
+    )
+    assert [e.kind.value for e in reading.all("Plant::a")] == ["Instance", "Class"]
+
+
+# -- products, processes, resources, orders (rule 17) ------------------------------------------
+
+
+def line(interface, *elements, direction=""):
+    ids = [f"{number}p" for number in range(len(elements))]
+    inside = "".join(
+        f'<InternalElement Name="{role}{n}" ID="{n}"><ExternalInterface Name="c" ID="{n}p" '
+        f'RefBaseClassPath="{STANDARD}/{interface}">{value("Direction", way) if way else ""}'
+        f"</ExternalInterface>{playing(f'{BASE_ROLE}/{role}')}</InternalElement>"
+        for n, (role, way) in enumerate(elements)
+    )
+    link = f'<InternalLink Name="l" RefPartnerSideA="{ids[0]}" RefPartnerSideB="{ids[1]}"/>'
+    return Read(plant(f'<InternalElement Name="line" ID="9">{inside}{link}</InternalElement>'))
+
+
+@pytest.mark.parametrize("first", ["Process", "Resource"])
+def test_a_process_is_allocated_to_its_resource(first):
+    second = {"Process": "Resource", "Resource": "Process"}[first]
+    reading = line("PPRConnector", (first, ""), (second, ""))
+    link = reading.one("Plant::line::l")
+    assert (link.kind.value, link.role, link.subkind) == ("Dependency", "allocate", "ppr")
+    (client,) = reading.graph.targets(link, "client")
+    assert client.name.startswith("Process")
+    assert reading.one(f"Plant::line::{first}0", "Class").attrs["ppr"] == first.lower()
+    assert reading.links() == {}
+
+
+def test_a_product_is_what_process_and_resource_depend_on():
+    reading = line("PPRConnector", ("Product", ""), ("Process", ""))
+    link = reading.one("Plant::line::l")
+    assert (link.kind.value, link.role) == ("Dependency", "")
+    assert [e.name for e in reading.graph.targets(link, "supplier")] == ["Product0"]
+
+
+@pytest.mark.parametrize(("ways", "later"), [(("Out", "In"), 1), (("In", "Out"), 0)])
+def test_an_order_is_a_succession_from_the_way_out_to_the_way_in(ways, later):
+    reading = line("Order", ("Process", ways[0]), ("Process", ways[1]))
+    link = reading.one("Plant::line::l")
+    assert (link.kind.value, link.subkind) == ("Dependency", "succession")
+    assert [e.name for e in reading.graph.targets(link, "client")] == [f"Process{later}"]
+
+
+def test_other_interfaces_of_processes_are_wired():
+    assert list(line("Port", ("Process", ""), ("Resource", "")).links()) == ["l"]
+
+
+# -- external data (rule 18) -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("interface", "subkind"),
+    [
+        ("COLLADAInterface", "collada"),
+        ("PLCopenXMLInterface", "plcopen"),
+        ("ExternalDataReference", "external-data"),
+    ],
+)
+def test_external_data_is_a_document_that_is_not_loaded(interface, subkind):
+    path = f"{STANDARD}/ExternalDataConnector/{interface}"
+    reading = Read(
+        plant(
+            f'<InternalElement Name="i" ID="1"><ExternalInterface Name="d" ID="2" '
+            f'RefBaseClassPath="{path}">{value("refURI", "file:///g/a.dae#n")}'
+            f"{value('MIMEType', 'model/x')}</ExternalInterface></InternalElement>"
+        )
+    )
+    document = reading.one("Plant::i::d", "Document")
+    assert (document.subkind, document.attrs["href"]) == (subkind, "file:///g/a.dae#n")
+    assert document.attrs["media_type"] == "model/x"
+    assert reading.to("Plant::i::d", "references", "Document") == ["Plant::i::d"]
+
+
+# -- what is told beside the structure ---------------------------------------------------------
+
+
+def test_descriptions_revisions_and_additional_information_are_kept():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="C" ChangeMode="create"><Description>moves</Description>'
+            "<Version>1.1</Version><Revision><RevisionDate>2024-01-01</RevisionDate>"
+            "<AuthorName>ada</AuthorName></Revision><Copyright>us</Copyright>"
+            '<AdditionalInformation><x:y xmlns:x="u">z</x:y></AdditionalInformation>'
+            "</SystemUnitClass>"
+        )
+    )
+    block = reading.one("Lib::C")
+    assert (block.attrs["change_mode"], block.attrs["copyright"]) == ("create", "us")
+    assert block.attrs["version"] == "1.1"
+    assert reading.owned("Lib::C") == [
+        "Comment",
+        "Metadata Revision",
+        "Metadata AdditionalInformation",
+    ]
+    assert reading.one("Lib::C::Revision").attrs["author_name"] == "ada"
+    assert reading.totals == {"mapped": 11}
+
+
+def test_ids_of_automationml_are_those_of_the_graph():
+    reading = Read(plant('<InternalElement Name="i" ID="{AB}"/>'))
+    assert reading.one("Plant::i", "Instance").id == "{AB}"
+
+
+# -- rules about files -------------------------------------------------------------------------
+
+
+def test_what_caex_does_not_have_is_told_and_counted():
+    reading = Read(plant('<InternalElement Name="i" ID="1"><Conveyor/></InternalElement>'))
+    assert reading.findings == ["SM139: 1 element 'Conveyor' not read"]
+    assert reading.totals == {"mapped": 3, "unsupported": 1}
+
+
+@pytest.mark.parametrize(
+    ("inside", "order"),
+    [
+        (
+            '<RoleRequirements/><InternalLink Name="l" RefPartnerSideA="" RefPartnerSideB=""/>',
+            [
+                "SM140: 'InternalLink' of 'Plant::i' stands after 'RoleRequirements', "
+                "against the schema of CAEX (1 place)"
+            ],
+        ),
+        ('<InternalLink Name="l" RefPartnerSideA="" RefPartnerSideB=""/><RoleRequirements/>', []),
+    ],
+)
+def test_elements_in_another_order_than_the_schema_has_are_told_once(inside, order):
+    reading = Read(plant(f'<InternalElement Name="i" ID="1">{inside}</InternalElement>'))
+    assert reading.order == order
+
+
+@pytest.mark.parametrize(
+    ("body", "findings"),
+    [("", ["SM141: 'plant.aml' holds no library and no hierarchy"]), (plant(""), [])],
+)
+def test_a_file_without_content_is_told(body, findings):
+    assert Read(body).findings == findings
+
+
+def test_a_damaged_file_is_one_located_error():
+    reading = Read(aml(b"<CAEXFile><InstanceHierarchy></CAEXFile>"))
+    (found,) = reading.sink
+    assert found.rule.code == "SM142"
+    assert found.subject.place.offset == 31
+    assert len(reading.graph) == 0
