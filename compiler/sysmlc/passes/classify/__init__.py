@@ -21,9 +21,9 @@ from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, give_requirement
 from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
-from sysmlc.passes.classify.tags import give_tags, optional_with_value
+from sysmlc.passes.classify.tags import HANDLERS, give_tags, optional_with_value
 from sysmlc.passes.classify.units import give_units
-from sysmlc.passes.classify.vocabulary import LEVELS, Family
+from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
 
 _Meanings = dict[str, tuple[str, ...]]
 
@@ -107,8 +107,15 @@ def _check_optional(graph: Graph, sink: Sink, known: _Meanings) -> None:
 
 
 def _is_unknown(graph: Graph, application: Element, lineage: tuple[Ancestor, ...]) -> bool:
-    custom = all(one.family is Family.CUSTOM for one in lineage)
-    return custom and graph.target(application, Edge.INSTANCE_OF) is None
+    if graph.target(application, Edge.INSTANCE_OF) is not None:
+        return False
+    return all(one.family is Family.CUSTOM or _is_unheard(one) for one in lineage)
+
+
+def _is_unheard(one: Ancestor) -> bool:
+    """Whether its namespace is SysML's, which has no such stereotype."""
+    name = mangled(one.name)
+    return one.family is Family.SYSML and not (name in HANDLERS or is_role_or_kept(name))
 
 
 def _full_name(application: Element) -> str:

@@ -34,7 +34,7 @@ UNKNOWN_STEREOTYPE = rule(
     Severity.INFO,
     "no profile of the compile unit defines stereotype {stereotype} (applied: {count})",
     why="What the stereotype specialises is unknown, so the elements that have it count as plain "
-    "UML.",
+    "UML. SysML's own namespaces have no other stereotypes than those of docs/ir.md.",
     help="give the file of the profile as a further input",
     wrong="""\
 Class gate "Gate"

@@ -172,6 +172,40 @@ the stereotype that they specialise, or the front end that reads their path. The
 are kept."""
 
 
+MAGICDRAW = frozenset(
+    [
+        "Actuator",
+        "Boundary_system",
+        "Environmental_effect",
+        "External_system",
+        "RequirementTable",
+        "Sensor",
+        "User_system",
+        "numberOwner",
+    ]
+)
+"""What MagicDraw adds in SysML's namespace, kept without meaning: kinds of actors, settings of
+tables and numbers."""
+
+ROLES = (
+    CLASSIFIER_ROLES,
+    PROPERTY_ROLES,
+    PORT_ROLES,
+    CONNECTOR_ROLES,
+    FLOW_ROLES,
+    COMMENT_ROLES,
+    PARTITION_ROLES,
+    UNIT_ROLES,
+    DEPENDENCY_ROLES,
+)
+"""All tables of stereotypes that give a role."""
+
+
+def is_role_or_kept(name: str) -> bool:
+    """Whether a stereotype in SysML's namespace gives a role, or is kept for others to read."""
+    return name in KEPT or name in MAGICDRAW or any(name in table for table in ROLES)
+
+
 def family(namespace: str) -> Family:
     """Whose stereotypes a namespace (or the file of a profile) holds."""
     for found, pattern in _NAMESPACES:
