@@ -37,7 +37,9 @@ format: .venv/.ready ## put the code into its form
 	.venv/bin/ruff format
 
 bench: .venv/.ready ## the measurements of benchmarks/
-	@for file in benchmarks/*.py; do .venv/bin/python $$file || exit 1; done
+	@failed=0; for name in startup xmi cache; do \
+	  echo "== $$name"; .venv/bin/python benchmarks/$$name.py || failed=1; \
+	done; exit $$failed
 
 clean: ## remove the environments and what the tools keep
 	rm -rf .venv .demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
