@@ -3,8 +3,7 @@
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
-import networkx as nx
-
+from sysmlc.ir.components import strong_components
 from sysmlc.logic.formula import Const, variables
 from sysmlc.logic.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
 
@@ -56,15 +55,16 @@ def _loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:
 
 def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ...]]:
     kept = frozenset(nodes)
-    view: nx.DiGraph[str] = nx.DiGraph()
-    view.add_nodes_from(nodes)
     steps = [*((edge.source, edge.target) for edge in graph.edges), *_starts(graph)]
-    view.add_edges_from(pair for pair in steps if kept.issuperset(pair))
+    following: dict[str, dict[str, None]] = {id: {} for id in nodes}
+    for source, target in steps:
+        if source in kept and target in kept:
+            following[source][target] = None
     order = {node.id: place for place, node in enumerate(graph.nodes)}
     found = [
         tuple(sorted(part, key=order.__getitem__))
-        for part in nx.strongly_connected_components(view)
-        if len(part) > 1 or view.has_edge(*part, *part)
+        for part in strong_components(following)
+        if len(part) > 1 or part[0] in following[part[0]]
     ]
     return sorted(found, key=lambda part: order[part[0]])
 

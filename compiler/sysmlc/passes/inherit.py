@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.components import strong_components
 from sysmlc.ir.query import CLASSIFIERS, FEATURES, bounds, conforms, generals
-from sysmlc.ir.views import networkx
 from sysmlc.passes.inherit_rules import (
     GENERALIZATION_CYCLE,
     GENERALIZATION_KIND,
@@ -52,19 +52,16 @@ class _Hierarchy:
     """Generalization without its circles."""
 
     def __init__(self, graph: Graph) -> None:
-        import networkx as nx
-
         self._graph = graph
-        view = networkx(graph, Edge.SPECIALIZES)
         self._component: dict[str, int] = {}
         self.circles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
         # Components come out general before specific: each is ready when it is needed.
-        for number, ids in enumerate(nx.strongly_connected_components(view)):
+        for number, ids in enumerate(strong_components(_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
             self._enter(ids)
 
-    def _enter(self, ids: set[str]) -> None:
+    def _enter(self, ids: list[str]) -> None:
         members = sorted((self._graph[id] for id in ids), key=_document_order)
         if len(members) > 1 or members[0] in self._graph.targets(members[0], Edge.SPECIALIZES):
             self.circles.append(members)
@@ -101,6 +98,15 @@ class _Hierarchy:
             former = self._graph.owner(old)
             if owner is not None and former is not None and self.is_above(former, owner):
                 yield old
+
+
+def _generals(graph: Graph) -> dict[str, dict[str, None]]:
+    """Ids of the direct generals of what specialises or is specialised."""
+    found: dict[str, dict[str, None]] = {}
+    for _, specific, general in graph.edges(Edge.SPECIALIZES):
+        found.setdefault(specific, {})[general] = None
+        found.setdefault(general, {})
+    return found
 
 
 def _own_features(graph: Graph, classifier: Element) -> list[Element]:
