@@ -42,7 +42,7 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
         table: Counter[tuple[str, Verdict]] = Counter()
         lost: dict[str, list[Node]] = {}
         misplaced: list[tuple[Node, Node]] = []
-        for node in document.root.walk():
+        for node in document.nodes:
             verdict = node.verdict or Verdict.UNSUPPORTED
             table[node.tag, verdict] += 1
             for tag in node.texts or ():

@@ -42,7 +42,7 @@ class Context:
 
     def _know_ids(self) -> None:
         for document in self.documents:
-            for node in document.root.walk():
+            for node in document.nodes:
                 id = node.attributes.get("ID")
                 if id:
                     if id in self.nodes:

@@ -102,13 +102,14 @@ class Node:
 
 
 class Document:
-    """One file: its root, and how many elements of each folded tag it has."""
+    """One file: its root, and all its nodes in document order."""
 
-    __slots__ = ("is_built_in", "name", "root")
+    __slots__ = ("is_built_in", "name", "nodes", "root")
 
-    def __init__(self, name: str, root: Node, is_built_in: bool = False) -> None:
+    def __init__(self, name: str, nodes: list[Node], is_built_in: bool = False) -> None:
         self.name = name
-        self.root = root
+        self.root = nodes[0]
+        self.nodes = nodes
         self.is_built_in = is_built_in
 
     @property
@@ -125,13 +126,14 @@ def read(source: Source, is_built_in: bool = False) -> Document:
     """The tree of the file. Raises SourceError."""
     top = Node("", {}, None, -1)
     made = parser()
-    _fill(top, made, source)
+    nodes: list[Node] = []
+    _fill(top, nodes, made, source)
     parse(source, made)
-    root = top.children[0]
+    root = nodes[0]
     if root.tag != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
     root.parent = None
-    return Document(source.name, root, is_built_in)
+    return Document(source.name, nodes, is_built_in)
 
 
 class _Local(dict[str, str]):
@@ -142,7 +144,7 @@ class _Local(dict[str, str]):
         return name
 
 
-def _fill(top: Node, made: Parser, source: Source) -> None:
+def _fill(top: Node, nodes: list[Node], made: Parser, source: Source) -> None:
     """Set the handlers that build the tree; they are called for every element.
 
     Text is listened to only where CAEX has some: between the other elements stand line ends.
@@ -167,6 +169,7 @@ def _fill(top: Node, made: Parser, source: Source) -> None:
                 folding, depth = name, len(stack)
                 return
         node = Node(name, values, parent, ordinal)
+        nodes.append(node)
         if parent.children is _NONE:
             parent.children = [node]
         else:

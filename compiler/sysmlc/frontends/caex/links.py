@@ -37,7 +37,7 @@ class Links:
 
     def lower(self, document: Document) -> None:
         """Add a connector for each link of a file; those of classes come first."""
-        for node in document.root.walk():
+        for node in document.nodes:
             if node.tag == "InternalLink":
                 self._link(node, document)
 

@@ -23,7 +23,7 @@ _KEPT = frozenset(
 
 def lower(context: Context, document: Document) -> None:
     """Add what is said about the elements of a file; those of the file itself are read before."""
-    for node in document.root.walk():
+    for node in document.nodes:
         element = context.graph.get(node.element)
         if element is None:
             continue

@@ -28,14 +28,15 @@ def says_more(types: Types, document: Document, top: Node, known: Member) -> boo
 
 
 def _differs(types: Types, document: Document, node: Node, known: Member) -> bool:
-    stated = ((name, node.attributes.get(name)) for name in _STATED)
-    if any(value and value not in _known(known, name) for name, value in stated):
-        return True
+    for name in _STATED:
+        value = node.attributes.get(name)
+        if value and value != known.node.attributes.get(name) and value not in _known(known, name):
+            return True
     default = node.text("DefaultValue")
     if default is not None and default != known.node.text("DefaultValue"):
         return True
-    kept = [_form(child) for child in node.of(*_KEPT)]
-    if kept:
+    if node.children:
+        kept = [_form(child) for child in node.of(*_KEPT)]
         of_class = [_form(c) for source in _sources(known) for c in source.of(*_KEPT)]
         if any(form not in of_class for form in kept):
             return True
