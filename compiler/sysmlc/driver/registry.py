@@ -27,7 +27,7 @@ GROUP = "sysmlc.backends"
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "ir"))
 _BACKENDS = {
     name: f"sysmlc.backends.{name}"
-    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable")
+    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable", "uml")
 }
 _RULE_PACKAGES = ("frontends", "logic", "recipe", "simulation", "passes", "backends", "driver")
 

@@ -1,0 +1,69 @@
+"""What all writers of parts share: the graph, the nodes that are made, ids and losses."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from sysmlc.backends.uml.hrefs import is_outside, reference
+from sysmlc.backends.uml.identity import part_id, xml_ids
+from sysmlc.backends.uml.node import Node
+from sysmlc.backends.uml.rules import UNSAID_EDGE, Losses
+from sysmlc.ir import Edge, Element, Graph
+
+
+@dataclass(slots=True)
+class Book:
+    """The document as far as it is written."""
+
+    graph: Graph
+    losses: Losses
+    nodes: dict[str, Node] = field(default_factory=dict)
+    """By the id of the element in the graph."""
+    ids: dict[str, str] = field(default_factory=dict)
+    parts: Counter[tuple[str, str]] = field(default_factory=Counter)
+    tops: list[Node] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.ids = xml_ids(self.graph)
+
+    def node(self, element: Element) -> Node:
+        """The node of an element that is written."""
+        return self.nodes[element.id]
+
+    def part(self, holder: Element, above: Node, tag: str, metaclass: str) -> Node:
+        """A new node that is part of an element; its id comes from the element and the tag."""
+        number = self.parts[holder.id, tag]
+        self.parts[holder.id, tag] += 1
+        id = part_id(holder.id, f"{tag}[{number}]")
+        return above.add(Node(tag, {"xmi:type": f"uml:{metaclass}", "xmi:id": id}))
+
+    def local_id(self, element: Element) -> str:
+        """Id in the file of what is written, else the empty string."""
+        return self.ids[element.id] if element.id in self.nodes else ""
+
+    def refer(
+        self, holder: Element, node: Node, feature: str, targets: Sequence[Element], edge: str
+    ) -> None:
+        """Write references: an attribute when all are in the file, else a child for each."""
+        known = [one for one in targets if is_outside(one) or one.id in self.nodes]
+        for one in targets:
+            if one not in known:
+                self.lost(holder, edge, one)
+        if not any(map(is_outside, known)):
+            if known:
+                node.attributes[feature] = " ".join(self.ids[one.id] for one in known)
+            return
+        for one in known:
+            local = Node(feature, {"xmi:idref": self.ids[one.id]})
+            node.add(reference(self.graph, feature, one) if is_outside(one) else local)
+
+    def lost(self, holder: Element, edge: str, target: Element) -> None:
+        """A relation that UML cannot say."""
+        kinds = {"kind": str(holder.kind), "target": str(target.kind)}
+        self.losses.note(UNSAID_EDGE, holder, edge=edge, **kinds)
+
+    def refer_by(self, holder: Element, feature: str, edge: Edge) -> None:
+        """Write all edges of a kind as one feature."""
+        targets = self.graph.targets(holder, edge)
+        if targets:
+            self.refer(holder, self.node(holder), feature, targets, edge.value)

@@ -1,0 +1,88 @@
+"""What UML cannot say, and how it is counted: one finding for each kind of loss."""
+
+from dataclasses import dataclass, field
+
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
+from sysmlc.ir import Element, Graph
+
+_GATE = 'Package p "Plant"\n  Class gate "Gate"\n'
+
+UNSAID_KIND = rule(
+    "SM720",
+    "uml-without-kind",
+    Severity.WARNING,
+    "UML has no place for {kind} ({count} left out of the saved model)",
+    why="The saved model holds what UML and SysML v1 can say; this they cannot.",
+    help="--emit +ir or +ecore saves the whole graph",
+    wrong=_GATE + '    Facet f "Control"\n',
+    right=_GATE,
+)
+UNSAID_EDGE = rule(
+    "SM721",
+    "uml-without-relation",
+    Severity.WARNING,
+    "UML has no '{edge}' from {kind} to {target} ({count} left out of the saved model)",
+    why="The saved model holds what UML and SysML v1 can say; this relation they cannot.",
+    help="--emit +ir or +ecore saves the whole graph",
+    wrong=_GATE + '  Class other "Other"\n    -> mirrors gate\n',
+    right=_GATE + '  Class other "Other"\n    -> specializes gate\n',
+)
+UNSAID_ATTRIBUTE = rule(
+    "SM722",
+    "uml-without-attribute",
+    Severity.WARNING,
+    "UML has no '{attribute}' of {kind} ({count} left out of the saved model)",
+    why="The saved model holds what UML and SysML v1 can say; this attribute they cannot.",
+    help="--emit +ir or +ecore saves the whole graph",
+    wrong='Package p "Plant"\n  Class gate "Gate" change_mode="create"\n',
+    right='Package p "Plant"\n  Class gate "Gate" abstract=true\n',
+)
+MOVED = rule(
+    "SM723",
+    "uml-moved",
+    Severity.INFO,
+    "UML lets no {owner} own {kind}: saved with the nearest owner that may ({count})",
+    why="Papyrus opens only what stands where UML allows it.",
+    wrong='Package p "Plant"\n  Class gate "Gate"\n    Instance one "Gate 1"\n',
+    right='Package p "Plant"\n  Class gate "Gate"\n  Instance one "Gate 1"\n',
+)
+APPROXIMATED = rule(
+    "SM724",
+    "uml-approximated",
+    Severity.INFO,
+    "{said} is saved as {written} ({count})",
+    why="UML and SysML v1 say it in another way; a compiler that reads the saved model sees that.",
+    wrong='Package p "Plant"\n  Requirement r "No jam" text="It never jams."\n',
+    right='Package p "Plant"\n  Class r "No jam" role="requirement" text="It never jams."\n',
+)
+ILLEGAL = rule(
+    "SM725",
+    "uml-illegal-character",
+    Severity.WARNING,
+    "{count} characters that XML cannot hold were replaced in the saved model",
+    why="XML 1.0 holds no control characters (clause 2.2).",
+    wrong='Package p "Pl\\u0001ant"\n',
+    right='Package p "Plant"\n',
+)
+
+
+@dataclass(slots=True)
+class Losses:
+    """Counts losses by rule and facts; each is reported once, at the first element."""
+
+    graph: Graph
+    _found: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
+        default_factory=dict
+    )
+
+    def note(self, loss: Rule, element: Element, **facts: str) -> None:
+        """One more element with this loss."""
+        key = (loss.code, tuple(sorted(facts.items())))
+        _, first, count = self._found.get(key, (loss, element, 0))
+        self._found[key] = (loss, first, count + 1)
+
+    def report(self, sink: Sink) -> None:
+        """Report what was counted."""
+        for (_, facts), (lost, first, count) in self._found.items():
+            told: dict[str, object] = {"count": count, **dict(facts)}
+            sink.report(lost, self.graph.subject(first), notes=(), help="", **told)

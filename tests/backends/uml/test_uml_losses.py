@@ -1,0 +1,119 @@
+"""What UML says in other words than the graph, and what it cannot say."""
+
+import pytest
+from lxml import etree
+from saving import read, refined, round_trip, saved
+
+from dialects.papyrus import XMI
+from sysmlc.backends.uml import rules
+
+RULES = (
+    rules.UNSAID_KIND,
+    rules.UNSAID_EDGE,
+    rules.UNSAID_ATTRIBUTE,
+    rules.MOVED,
+    rules.APPROXIMATED,
+    rules.ILLEGAL,
+)
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
+    assert rule.code in [one[:5] for one in saved(refined(rule.wrong))[1]]
+    assert saved(refined(rule.right))[1] == []
+
+
+def test_a_loss_is_counted_and_told_once():
+    facets = "".join(f'  Facet f{number} "F{number}"\n' for number in range(3))
+    assert saved(refined('Package p "Plant"\n' + facets))[1] == [
+        "SM720 UML has no place for Facet (3 left out of the saved model)"
+    ]
+
+
+ROLES = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Port gate.in "in" role="proxy port"
+      -> typed-by pallets
+  Class plain "Plain" role="block"
+  Class pallets "Pallets" role="interface block"
+    Property pallets.p "p" role="flow property" direction="in"
+  Class r1 "No jam" role="requirement" req_id="R1" text="It never jams."
+  DataType length "Length" role="value type"
+  Dependency d "" subkind="abstraction" role="satisfy"
+    -> client gate
+    -> supplier r1
+"""
+
+
+def test_roles_without_stereotypes_become_stereotypes_of_sysml():
+    graph = refined(ROLES)
+    text, back, _ = round_trip(graph)
+    for element in graph:
+        same = next(one for one in back if one.name == element.name and one.kind is element.kind)
+        for key in ("role", "direction", "req_id", "text"):
+            assert same.attrs.get(key) == element.attrs.get(key), (element, key)
+    assert 'SysML.package_packagedElement_Ports_u0026Flows"' in text
+    assert '<Requirements:Requirement xmi:id="_' in text
+
+
+def test_ids_that_xml_cannot_hold_are_derived_and_others_kept():
+    text, _, changes = round_trip(
+        refined(
+            'Package "a#p" "Plant"\n  Class "2" "Two"\n  Class "b#p" "Three"\n  Class kept "Kept"\n'
+        )
+    )
+    model = etree.fromstring(text.encode())[0]
+    ids = [one.get(f"{{{XMI}}}id", "") for one in model.iter("*")]
+    assert (ids[0], ids[1], ids[3]) == ("p", "_2", "kept")
+    assert ids[2].startswith("_")
+    assert "#" not in ids[2]
+    assert changes == []
+
+
+def test_text_is_escaped():
+    name = 'a <b> & "c"\n\té'
+    graph = refined('Package p "Plant"\n  Comment c ""\n')
+    graph.rename(graph["p"], name)
+    graph.set(graph["c"], body=f"{name}\r\n]]>")
+    _, back, changes = round_trip(graph)
+    assert changes == []
+    assert back["p"].name == name
+
+
+def test_what_is_outside_is_an_href():
+    text = """
+Package p "Plant"
+  Class gate "Gate"
+    -> specializes arm
+Class arm "Arm" external=true href="robots.uml#_arm" qualified_name="Robots::Arm"
+"""
+    made, back, _ = round_trip(refined(text))
+    assert '<general xmi:type="uml:Class" href="robots.uml#_arm">' in made
+    (stub,) = [one for one in back if one.attrs.get("external")]
+    assert (stub.name, stub.attrs["qualified_name"]) == ("Arm", "Robots::Arm")
+
+
+def test_an_empty_graph_is_an_empty_document():
+    text, told = saved(refined(""))
+    assert len(read(text.encode())) == 0
+    assert told == []
+
+
+LIBRARY = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Application a "Cell" stereotype="Cell" namespace="urn:cells"
+      -> subject gate
+      -> instance-of cell
+Stereotype cell "Cell" external=true library=true href="cells.mdzip#_cell" source="cells.mdzip"
+  -> specializes block
+Stereotype block "Block" external=true library=true href="SysML Profile.mdzip#_block"
+"""
+
+
+def test_a_role_that_only_a_library_explains_is_said_by_sysml():
+    text, back, _ = round_trip(refined(LIBRARY))
+    assert 'Blocks:Block xmi:id="_' in text
+    (gate,) = [one for one in back if one.name == "Gate"]
+    assert gate.role == "block"
