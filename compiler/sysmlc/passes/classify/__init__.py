@@ -17,6 +17,7 @@ from sysmlc.passes.classify.lineage import (
     look_alike,
     meanings,
 )
+from sysmlc.passes.classify.literals import check_literals
 from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, give_requirement
 from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
@@ -51,6 +52,7 @@ class Classify:
         _give_roles(graph, _by_subject(graph, known))
         give_tags(graph, known)
         give_units(graph, known)
+        check_literals(graph, sink)
         _check_optional(graph, sink, known)
         _give_levels(graph, lineages)
         _give_values(graph)

@@ -1,0 +1,51 @@
+"""Values of UML's and SysML's enumerations that are none of their literals."""
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Element, Graph, Kind
+
+UNKNOWN_LITERAL = rule(
+    "SM220",
+    "unknown-literal",
+    Severity.WARNING,
+    "the {attribute} of '{element}' is '{value}', which is none of {known}",
+    why="Directions and kinds of aggregation are enumerations (UML 2.5.1 clause 9.9; SysML 1.6 "
+    "clause 9.3.2). A value that they do not have counts as none.",
+    help="choose one of {known} in the modelling tool",
+    wrong="""\
+Class gate "Gate"
+  Operation open "open"
+    Parameter speed "speed" direction="sideways"
+""",
+    right="""\
+Class gate "Gate"
+  Operation open "open"
+    Parameter speed "speed" direction="in"
+""",
+)
+
+_KINDS = (Kind.PARAMETER, Kind.PORT, Kind.PROPERTY)
+_LITERALS = {
+    "aggregation": ("none", "shared", "composite"),
+    "direction": ("in", "inout", "out", "return"),
+}
+
+
+def check_literals(graph: Graph, sink: Sink) -> None:
+    """Report and remove directions and aggregations that do not exist."""
+    for element in graph.of_kind(*_KINDS):
+        attrs = element.attrs
+        for attribute, known in _LITERALS.items() if attrs else ():
+            if attribute in attrs and attrs[attribute] not in known:
+                _report(graph, sink, element, attribute)
+                graph.set(element, **{attribute: None})
+
+
+def _report(graph: Graph, sink: Sink, element: Element, attribute: str) -> None:
+    sink.report(
+        UNKNOWN_LITERAL,
+        graph.subject(element),
+        attribute=attribute,
+        element=graph.qualified_name(element),
+        value=element.attrs[attribute],
+        known=", ".join(_LITERALS[attribute]),
+    )
