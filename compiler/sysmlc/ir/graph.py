@@ -6,7 +6,7 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import Index, drop, every, first, put
+from sysmlc.ir.neighbours import Index, drop, every, first, put, put_new
 from sysmlc.ir.reference import Reference, References
 
 _T = TypeVar("_T")
@@ -26,6 +26,7 @@ class Graph:
         self._fresh: list[Element] = []
         self._stale: set[Kind] = set()
         self._out: dict[Edge, Index] = {edge: {} for edge in Edge}
+        self._owned = self._out[Edge.OWNS]
         self._in: dict[Edge, Index] = {}
         self._drawn: dict[Edge, list[Element]] = {edge: [] for edge in Edge}
         self._derived: dict[type, tuple[object, ...]] = {}
@@ -168,11 +169,7 @@ class Graph:
         made = self._elements[id] = Element(id, kind, name, owner, ordinal, source)
         self._fresh.append(made)
         if owner is not None:
-            owned = self._out[Edge.OWNS]
-            if owner in owned:
-                put(owned, owner, made)
-            else:
-                owned[owner] = made
+            put_new(self._owned, owner, made)
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:

@@ -32,6 +32,19 @@ def put(index: Index, id: str, neighbour: Element) -> bool:
     return True
 
 
+def put_new(index: Index, id: str, neighbour: Element) -> None:
+    """Add a neighbour that cannot be there: it was made just now."""
+    known = index.get(id)
+    if known is None:
+        index[id] = neighbour
+    elif isinstance(known, dict):
+        known[neighbour] = None
+    elif isinstance(known, list) and len(known) < _MANY:
+        known.append(neighbour)
+    else:
+        put(index, id, neighbour)
+
+
 def drop(index: Index, id: str, neighbour: Element) -> bool:
     """Remove a neighbour; False when it is not there."""
     known = index.get(id)

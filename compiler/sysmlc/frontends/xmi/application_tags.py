@@ -23,6 +23,8 @@ def read(context: Context, element: Element, row: int) -> None:
     for name, value in document.attributes[row].items():
         if "}" not in name and not name.startswith(_NOT_TAGS):
             element.attrs[f"tag.{name}"] = _tag(context, element, row, name, value)
+    if document.ends[row] == row + 1:
+        return
     collected: dict[str, list[AttrValue]] = {}
     for child in document.children(row):
         feature = document.features[child]
@@ -37,6 +39,8 @@ def _tag(context: Context, element: Element, row: int, name: str, value: str) ->
     if value[:1] == "{":
         return id_of(context, value) or value
     ids = context.document.ids
+    if len(tokens) == 1 and tokens[0] not in ids and not _MADE_BY_TOOLS.fullmatch(tokens[0]):
+        return value
     if all(token in ids for token in tokens):
         known = tokens
     else:

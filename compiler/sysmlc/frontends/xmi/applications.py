@@ -83,8 +83,10 @@ def _plain(context: Context, row: int, bases: dict[str, int]) -> None:
     context.verdicts[row] = Verdict.MAPPED
     places = list(bases.values())
     element = _element(context, row, context.gids[places[0]])
+    links = context.unit.links
+    links.begin(context.lowered)
     for target in bases:
-        context.link(Edge.SUBJECT, element.id, target, row, "subject")
+        links.add(Edge.SUBJECT, target, row)
     application_tags.read(context, element, row)
     if element.name == "ItemFlow" or "propertyPath" in values:
         _specialities(context, element, row, [(context.lowered, at) for at in places])
@@ -148,7 +150,7 @@ def _on_folded(context: Context, row: int, folded: list[tuple[str, str]]) -> Non
 
 def _element(context: Context, row: int, owner: str | None) -> Element:
     document = context.document
-    name, namespace = stereotype_of(context, row)
+    name, namespace, stereotype = _stereotype(context, row)
     id = document.id(row)
     known = context.unit.graph_id(document.name, id) if id else ""
     ordinal = document.ordinals[row]
@@ -158,14 +160,25 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
         derived = derived_id(owner or document.name, f"{name}[{ordinal}]")
         element = Element(derived, Kind.APPLICATION, name, owner, ordinal, document.name)
         context.graph.add(element)
-    element.attrs["stereotype"] = name
-    element.attrs["namespace"] = namespace
+    element.attrs = {"stereotype": name, "namespace": namespace}
     context.gids[row] = element.id
-    written = document.namespace(row), document.features[row]
-    stereotype = context.unit.profiles.find(context.graph, *written)
     if stereotype is not None:
         context.graph.connect(Edge.INSTANCE_OF, element, stereotype)
     return element
+
+
+def _stereotype(context: Context, row: int) -> tuple[str, str, Element | None]:
+    """Name, namespace and stereotype of an application; nearly always its tag says all three."""
+    document = context.document
+    tag, says_itself = document.tags[row], "__EAStereoName" in document.attributes[row]
+    known = None if says_itself else context.stereotypes.get(tag)
+    if known is None:
+        written = document.namespace(row), document.features[row]
+        stereotype = context.unit.profiles.find(context.graph, *written)
+        known = (*stereotype_of(context, row), stereotype)
+        if not says_itself:
+            context.stereotypes[tag] = known
+    return known
 
 
 def _specialities(

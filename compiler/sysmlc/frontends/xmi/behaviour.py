@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
-from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.context import Context, Event
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, value_in
 from sysmlc.frontends.xmi.unit import Lowered, Unit
@@ -130,7 +130,10 @@ def _trigger(context: Context, element: Element, row: int) -> None:
     element.attrs["subkind"] = subkind
     if not element.name:
         context.graph.rename(element, holder.document.attributes[at].get("name", ""))
-    _event_details(context, element, holder, at)
+    known = context.events.get((holder.document.name, at))
+    if known is None:
+        known = context.events[holder.document.name, at] = _event(holder.document, at)
+    _event_details(context, element, holder, known)
 
 
 def _unknown_event(context: Context, element: Element, row: int) -> None:
@@ -143,17 +146,34 @@ def _unknown_event(context: Context, element: Element, row: int) -> None:
         context.link(Edge.REFERENCES, element.id, target, at, "event", is_href)
 
 
-def _event_details(context: Context, element: Element, holder: Lowered, row: int) -> None:
-    document = holder.document
-    for feature in ("signal", "operation"):
-        for target, at, is_href in references(document, row, feature):
-            context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
-    for child in document.children(row, "when"):
-        _condition(element, "when", value_of(document, child))
-        if document.attributes[row].get("isRelative") == "true":
+def _event(document: Document, row: int) -> Event:
+    """What an event says: many triggers can name one."""
+    conditions = [
+        (key, value_of(document, child))
+        for feature, key in _CONDITIONS.items()
+        for child in document.children(row, feature)
+    ]
+    is_timed = any(key == "when" for key, _ in conditions)
+    is_relative = is_timed and document.attributes[row].get("isRelative") == "true"
+    types = [
+        (feature, *reference)
+        for feature in ("signal", "operation")
+        for reference in references(document, row, feature)
+    ]
+    return Event(types, conditions, is_relative)
+
+
+def _event_details(context: Context, element: Element, holder: Lowered, event: Event) -> None:
+    for feature, target, at, is_href in event.types:
+        context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
+    for key, value in event.conditions:
+        _condition(element, key, value)
+        if key == "when" and event.is_relative:
             element.attrs["relative"] = True
-    for child in document.children(row, "changeExpression"):
-        _condition(element, "condition", value_of(document, child))
+
+
+_CONDITIONS = {"when": "when", "changeExpression": "condition"}
+"""Attributes of triggers, by the feature of the event that holds the value."""
 
 
 def _condition(element: Element, key: str, value: ValueText) -> None:

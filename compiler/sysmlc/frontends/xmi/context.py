@@ -2,19 +2,29 @@
 
 from collections.abc import Callable
 from itertools import islice
+from typing import NamedTuple
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import details, metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
-from sysmlc.frontends.xmi.values import bound
+from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 from sysmlc.sources import DEFAULT_LIMITS
 
 Completion = Callable[["Context", Element, int], None]
 """Adds to an element what is special about it; takes its row."""
+
+
+class Event(NamedTuple):
+    """What an event says of the triggers that name it."""
+
+    types: list[tuple[str, str, int, bool]]
+    """Features with a target, its row, and whether it is an href."""
+    conditions: list[tuple[str, ValueText]]
+    is_relative: bool
 
 
 class Context:
@@ -32,9 +42,14 @@ class Context:
         self.gids = lowered.gids
         self.verdicts = lowered.verdicts
         self.applications: list[int] = []
+        self.applied: set[str] = set()
+        """Tags whose rows, as roots, are applications of stereotypes."""
+        self.stereotypes: dict[str, tuple[str, str, Element | None]] = {}
+        """Name, namespace and, where it is in the unit, the stereotype that a tag means."""
         self.extensions: list[int] = []
         self.parts: list[int] = []
         self.triggers: list[tuple[Element, int]] = []
+        self.events: dict[tuple[str, int], Event] = {}
         self.deferred: list[tuple[Completion, Element, int]] = []
         self.ends: list[tuple[Element, int]] = []
         self.parameters: list[tuple[Element, int]] = []

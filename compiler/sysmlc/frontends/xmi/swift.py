@@ -105,8 +105,7 @@ class Swift:
                     context.attribute(made, row, step, value)
                 elif value != default:
                     made.attrs[key] = value
-            if is_done:
-                attributes[row] = _TAKEN
+            attributes[row] = _TAKEN if is_done else values
             row += 1
 
 

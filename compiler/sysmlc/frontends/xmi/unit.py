@@ -223,13 +223,14 @@ class Unit:
                 add_ordinal(ordinals[row])
                 continue
             link = links[number]
-            if at >= 0 and own[at] and link.is_reversed and not link.is_href:
-                add_edge(link.edge)
-                add_source(gids[at])
-                add_target(link.source)
-                add_ordinal(ordinals[link.row])
-            else:
+            edge, source, holder, _, row, _, is_href, is_reversed = link
+            if at < 0 or not own[at] or is_href or holder is not lowered:
                 self._refer(link)
+                continue
+            add_edge(edge)
+            add_source(gids[at] if is_reversed else source)
+            add_target(source if is_reversed else gids[at])
+            add_ordinal(ordinals[row] if is_reversed else self._ordinal(source, lowered, row))
 
     def _refer(self, link: Link) -> None:
         target = self.target_id(link.lowered, link.target, link.is_href)

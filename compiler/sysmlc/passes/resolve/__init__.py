@@ -143,6 +143,7 @@ class _Answers:
     known: dict[str, StandIn] = field(default_factory=dict)
     """Those of ``outside`` that are elements of a known library."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
+    _outside: set[tuple[str, str]] = field(default_factory=set)
     _stubs: dict[str, str] = field(default_factory=dict)
 
     def find(self, uses: list[_Use]) -> None:
@@ -170,10 +171,11 @@ class _Answers:
         if key not in self._found:
             element = self.targets.find(*key)
             self._found[key] = element.id if element else None
-        if self._found[key] is not None or not is_href(use.target):
-            return False
-        library, _ = split(use.target)
-        return not self.targets.files(use.holder.source, library)
+            if element is None and is_href(use.target):
+                library, _ = split(use.target)
+                if not self.targets.files(use.holder.source, library):
+                    self._outside.add(key)
+        return key in self._outside
 
     def _canonical(self, target: str, uses: list[_Use]) -> str:
         # All uses are asked, for the order in which they come must not matter.
