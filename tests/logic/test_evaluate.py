@@ -1,12 +1,14 @@
 """Formulas on traces: values, finite traces, lassos; the lasso against Spot."""
 
+import pickle
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.evaluate import lasso_truth, value_of, violation
+from sysmlc.logic.evaluate import evaluation, lasso_truth, value_of, violation
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.printing import print_formula
 
@@ -73,3 +75,44 @@ def test_lassos_mean_what_spot_says(formula, trace, data):
     word = spot.parse_word(";".join([*letters[:loop], f"cycle{{{';'.join(letters[loop:])}}}"]))
     accepts = spot.formula(print_formula(formula)).translate().intersects(word.as_automaton())
     assert lasso_truth(formula, trace, loop)[0] == accepts
+
+
+_numbers = st.one_of(
+    st.integers(-3, 3).map(Const), st.builds(Var, st.sampled_from("xy"), st.booleans())
+)
+_sums = st.builds(
+    lambda op, left, right: Apply(op, (left, right)),
+    st.sampled_from([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD]),
+    _numbers,
+    _numbers,
+)
+_comparisons = st.builds(
+    lambda op, left, right: Apply(op, (left, right)),
+    st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE]),
+    st.one_of(_numbers, _sums),
+    _numbers,
+)
+_steps = st.recursive(
+    _comparisons,
+    lambda inner: st.one_of(
+        inner.map(lambda one: Apply(Op.NOT, (one,))),
+        st.builds(
+            lambda op, left, right: Apply(op, (left, right)),
+            st.sampled_from([Op.AND, Op.OR, Op.IMPLIES, Op.IFF]),
+            inner,
+            inner,
+        ),
+    ),
+    max_leaves=6,
+)
+_values = st.fixed_dictionaries({"x": st.integers(-3, 3), "y": st.integers(-3, 3)})
+
+
+@given(_steps, _values, _values)
+def test_an_evaluation_gives_the_value_of_its_formula(formula, now, then):
+    assert evaluation(formula)(now, then) == value_of(formula, now, then)
+
+
+def test_a_formula_is_read_back_with_the_hash_of_this_process():
+    formula = f.both(P, f.negate(Q))
+    assert {pickle.loads(pickle.dumps(formula)): 1} == {formula: 1}

@@ -63,6 +63,8 @@ class Class(StrEnum):
     LIVENESS = "liveness"
     OTHER = "other"
 
+    __hash__ = str.__hash__
+
 
 @dataclass(frozen=True, slots=True)
 class Conjunct:

@@ -29,6 +29,55 @@ def value_of(formula: Formula, now: Valuation, then: Valuation | None = None) ->
             return _OPERATIONS[op](*(value_of(arg, now, then) for arg in args))
 
 
+Evaluation = Callable[[Valuation, Valuation | None], Literal]
+"""``value_of`` for one formula."""
+
+
+def evaluation(formula: Formula) -> Evaluation:
+    """``value_of`` for one formula that is asked for many values: it is walked through once."""
+    match formula:
+        case Const(value):
+            return lambda now, then: value
+        case Var(name, True):
+            return lambda now, then: _next(then)[name]
+        case Var(name):
+            return lambda now, then: now[name]
+        case Apply(op, args):
+            return _applied(op, tuple(evaluation(arg) for arg in args))
+
+
+def _applied(op: Op, parts: tuple[Evaluation, ...]) -> Evaluation:
+    match op, parts:
+        case Op.IMPLIES, (left, right):
+            return lambda now, then: not left(now, then) or bool(right(now, then))
+        case Op.AND, _:
+            return lambda now, then: _every(parts, now, then)
+        case Op.OR, _:
+            return lambda now, then: _some(parts, now, then)
+        case _, (only,):
+            act = _OPERATIONS[op]
+            return lambda now, then: act(only(now, then))
+        case _, (left, right):
+            act = _OPERATIONS[op]
+            return lambda now, then: act(left(now, then), right(now, then))
+        case _:
+            raise KeyError(op)
+
+
+def _every(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
+    for part in parts:  # noqa: SIM110 - a generator for every connective costs as much again
+        if not part(now, then):
+            return False
+    return True
+
+
+def _some(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
+    for part in parts:  # noqa: SIM110
+        if part(now, then):
+            return True
+    return False
+
+
 def is_true(formula: Formula, now: Valuation, then: Valuation | None = None) -> bool:
     """Truth of a formula without temporal operators in one step."""
     return bool(value_of(formula, now, then))

@@ -4,12 +4,15 @@ A formula is built by the small functions at the end (``var``, ``eq``, ``both``,
 never by calling the classes from outside: they keep operands flat and constants folded.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import lru_cache
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""
+_REMEMBERED = 1 << 16
+"""Formulas whose variables are kept: the same ones are asked for again and again."""
 
 
 class Op(StrEnum):
@@ -38,6 +41,9 @@ class Op(StrEnum):
     RELEASE = "R"
     WEAK_UNTIL = "W"
 
+    # That of Enum is written in Python, and operators are keys of every table here.
+    __hash__ = str.__hash__
+
 
 @dataclass(frozen=True, slots=True)
 class Const:
@@ -60,6 +66,18 @@ class Apply:
 
     op: Op
     args: tuple["Formula", ...]
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_hash", hash((self.op, self.args)))
+
+    def __hash__(self) -> int:
+        """Kept, for formulas are keys, and deep ones take long to walk through."""
+        return self._hash
+
+    def __reduce__(self) -> tuple[type["Apply"], tuple[Op, tuple["Formula", ...]]]:
+        """Made anew when it is read back: hashes of text differ from process to process."""
+        return Apply, (self.op, self.args)
 
 
 Formula = Const | Var | Apply
@@ -144,21 +162,25 @@ def eventually(formula: Formula) -> Formula:
     return Apply(Op.EVENTUALLY, (formula,))
 
 
-def variables(formula: Formula) -> Iterator[Var]:
+@lru_cache(_REMEMBERED)
+def variables(formula: Formula) -> tuple[Var, ...]:
     """Every variable of the formula, with repetitions, from left to right."""
     match formula:
         case Var():
-            yield formula
+            return (formula,)
         case Apply(_, args):
-            for arg in args:
-                yield from variables(arg)
+            return tuple(found for arg in args for found in variables(arg))
+        case _:
+            return ()
 
 
 def _flat(op: Op, formulas: Iterable[Formula], unit: Const, zero: Const) -> Formula:
     parts: dict[Formula, None] = {}
     for formula in formulas:
         inner = formula.args if isinstance(formula, Apply) and formula.op is op else (formula,)
-        parts.update(dict.fromkeys(part for part in inner if part != unit))
+        for part in inner:
+            if not isinstance(part, Const) or part != unit:
+                parts[part] = None
     if zero in parts:
         return zero
     if len(parts) <= 1:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import is_true, value_of
+from sysmlc.logic.evaluate import evaluation, value_of
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 
 _LIMIT = 4096
@@ -75,8 +75,9 @@ def _is_satisfiable(
     then = {name: domain for (name, primed), domain in found.items() if primed}
     if domains.count(now) * domains.count(then) > limit:
         return True
+    truth = evaluation(formula)
     return any(
-        is_true(formula, before, after)
+        truth(before, after)
         for after in domains.valuations(then)
         for before in domains.valuations(now)
     )
