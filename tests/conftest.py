@@ -10,11 +10,16 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 import plantuml_jar
 
 os.environ["SYSMLC_CACHE"] = "off"
 """Tests see what the code does, not what an earlier run found."""
+
+settings.register_profile("sysmlc", deadline=None, derandomize="CI" in os.environ)
+settings.load_profile("sysmlc")
+"""No test asserts on time; continuous integration tries the same examples in every run."""
 
 GOLDEN = Path(__file__).parent / "golden"
 _SHOWN = 80

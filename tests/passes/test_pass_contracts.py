@@ -13,7 +13,7 @@ pipeline.load("contracts")
 RULES = [
     rule
     for code, rule in catalogue().items()
-    if 410 <= int(code[2:]) < 450 or 500 <= int(code[2:]) < 520
+    if 410 <= int(code[2:]) < 440 or 500 <= int(code[2:]) < 520
 ]
 
 
