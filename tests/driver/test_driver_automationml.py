@@ -81,7 +81,7 @@ def test_external_data_that_is_not_there_is_told_at_its_place(tmp_path):
 def test_external_data_that_is_there_or_elsewhere_is_nothing_to_tell(tmp_path):
     (tmp_path / "geo").mkdir()
     (tmp_path / "geo" / "gate.dae").write_text("<COLLADA/>")
-    for href in ("file:///geo/gate.dae#n1", "geo/gate.dae", "https://a.b/gate.dae"):
+    for href in ("file:///geo/gate.dae#n1", "geo/gate.dae", "https://a.b/gate.dae", "Skill 1"):
         assert told(build(write(tmp_path, "main.aml", DATA.format(href)))) == []
 
 
@@ -112,6 +112,27 @@ def test_an_instance_with_links_frames_an_internal_block_diagram(tmp_path):
         'port "<back:#FFFFFF>p</back>" as p_1',
     ]
     assert "way_1 -- p_1 : l" in lines
+    assert told(made) == []
+
+
+def test_values_of_an_instance_and_its_parts_stand_in_its_diagram(tmp_path):
+    length = '<Attribute Name="length" AttributeDataType="xs:double">{}</Attribute>'
+    value = length.format("<Value>1.2</Value>")
+    body = GATE
+    for id, text in (
+        ("5", length.format("")),
+        ("7", length.format("")),
+        ("2", value),
+        ("4", value),
+    ):
+        name = "way" if id in "52" else "p"
+        port = f'<ExternalInterface Name="{name}" ID="{id}"'
+        body = body.replace(port, text + port)
+    made = build(write(tmp_path, "main.aml", body), backends=("plantuml",))
+    (ibd,) = [a for a in made.artefacts if a.path.endswith(".ibd.puml")]
+    boxes = [line for line in ibd.text.splitlines() if line.startswith("rectangle")]
+    assert ["length = 1.2" in box for box in boxes] == [True, True]
+    assert not [a for a in made.artefacts if "Site.bdd" in a.path]
     assert told(made) == []
 
 

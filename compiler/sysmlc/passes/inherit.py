@@ -189,7 +189,8 @@ def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: 
 def _check_multiplicities(
     graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element
 ) -> None:
-    if not _wider(feature, other):
+    type_ = graph.target(feature, Edge.TYPED_BY)
+    if not _wider(feature, other) or (type_ is not None and type_.subkind == "attribute"):
         return
     sink.report(
         MULTIPLICITY_WIDER,

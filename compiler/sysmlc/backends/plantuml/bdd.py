@@ -67,11 +67,20 @@ def _is_shown(graph: Graph, element: Element) -> bool:
     owner = graph.owner(element)
     if owner is not None and owner.kind is Kind.TEMPLATE_PARAMETER:
         return False
+    if element.kind is Kind.INSTANCE and is_in_frame(graph, element):
+        return False
     if element.kind is not Kind.ACTIVITY:
         return is_block(element)
     is_free = owner is None or owner.kind is Kind.PACKAGE
     is_drawn = any(item.kind in ACTIVITY_NODES for item in graph.owned(element))
     return is_free and not is_drawn and not element.attrs.get("external")
+
+
+def is_in_frame(graph: Graph, instance: Element) -> bool:
+    """Whether it, or an instance around it, frames an internal block diagram: it is drawn there."""
+    around = (instance, *graph.ancestors(instance))
+    frames = (one for one in around if one.kind is Kind.INSTANCE)
+    return any(item.kind is Kind.CONNECTOR for one in frames for item in graph.owned(one))
 
 
 def _package(graph: Graph, element: Element) -> str | None:

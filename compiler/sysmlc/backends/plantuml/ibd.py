@@ -126,16 +126,28 @@ class _Drawing:
     connections: list[Connection]
     aliases: Aliases = field(default_factory=Aliases)
     has_ports: bool = False
+    instances: dict[tuple[str, ...], Element] = field(default_factory=dict)
+    """Instances with the values of parts, by the parts that lead to them."""
+
+    def __post_init__(self) -> None:
+        waiting: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
+        for path, owner in waiting:
+            for inner in self.graph.owned(owner):
+                part = self.graph.target(inner, Edge.REPRESENTS)
+                if inner.kind is Kind.INSTANCE and part is not None:
+                    self.instances[*path, part.id] = inner
+                    waiting.append(((*path, part.id), inner))
 
     def view(self) -> InternalView:
         parts = tuple(self._part((part.id,), part) for part in self.tops)
+        slots = _slots(self.graph, self.block)
         frame = PartView(
             self.aliases.make("frame", self.block.name, "block"),
-            " ",
+            stack(_rows(slots)) or " ",
             "frame",
             tuple(self._ports((), _classifier(self.graph, self.block))),
             parts,
-            (self.block.id,),
+            (self.block.id, *(slot.id for slot in slots)),
         )
         drawn = tuple(self._line(connection) for connection in self.connections)
         return InternalView(frame, drawn, self.has_ports, tuple(guides(frame)))
@@ -144,13 +156,17 @@ class _Drawing:
         alias = self.aliases.make(_key(path), part.name, "part")
         inner = tuple(self._part((*path, item.id), item) for item in self._inner(path))
         type_ = self.graph.target(part, Edge.TYPED_BY)
+        instance = self.instances.get(path)
+        slots = [] if instance is None else _slots(self.graph, instance)
+        rows = _rows(slots)
+        values = () if instance is None else (instance.id, *(slot.id for slot in slots))
         return PartView(
             alias,
-            stack([small(plain(self._words(part))), label(labels.typed(self.graph, part))]),
+            stack([small(plain(self._words(part))), label(labels.typed(self.graph, part)), *rows]),
             _style(part),
             tuple(self._ports(path, type_)),
             inner,
-            (part.id,),
+            (part.id, *values),
         )
 
     def _words(self, part: Element) -> str:
@@ -165,6 +181,9 @@ class _Drawing:
             for end in (connection.source, connection.target):
                 if len(end.parts) > len(path) and end.parts[: len(path)] == path:
                     found[end.parts[len(path)]] = None
+        for deep, instance in self.instances.items():
+            if len(deep) > len(path) and deep[: len(path)] == path and _slots(self.graph, instance):
+                found[deep[len(path)]] = None
         return [self.graph[id] for id in found]
 
     def _ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
@@ -218,6 +237,16 @@ class _Drawing:
     def _end(self, path: Path) -> str:
         key = (*path.parts, *path.ports, path.port) if path.port else path.parts
         return self.aliases[_key(key) if key else "frame"]
+
+
+def _slots(graph: Graph, instance: Element) -> list[Element]:
+    return [one for one in graph.owned(instance) if one.kind is Kind.SLOT]
+
+
+def _rows(slots: list[Element]) -> list[str]:
+    """What the slots say; what one says of a port stands in none of its rows."""
+    told = [slot for slot in slots if "value" in slot.attrs]
+    return [small(plain(f"{slot.name} = {slot.attrs['value']}")) for slot in told]
 
 
 def guides(part: PartView) -> Iterator[Line]:

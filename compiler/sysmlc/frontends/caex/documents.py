@@ -14,6 +14,8 @@ _REFERENCE = re.compile(
     r"""<(?:[\w.-]+:)?Attribute\b[^>]*\bName\s*=\s*["']refURI["'][^>]*>(.*?)</""", re.DOTALL
 )
 _VALUE = re.compile(r"<(?:[\w.-]+:)?Value[^>]*>([^<]*)$")
+_FILE = re.compile(r"^[^#]*\.\w{1,8}(#|$)")
+"""What has a suffix: other texts are names and ids in the language of a tool."""
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
@@ -47,6 +49,6 @@ def mentioned(source: Source) -> Iterator[tuple[str, Place]]:
         value = _VALUE.search(match[1])
         path = value[1].strip() if value else ""
         local = path.removeprefix("file://") if path.startswith("file:///") else path
-        if local and not _SCHEME.match(local) and not local.startswith("#"):
+        if _FILE.search(local) and not _SCHEME.match(local):
             before = text[: match.start()].encode(name, "replace")
             yield local.lstrip("/"), Place(source.name, offset=mark + len(before))
