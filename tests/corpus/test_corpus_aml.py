@@ -14,7 +14,7 @@ from lxml import etree
 
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.diagnostics.locate import locate
-from sysmlc.driver import Request, compile_model
+from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.diff import diff
@@ -255,7 +255,9 @@ FILES = ["BayGate.aml", "BayGate_caex215.aml", "BayGate_extlibs.aml", "BayGate.a
 
 @pytest.fixture(scope="module")
 def compiled(aml):
-    return {name: compile_model(Request(inputs=(aml / "baygate" / name,))) for name in FILES}
+    drawn = tuple(select_backends(("plantuml",)))
+    requests = {name: Request(inputs=(aml / "baygate" / name,), backends=drawn) for name in FILES}
+    return {name: compile_model(request) for name, request in requests.items()}
 
 
 def is_of_user(graph, element):
@@ -303,6 +305,18 @@ def test_baygate_has_the_totals_of_its_description(name, compiled):
         "slots": {"length": 1.2, "velocity": 0.3},
         "unresolved": 0,
         "diagnostics": [],
+    }
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_diagrams_of_baygate_are_those_of_the_thesis(name, compiled):
+    """Table 3.1; the value types of CAEX 3.0 (section 6) have a diagram of their own."""
+    drawn = {artefact.path.removesuffix(".puml") for artefact in compiled[name].artefacts}
+    assert drawn - {"diagrams/Quantities.bdd"} == {
+        "diagrams/BayGate%20Breakdown.bdd",
+        "diagrams/SysML-RCL.bdd",
+        "diagrams/Interface%20Lib.bdd",
+        "diagrams/BayGate%20System.BayGate.ibd",
     }
 
 

@@ -527,6 +527,22 @@ def test_other_interfaces_of_processes_are_wired():
     assert list(line("Port", ("Process", ""), ("Resource", "")).links()) == ["l"]
 
 
+def test_a_port_object_of_caex_2_is_a_part_that_says_what_a_port_says():
+    inside = value("Direction", "In") + value("Category", "energy")
+    reading = Read(
+        roles('<RoleClass Name="Port"/>')
+        + plant(
+            '<InternalElement Name="cell" ID="0">'
+            f'<InternalElement Name="p" ID="1">{inside}{playing(BASE_ROLE + "/Port")}'
+            f'</InternalElement><InternalElement Name="q" ID="2">{inside}{playing("Roles/Port")}'
+            "</InternalElement></InternalElement>"
+        )
+    )
+    p, q = (reading.one(f"Plant::cell::{name}", "Property") for name in "pq")
+    assert (p.subkind, p.attrs["direction"], p.attrs["category"]) == ("port-object", "in", "energy")
+    assert (q.subkind, q.attrs.get("direction")) == ("", None)
+
+
 # -- external data (rule 18) -------------------------------------------------------------------
 
 

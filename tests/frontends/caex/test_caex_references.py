@@ -185,6 +185,37 @@ def test_an_id_that_differs_otherwise_is_not_found():
     ]
 
 
+def test_an_id_may_stand_behind_an_alias():
+    other = aml(plant('<InternalElement Name="master" ID="m"/>', "Other"), "other.aml")
+    reading = Read(
+        aml(
+            '<ExternalReference Path="other.aml" Alias="Al"/>'
+            + plant(
+                '<InternalElement Name="cell" ID="0"><InternalElement Name="mirror" ID="1" '
+                'RefBaseSystemUnitPath="Al@m"/></InternalElement>'
+            )
+        ),
+        other,
+    )
+    assert reading.to("Plant::cell::mirror", "mirrors", "Property") == ["Other::master"]
+    assert reading.findings == []
+
+
+def test_of_two_files_with_the_same_ids_each_means_its_own():
+    one, other = (aml(linked("{AB-1}:out", "ab-2:in"), name) for name in ("a.aml", "b.aml"))
+    reading = Read(one, other)
+    assert reading.findings == []
+    ends = [e for e in reading.graph if e.kind.value == "ConnectorEnd"]
+    for end in ends:
+        (port,) = reading.graph.targets(end, "role")
+        assert port.source == end.source
+    assert len(ends) == 4
+
+
+def test_the_order_of_the_files_changes_nothing():
+    assert Read(uses("../libs/base.aml"), BASE).text == Read(BASE, uses("../libs/base.aml")).text
+
+
 def test_an_id_of_two_elements_is_told_and_the_first_is_meant():
     reading = Read(plant('<InternalElement Name="a" ID="1"/><InternalElement Name="b" ID="1"/>'))
     assert reading.findings == ["SM137: the ID '1' of 'b' is used by another element too"]

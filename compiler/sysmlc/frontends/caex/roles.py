@@ -1,15 +1,17 @@
 """Roles: what a class or an internal element realises (thesis, Table 3.1)."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import special
+from sysmlc.frontends.caex import features, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.types import Type
-from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES, Family
+from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
 from sysmlc.ir import Edge
+
+PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
 
 
 def lower(context: Context, sites: Sites) -> None:
@@ -26,9 +28,18 @@ def lower(context: Context, sites: Sites) -> None:
             if role in inherited:
                 continue
             _play(context, site, special.ppr(role), played)
+            _be_port(context, site, role)
             context.graph.connect(Edge.REALIZES, _client(context, site), role.id)
             if site.own is not None:
                 of_class.setdefault(site.own, set()).add(role)
+
+
+def _be_port(context: Context, site: Site, role: Type) -> None:
+    """A port object of CAEX 2.15 (role Port): a part that says what an interface Port says."""
+    if site.part and not site.is_known and role.conforms(*BASE_ROLE, "Port"):
+        told = features.port_attributes(site.node)
+        kept = {key: told[key] for key in PORT_ATTRIBUTES if key in told}
+        context.graph.set(context.graph[site.part], subkind="port-object", **kept)
 
 
 def _play(context: Context, site: Site, ppr: str, played: dict[Type, str]) -> None:
