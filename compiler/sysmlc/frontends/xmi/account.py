@@ -12,15 +12,15 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
     """Count every element of the file once, and report what is not or not wholly read."""
     document = context.document
     counts = coverage.file(document.name)
-    types = _types(context)
-    verdicts = (verdict or Verdict.UNSUPPORTED for verdict in context.verdicts)
-    table = Counter(zip(types, verdicts, strict=True))
-    for (type_name, verdict), number in table.items():
-        counts.count(type_name, verdict, number)
+    rows = zip(
+        document.types, document.features, context.lowered.own, context.verdicts, strict=True
+    )
+    for (written, feature, is_own, verdict), number in Counter(rows).items():
+        counts.count(_type(written, feature, is_own), verdict or Verdict.UNSUPPORTED, number)
     for feature, number in document.drawn.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
-        counts.losses.extend(losses(context, types))
+        counts.losses.extend(losses(context, _types(context)))
     _report_unsupported(context, sink)
     _report_approximated(context, sink)
     _report_baseless(context, sink)
@@ -30,18 +30,14 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
 
 
 def _types(context: Context) -> list[str]:
-    """Name of each row's type: as written, else the default of its feature, else its tag."""
-    document = context.document
-    names = {name: f"uml:{name}" for name in dict.fromkeys(document.types) if name}
-    rows = zip(document.types, document.features, context.lowered.own, strict=True)
-    return [
-        names.get(type_name) or (_default(feature) if is_own else feature)
-        for type_name, feature, is_own in rows
-    ]
+    """Name of each row's type."""
+    rows = zip(context.document.types, context.document.features, context.lowered.own, strict=True)
+    return [_type(*row) for row in rows]
 
 
-def _default(feature: str) -> str:
-    known = metaclasses.DEFAULT_TYPES.get(feature)
+def _type(written: str, feature: str, is_own: int) -> str:
+    """Name of a row's type: as written, else the default of its feature, else its tag."""
+    known = written or (metaclasses.DEFAULT_TYPES.get(feature) if is_own else "")
     return f"uml:{known}" if known else feature
 
 

@@ -213,18 +213,18 @@ class Unit:
         own, gids = lowered.own, lowered.gids
         add_edge, add_source = pending.edges.append, pending.sources.append
         add_target, add_ordinal = pending.targets.append, pending.ordinals.append
-        for number in range(start, end):
-            at = row_of(targets[number], -1)
-            if at >= 0 and own[at] and number not in rare:
-                row = rows[number]
-                add_edge(edges[number])
+        found = map(row_of, targets[start:end])
+        columns = zip(range(start, end), edges[start:end], found, rows[start:end], strict=True)
+        for number, edge, at, row in columns:
+            if at is not None and own[at] and number not in rare:
+                add_edge(edge)
                 add_source(gids[row])
                 add_target(gids[at])
                 add_ordinal(ordinals[row])
                 continue
             link = links[number]
             edge, source, holder, _, row, _, is_href, is_reversed = link
-            if at < 0 or not own[at] or is_href or holder is not lowered:
+            if at is None or not own[at] or is_href or holder is not lowered:
                 self._refer(link)
                 continue
             add_edge(edge)

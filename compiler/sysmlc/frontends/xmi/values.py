@@ -96,8 +96,7 @@ def opaque(document: Document, row: int) -> ValueText:
     Of several bodies the first counts whose language is a language of expressions, else the
     first in a natural language, else the first (UML 2.5.1, 8.3.3: they mean the same).
     """
-    bodies = _texts(document, row, "body")
-    languages = _texts(document, row, "language")
+    bodies, languages = _texts(document, row)
     if len(bodies) < 2:
         body = bodies[0] if bodies else document.get(row, "value")
         return ValueText(body, languages[0] if languages else "")
@@ -125,11 +124,19 @@ def name_of_instance(document: Document, row: int) -> str:
     return document.attributes[row].get("name", "")
 
 
-def _texts(document: Document, row: int, feature: str) -> list[str]:
-    attribute = document.attributes[row].get(feature)
-    if attribute is not None:
-        return [attribute]
-    return [document.texts.get(child, "") for child in document.children(row, feature)]
+def _texts(document: Document, row: int) -> tuple[list[str], list[str]]:
+    """Bodies and languages, each written as an attribute or as children."""
+    found: dict[str, list[str]] = {"body": [], "language": []}
+    features, texts = document.features, document.texts
+    for child in document.children(row):
+        known = found.get(features[child])
+        if known is not None:
+            known.append(texts.get(child, ""))
+    values = document.attributes[row]
+    for feature in found:
+        if feature in values:
+            found[feature] = [values[feature]]
+    return found["body"], found["language"]
 
 
 def _literal(type_name: str, text: str) -> AttrValue:
