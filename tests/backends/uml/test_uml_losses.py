@@ -6,6 +6,7 @@ from saving import read, refined, round_trip, saved
 
 from dialects.papyrus import XMI
 from sysmlc.backends.uml import rules
+from sysmlc.ir import Edge, Kind
 
 RULES = (
     rules.UNSAID_KIND,
@@ -117,3 +118,68 @@ def test_a_role_that_only_a_library_explains_is_said_by_sysml():
     assert 'Blocks:Block xmi:id="_' in text
     (gate,) = [one for one in back if one.name == "Gate"]
     assert gate.role == "block"
+
+
+PLANT = """
+Package lib "Classes"
+  Class motor "Motor" role="block"
+    Port motor.p "p"
+    -> realizes drive
+  Class line "Line" role="block"
+    Property line.m "m" aggregation="composite"
+      -> typed-by motor
+Package h "Plant"
+  Instance one "Line 1"
+    -> instance-of line
+    Connector one.c "wire"
+      -> end one.c.1
+      -> end one.c.2
+      ConnectorEnd one.c.1 ""
+        -> role motor.p
+        -> path line.m
+      ConnectorEnd one.c.2 ""
+        -> role motor.p
+        -> path line.m
+Package roles "Roles" external=true library=true
+  Class drive "Drive" external=true library=true
+"""
+
+
+def test_connectors_of_an_instance_are_saved_with_its_class():
+    graph = refined(PLANT)
+    _, told = saved(graph)
+    assert (
+        "SM723 UML lets no Instance own Connector: saved with the nearest owner that may (1)"
+        in told
+    )
+    _, back, _ = round_trip(graph)
+    (wire,) = [one for one in back if one.name == "wire"]
+    assert back.owner(wire).name == "Line"
+    path = back.targets(back.owned(wire)[0], Edge.PATH)
+    assert [one.name for one in path] == ["m"]
+
+
+def test_a_relation_without_dependency_gets_one():
+    graph = refined(PLANT)
+    text, told = saved(graph)
+    assert "SM724 'realizes' from Class is saved as Realization (1)" in told
+    assert "pathmap://SYSMLC_LIBRARIES/Roles#Drive" in text
+    (motor,) = [one for one in read(text.encode()) if one.name == "Motor"]
+    assert motor.role == "block"
+
+
+@pytest.mark.parametrize(
+    ("edge", "role"), [("satisfies", "satisfy"), ("allocated-to", "allocate"), ("depends", None)]
+)
+def test_an_edge_that_nothing_means_comes_back_with_its_dependency(edge, role):
+    graph = refined(f"""
+Package p "Plant"
+  Class a "A"
+    -> {edge} b
+  Class b "B"
+""")
+    _, back, _ = round_trip(graph)
+    a, b = (next(one for one in back if one.name == name) for name in "AB")
+    assert back.targets(a, Edge(edge)) == [b]
+    (made,) = back.of_kind(Kind.DEPENDENCY)
+    assert made.attrs.get("role") == role

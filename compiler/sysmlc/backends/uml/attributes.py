@@ -48,6 +48,8 @@ def _is_said_otherwise(book: Book, element: Element, key: str) -> bool:
         return True
     if key in ("languages", "bodies", "language"):
         return True
+    if key == "unit" and element.role == "value type":
+        return True
     return key in _OF_TAGS and _has_meaning(book, element)
 
 

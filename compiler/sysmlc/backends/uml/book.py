@@ -22,6 +22,8 @@ class Book:
     ids: dict[str, str] = field(default_factory=dict)
     parts: Counter[tuple[str, str]] = field(default_factory=Counter)
     tops: list[Node] = field(default_factory=list)
+    relations: list[tuple[str, str]] = field(default_factory=list)
+    """SysML stereotypes of dependencies that only an edge tells of, with the dependency's id."""
 
     def __post_init__(self) -> None:
         self.ids = xml_ids(self.graph)

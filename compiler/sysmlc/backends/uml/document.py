@@ -52,6 +52,9 @@ def document(graph: Graph, sink: Sink) -> str:
     root = Node("xmi:XMI")
     for top in graph.roots():
         _nodes(book, top)
+    for wire in _wires(graph):
+        if wire.owner in book.nodes:
+            _nodes(book, wire)
     _parts(book)
     root.children = book.tops
     stereotypes = Stereotypes(book, root)
@@ -73,13 +76,23 @@ def document(graph: Graph, sink: Sink) -> str:
 
 def _nodes(book: Book, top: Element) -> None:
     """Nodes for an element and all below it that is written, each at its place."""
-    stack = [top]
+    graph, stack = book.graph, [top]
     while stack:
         element = stack.pop()
-        if not _is_written(book, element):
+        if not _is_written(book, element) or (element is not top and _is_wire(graph, element)):
             continue
         _place(book, element)
         stack.extend(reversed(book.graph.owned(element)))
+
+
+def _wires(graph: Graph) -> list[Element]:
+    """Connectors of instances come last: their classes hold them, wherever these are."""
+    return [one for one in graph.of_kind(Kind.CONNECTOR) if _is_wire(graph, one)]
+
+
+def _is_wire(graph: Graph, element: Element) -> bool:
+    owner = graph.owner(element)
+    return element.kind is Kind.CONNECTOR and owner is not None and owner.kind is Kind.INSTANCE
 
 
 def _is_written(book: Book, element: Element) -> bool:
@@ -97,6 +110,8 @@ def _is_written(book: Book, element: Element) -> bool:
 def _place(book: Book, element: Element) -> None:
     metaclass, is_whole = metaclass_of(book.graph, element)
     holder, feature = _holder(book, element)
+    if holder is None:
+        feature = ""
     node = Node(feature or f"uml:{metaclass}", is_element=True)
     if feature:
         node.attributes["xmi:type"] = f"uml:{metaclass}"
@@ -116,6 +131,9 @@ def _name(book: Book, element: Element, node: Node) -> None:
     if not element.name or element.kind is Kind.TEMPLATE_PARAMETER:
         return
     if element.kind in _UNNAMED:
+        feature = book.graph.target(element, Edge.INSTANCE_OF)
+        if feature is not None and feature.name == element.name:
+            return
         facts = {"attribute": "name", "kind": str(element.kind)}
         book.losses.note(UNSAID_ATTRIBUTE, element, **facts)
     else:
@@ -124,6 +142,9 @@ def _name(book: Book, element: Element, node: Node) -> None:
 
 def _holder(book: Book, element: Element) -> tuple[Node | None, str]:
     """The nearest node above that may hold the element, and in which feature."""
+    if _is_wire(book.graph, element):
+        _note_moved(book, element)
+        return _class_of(book, element), "ownedConnector"
     for number, owner in enumerate(book.graph.ancestors(element)):
         feature = place(book.graph, owner, element)
         if feature:
@@ -134,6 +155,14 @@ def _holder(book: Book, element: Element) -> tuple[Node | None, str]:
     if element.owner is not None:
         _note_moved(book, element)
     return None, ""
+
+
+def _class_of(book: Book, connector: Element) -> Node | None:
+    """The class of the instance that owns the connector; UML's instances own none."""
+    owner = book.graph.owner(connector)
+    classes = book.graph.targets(owner, Edge.INSTANCE_OF) if owner is not None else []
+    known = (book.nodes[one.id] for one in classes if one.id in book.nodes)
+    return next(known, None)
 
 
 def _note_moved(book: Book, element: Element) -> None:

@@ -15,6 +15,7 @@ _FILES = {
 }
 _PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML"
 _LIBRARY = "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML"
+_OURS = "pathmap://SYSMLC_LIBRARIES/"
 _STEPS = {
     Kind.STEREOTYPE: "stereotype",
     Kind.DATA_TYPE: "dataType",
@@ -28,9 +29,13 @@ def is_outside(element: Element) -> bool:
     return bool(element.attrs.get("external"))
 
 
-def href_of(element: Element) -> str:
-    """Where an element outside the unit is."""
-    href = str(element.attrs.get("href", "")) or f"#{quote(element.id)}"
+def href_of(graph: Graph, element: Element) -> str:
+    """Where an element outside the unit is; one of our own libraries is named by its path."""
+    href = str(element.attrs.get("href", ""))
+    if not href:
+        above = reversed([element, *graph.ancestors(element)])
+        file, *path = [quote(one.name, safe="") for one in above]
+        return f"{_OURS}{file}#{'/'.join(path) or file}"
     for ours, theirs in _FILES.items():
         if href.startswith(ours):
             return theirs + href.removeprefix(ours)
@@ -63,7 +68,7 @@ def reference(graph: Graph, tag: str, target: Element) -> Node:
 
     A name that the href does not show is written beside it, as MagicDraw does.
     """
-    href = href_of(target)
+    href = href_of(graph, target)
     node = Node(tag, {"xmi:type": f"uml:{metaclass_of(graph, target)[0]}", "href": href})
     if target.kind in (Kind.UNIT, Kind.QUANTITY_KIND):
         del node.attributes["xmi:type"]

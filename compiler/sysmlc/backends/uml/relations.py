@@ -8,6 +8,7 @@ from sysmlc.backends.uml.hrefs import href_of, is_outside
 from sysmlc.backends.uml.links import feature
 from sysmlc.backends.uml.meant import applications, is_meant
 from sysmlc.backends.uml.node import Node
+from sysmlc.backends.uml.rules import APPROXIMATED
 from sysmlc.ir import Edge, Element, Kind
 
 _Targets = Sequence[Element]
@@ -44,7 +45,7 @@ def _plain(book: Book, element: Element, edge: Edge, targets: _Targets) -> None:
         if name and not (element.kind is Kind.COMMENT and _is_member(book, element, target)):
             by_feature.setdefault(name, []).append(target)
         elif not is_meant(book.graph, element, edge, target):
-            book.lost(element, edge.value, target)
+            _relation(book, element, edge, target)
     for name, named in by_feature.items():
         book.refer(element, book.node(element), name, named, edge.value)
 
@@ -90,17 +91,19 @@ def _realizes(book: Book, element: Element, targets: _Targets) -> None:
         if element.kind is Kind.STATE_MACHINE and target.kind is Kind.STATE_MACHINE:
             name = ("conformance", "ProtocolConformance", "generalMachine")
             _folded(book, element, *name, target)
-        elif element.kind in _BEHAVIOURED and (target.kind is Kind.INTERFACE or is_outside(target)):
+        elif element.kind in _BEHAVIOURED and target.kind is Kind.INTERFACE:
             name = ("interfaceRealization", "InterfaceRealization", "contract")
             _folded(book, element, *name, target)
             _client(book, element, target)
         else:
-            book.lost(element, "realizes", target)
+            _relation(book, element, Edge.REALIZES, target)
 
 
 def _client(book: Book, element: Element, target: Element) -> None:
     """An interface realization is a dependency from the classifier to the interface."""
-    made = book.node(element).children[-1]
+    made = book.node(element).children[-1] if book.node(element).children else None
+    if made is None or made.tag != "interfaceRealization":
+        return
     made.attributes["client"] = book.ids[element.id]
     if not is_outside(target):
         made.attributes["supplier"] = book.ids[target.id]
@@ -128,7 +131,7 @@ def _extension(book: Book, stereotype: Element, metaclass: Element) -> None:
     node, name = book.node(stereotype), metaclass.name
     base = book.part(stereotype, node, "ownedAttribute", "Property")
     base.attributes["name"] = f"base_{name}"
-    kind = {"xmi:type": "uml:Class", "href": href_of(metaclass)}
+    kind = {"xmi:type": "uml:Class", "href": href_of(book.graph, metaclass)}
     base.add(Node("type", kind))
     above = book.graph.owner(stereotype)
     if above is None:
@@ -159,6 +162,42 @@ def _held(book: Book, element: Element, targets: _Targets) -> None:
             book.lost(element, "behaviour of another owner", target)
 
 
+def _relation(book: Book, element: Element, edge: Edge, target: Element) -> None:
+    """A relation that UML says by a dependency in a package."""
+    known = _DEPENDENCIES.get(edge)
+    if known is None or not (is_outside(target) or target.id in book.nodes):
+        book.lost(element, edge.value, target)
+        return
+    metaclass, stereotype = known
+    packages = (one for one in book.graph.ancestors(element) if one.kind is Kind.PACKAGE)
+    above = next((book.nodes[one.id] for one in packages if one.id in book.nodes), None)
+    if above is None:
+        above = Node("")
+    made = book.part(element, above, "packagedElement", metaclass)
+    made.attributes["client"] = book.ids[element.id]
+    book.refer(element, made, "supplier", [target], edge.value)
+    if not above.tag:
+        made.tag = f"uml:{made.attributes.pop('xmi:type').removeprefix('uml:')}"
+        book.tops.append(made)
+    if stereotype:
+        book.relations.append((stereotype, made.id))
+    facts = {"said": f"'{edge}' from {element.kind}", "written": metaclass}
+    book.losses.note(APPROXIMATED, element, **facts)
+
+
+_DEPENDENCIES = {
+    Edge.REALIZES: ("Realization", ""),
+    Edge.DEPENDS: ("Dependency", ""),
+    Edge.SATISFIES: ("Abstraction", "Satisfy"),
+    Edge.DERIVES: ("Abstraction", "DeriveReqt"),
+    Edge.VERIFIES: ("Abstraction", "Verify"),
+    Edge.REFINES: ("Abstraction", "Refine"),
+    Edge.TRACES: ("Abstraction", "Trace"),
+    Edge.ALLOCATED_TO: ("Abstraction", "Allocate"),
+}
+"""Metaclass and stereotype of the dependency that means an edge."""
+
+
 # -- single kinds ------------------------------------------------------------------------------
 
 
@@ -179,12 +218,18 @@ def _path(book: Book, element: Element, targets: _Targets) -> None:
 
 
 def _general_set(book: Book, element: Element, targets: _Targets) -> None:
-    known = [
-        next(one.id for one in book.node(target).children if one.tag == "generalization")
-        for target in targets
-        if target.id in book.nodes and book.graph.targets(target, Edge.SPECIALIZES)
-    ]
-    book.node(element).attributes["generalization"] = " ".join(known)
+    """A set is of generalizations; the graph has the classifiers that they are of."""
+    made = [_first_part(book, target, "generalization") for target in targets]
+    for target, id in zip(targets, made, strict=True):
+        if not id:
+            book.lost(element, "references", target)
+    book.node(element).attributes["generalization"] = " ".join(filter(None, made))
+
+
+def _first_part(book: Book, element: Element, tag: str) -> str:
+    """Id of the first part of an element with the tag, or the empty string."""
+    node = book.nodes.get(element.id)
+    return next((one.id for one in node.children if one.tag == tag), "") if node else ""
 
 
 def _binds(book: Book, element: Element, targets: _Targets) -> None:
@@ -194,6 +239,8 @@ def _binds(book: Book, element: Element, targets: _Targets) -> None:
             book.node(element).attributes["signature"] = made.id
         elif is_outside(target):
             book.refer(element, book.node(element), "signature", [target], "binds")
+            made = book.node(element).children[-1]
+            made.attributes["xmi:type"] = "uml:TemplateSignature"
 
 
 def _trigger(book: Book, element: Element, targets: _Targets) -> None:

@@ -64,6 +64,11 @@ class Stereotypes:
             if name:
                 self._role(element, name)
 
+        for name, base in self._book.relations:
+            space = sysml.NAMESPACE + self._package(name)
+            node = self._node(space, name, part_id(base, "stereotype"))
+            node.attributes["base_Abstraction"] = base
+
     # -- one application -----------------------------------------------------------------------
 
     def _application(self, application: Element) -> None:

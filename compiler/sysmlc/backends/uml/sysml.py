@@ -159,6 +159,8 @@ def tags(graph: Graph, element: Element, name: str) -> dict[str, str | list[Elem
 
 def _measures(graph: Graph, element: Element) -> dict[str, str | list[Element]]:
     found: dict[str, str | list[Element]] = {}
+    if isinstance(element.attrs.get("unit"), str):
+        found["unit"] = str(element.attrs["unit"])
     for one in graph.targets(element, Edge.REFERENCES):
         is_unit = one.kind is Kind.UNIT or one.role == "unit"
         is_kind = one.kind is Kind.QUANTITY_KIND or one.role == "quantity kind"
