@@ -19,6 +19,15 @@ def test_what_is_no_literal_counts_as_none(element, attribute):
     assert attribute not in graph["x"].attrs
 
 
+def test_a_flow_property_has_its_default_instead():
+    flow = (
+        'Property x "x"\n  Application a stereotype="FlowProperty" tag.direction="sideways" '
+        'namespace="http://www.omg.org/spec/SysML/20120401/SysML"\n    -> subject x\n'
+    )
+    graph, (found,) = refined(flow, "classify")
+    assert (found.rule.code, graph["x"].attrs["direction"]) == ("SM220", "inout")
+
+
 @pytest.mark.parametrize("value", ["in", "inout", "out", "return"])
 def test_literals_stay(value):
     graph, sink = refined(f'Parameter x "x" direction="{value}"\n', "classify")

@@ -23,7 +23,7 @@ Class gate "Gate"
 """,
 )
 
-_KINDS = (Kind.PARAMETER, Kind.PORT, Kind.PROPERTY)
+_KINDS = (Kind.PARAMETER, Kind.PORT, Kind.PROPERTY, Kind.FLOW_PROPERTY)
 _LITERALS = {
     "aggregation": ("none", "shared", "composite"),
     "direction": ("in", "inout", "out", "return"),
@@ -37,7 +37,9 @@ def check_literals(graph: Graph, sink: Sink) -> None:
         for attribute, known in _LITERALS.items() if attrs else ():
             if attribute in attrs and attrs[attribute] not in known:
                 _report(graph, sink, element, attribute)
-                graph.set(element, **{attribute: None})
+                # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
+                is_flow = element.role == "flow property" and attribute == "direction"
+                graph.set(element, **{attribute: "inout" if is_flow else None})
 
 
 def _report(graph: Graph, sink: Sink, element: Element, attribute: str) -> None:
