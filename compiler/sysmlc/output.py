@@ -1,10 +1,12 @@
 """The output of one compilation: artefacts with their trace, and how they reach the disk."""
 
+import json
 import os
-import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
+from json.encoder import encode_basestring
 from pathlib import Path
+from secrets import token_hex
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,19 +42,62 @@ class Output:
         return [self._artefacts[path] for path in sorted(self._artefacts)]
 
 
+def json_text(value: object, indent: int) -> str:
+    """JSON as ``json.dumps(value, ensure_ascii=False, indent=indent)`` writes it.
+
+    That function leaves its C code as soon as lines are indented. Keys are texts, and values
+    lists, tuples, mappings, texts, numbers, Booleans or None; TypeError for others.
+    """
+    return _json(value, "\n", " " * indent)
+
+
+def _json(value: object, line: str, step: str) -> str:
+    if isinstance(value, str):
+        return encode_basestring(value)
+    if isinstance(value, dict):
+        return _json_object(value, line, step)
+    if isinstance(value, list | tuple):
+        inner = line + step
+        parts = [_json(one, inner, step) for one in value]
+        return f"[{inner}{f',{inner}'.join(parts)}{line}]" if parts else "[]"
+    return repr(value) if type(value) is int else json.dumps(value)
+
+
+def _json_object(value: dict[str, object], line: str, step: str) -> str:
+    inner = line + step
+    parts = [f"{encode_basestring(key)}: {_json(one, inner, step)}" for key, one in value.items()]
+    return f"{{{inner}{f',{inner}'.join(parts)}{line}}}" if parts else "{}"
+
+
 def write_if_changed(target: Path, text: str) -> bool:
     """Write UTF-8 text with LF, in one step, if the file differs; say whether it was written."""
     data = text.encode("utf-8")
     if target.is_file() and target.read_bytes() == data:
         return False
-    target.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".sysmlc-")
+    write(target, data)
+    return True
+
+
+def write(target: Path, data: bytes) -> None:
+    """Make the file, or replace it, in one step: no reader sees half of it."""
+    folder = os.path.dirname(target)  # noqa: PTH120
+    temporary = os.path.join(folder, f".sysmlc-{token_hex(8)}")  # noqa: PTH118
+    handle = _opened(temporary, folder)
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(data)
-        Path(temporary).chmod(0o644)
+            os.chmod(handle, 0o644)  # noqa: PTH101
         Path(temporary).replace(target)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
-    return True
+
+
+def _opened(temporary: str, folder: str) -> int:
+    """Handle of a new file. Most folders are there: to ask for each file costs time."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    try:
+        return os.open(temporary, flags, 0o600)
+    except FileNotFoundError:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        return os.open(temporary, flags, 0o600)

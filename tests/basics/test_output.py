@@ -1,10 +1,19 @@
 """Outputs reach the disk whole, and only when their bytes change."""
 
+import json
 import os
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from sysmlc.output import Output, write_if_changed
+from sysmlc.output import Output, json_text, write_if_changed
+
+_JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    max_leaves=20,
+)
 
 
 def test_a_file_with_the_same_bytes_is_not_touched(tmp_path):
@@ -44,3 +53,8 @@ def test_two_artefacts_never_share_a_path():
     output.add("a", "")
     with pytest.raises(ValueError, match="written twice"):
         output.add("a", "")
+
+
+@given(_JSON, st.integers(1, 2))
+def test_json_is_that_of_the_standard_library(value, indent):
+    assert json_text(value, indent) == json.dumps(value, ensure_ascii=False, indent=indent)

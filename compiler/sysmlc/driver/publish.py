@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 
 from sysmlc.driver.manifest import MANIFEST, manifest_text
 from sysmlc.driver.outcome import Outcome, digest_of
-from sysmlc.output import write_if_changed
+from sysmlc.output import write
 
 
 class OutputError(Exception):
@@ -38,8 +38,10 @@ class Plan:
         return sorted([*self.missing(), *self.stale])
 
     def _digest(self, path: str) -> str:
-        target = self.folder / path
-        return hashlib.sha256(target.read_bytes()).hexdigest() if target.is_file() else ""
+        try:
+            return hashlib.sha256((self.folder / path).read_bytes()).hexdigest()
+        except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
+            return ""
 
 
 def plan(outcome: Outcome, folder: Path) -> Plan:
@@ -64,7 +66,7 @@ def apply(plan: Plan) -> list[str]:
         removed = [_remove(plan.folder, path) for path in plan.stale]
         changed = plan.missing()
         for path in changed:
-            write_if_changed(plan.folder / path, plan.text(path))
+            write(plan.folder / path, plan.text(path).encode("utf-8"))
         return removed + changed
     except OSError as problem:
         where = problem.filename or plan.folder

@@ -1,11 +1,11 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
-import json
 from collections.abc import Iterable, Mapping
 
 from sysmlc.diagnostics import Place
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.places import Locator
+from sysmlc.output import json_text
 
 COVERAGE = "coverage.json"
 TRACE = "trace.json"
@@ -51,4 +51,4 @@ def _source(place: Place, places: Mapping[Place, Place]) -> dict[str, object]:
 
 def as_text(value: object) -> str:
     """JSON as all our files have it."""
-    return json.dumps(value, ensure_ascii=False, indent=1) + "\n"
+    return json_text(value, 1) + "\n"

@@ -1,6 +1,5 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -12,7 +11,7 @@ from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.output import Output, json_text
 
 TOO_LARGE = rule(
     "SM520",
@@ -52,7 +51,7 @@ class ContractsBackend:
         for contract in contracts:
             path = f"contracts/{names[contract.component]}"
             trace = tuple(_trace(graph, contract))
-            text = json.dumps(document(contract), ensure_ascii=False, indent=2)
+            text = json_text(document(contract), 2)
             output.add(f"{path}.contract.json", f"{text}\n", trace, self.name)
             _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
             _add_page(graph, contract, output, f"{path}.md", trace, sink, options)

@@ -18,17 +18,23 @@ _ALWAYS = frozenset('"\\<>~%$&{')
 _PAIRS = frozenset(["**", "//", "__", "--", "[[", "/'", "'/", "''"])
 _HARMLESS_FIRST = frozenset("«([:/≤≥→←…✕⚡")
 _UNSEEN = frozenset(["Cf", "Zl", "Zp", "Co", "Cn"])
+_HARMLESS = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.,:;()=+]|[ _-](?=[A-Za-z0-9.,:;()=+]))*")
+"""Text that stays as it is; most names are such, and to look at each character takes long."""
 _JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
 def plain(text: str) -> str:
     """One line that PlantUML shows as written: markup, preprocessor and Unicode traps escaped."""
+    if len(text) <= _LONGEST and _HARMLESS.fullmatch(text):
+        return text
     line = " ".join(_visible(_shortened(text)).split())
     return "".join(_character(line, index) for index in range(len(line)))
 
 
 def lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
     """The text in escaped lines of at most ``width`` characters; its own line ends are kept."""
+    if len(text) <= width and _HARMLESS.fullmatch(text):
+        return (text,)
     rows = [row for part in _shortened(text).splitlines() for row in _wrapped(part, width)]
     return tuple(plain(row) for row in rows if row.strip())
 

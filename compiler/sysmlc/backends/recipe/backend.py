@@ -1,6 +1,5 @@
 """One file ``recipes/<recipe>.json`` for each recipe of the graph."""
 
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
@@ -10,7 +9,7 @@ from sysmlc.backends.recipe.document import document
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.output import Output, json_text
 from sysmlc.recipe import samples
 from sysmlc.recipe.model import Model
 
@@ -43,7 +42,7 @@ class RecipeBackend:
                 subject = graph.subject(graph[model.recipe.element])
                 sink.report(EMPTY_RECIPE, subject, recipe=model.recipe.id)
                 continue
-            text = json.dumps(document(model, options.inputs), ensure_ascii=False, indent=2)
+            text = json_text(document(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
             output.add(path, f"{text}\n", _trace(model), self.name)
 
