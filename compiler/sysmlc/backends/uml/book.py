@@ -25,8 +25,13 @@ class Book:
     relations: list[tuple[str, str]] = field(default_factory=list)
     """SysML stereotypes of dependencies that only an edge tells of, with the dependency's id."""
 
+    edges: tuple[Edge, ...] = ()
+    """Kinds of edges that the graph has and that are written: ownership and features are not."""
+
     def __post_init__(self) -> None:
         self.ids = xml_ids(self.graph)
+        used = (edge for edge in Edge if next(self.graph.edges(edge), None) is not None)
+        self.edges = tuple(edge for edge in used if edge not in (Edge.OWNS, Edge.FEATURE))
 
     def node(self, element: Element) -> Node:
         """The node of an element that is written."""

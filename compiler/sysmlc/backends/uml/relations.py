@@ -27,9 +27,9 @@ _BEHAVIOURED = (
 
 def write(book: Book, element: Element) -> None:
     """Write all edges that leave an element whose node is made."""
-    for edge in Edge:
+    for edge in book.edges:
         targets = book.graph.targets(element, edge)
-        if not targets or edge in _NEVER:
+        if not targets:
             continue
         writer = _WRITERS.get(edge) or _WRITERS_OF.get((element.kind, edge))
         if writer is not None:
@@ -280,7 +280,6 @@ def _nothing(book: Book, element: Element, targets: _Targets) -> None:
     """Ownership, or what passes add, says it."""
 
 
-_NEVER = frozenset({Edge.OWNS, Edge.FEATURE})
 _WRITERS: dict[Edge, _Writer] = {
     Edge.SPECIALIZES: _specializes,
     Edge.INCLUDES: _includes,
