@@ -33,7 +33,6 @@ Package pkg "Plant"
   Signal pallet "Pallet"
 """
 FAULTY = PLANT.replace('gate.in "in"', "gate.in")
-UNTYPED_PLANT = PLANT.replace("      -> typed-by pallet\n", "")
 
 
 @dataclass(frozen=True)

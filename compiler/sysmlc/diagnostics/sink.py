@@ -58,10 +58,6 @@ class Sink:
         """Whether any finding makes the model wrong."""
         return any(found.is_error for found in self)
 
-    def erroneous_ids(self) -> frozenset[str]:
-        """Ids of the elements that errors are about."""
-        return frozenset(found.subject.id for found in self if found.is_error)
-
 
 def _shortened(fact: object) -> object:
     """A text that would fill pages is shown by its beginning."""

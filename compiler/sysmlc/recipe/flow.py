@@ -15,16 +15,6 @@ STEPS = frozenset({"service", "function", "call", "action", "assign", "wait", "d
 """Kinds of nodes that do something."""
 
 
-def digraph(graph: FlowGraph) -> "DiGraph[str]":
-    """The graph for networkx: ids as nodes; parallel edges become one."""
-    import networkx
-
-    result: DiGraph[str] = networkx.DiGraph()
-    result.add_nodes_from(node.id for node in graph.nodes)
-    result.add_edges_from((edge.source, edge.target) for edge in graph.edges)
-    return result
-
-
 def reachable(starts: Iterable[str], edges: Iterable[tuple[str, str]]) -> set[str]:
     """The starts and everything that the edges lead to from them."""
     following: dict[str, list[str]] = {}

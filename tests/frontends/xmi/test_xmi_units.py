@@ -25,7 +25,6 @@ UNIT_CLASS = (
     f'<classifier xmi:type="uml:Class" href="{LIBRARY}#SysML.package_packagedElement_Libraries'
     '.package_packagedElement_UnitAndQuantityKind.class_packagedElement_Unit"/>'
 )
-MD_SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
 
 
 def measured(source, sink=None):

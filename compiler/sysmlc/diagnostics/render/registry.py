@@ -9,9 +9,6 @@ from sysmlc.diagnostics.render.report import Report
 FORMATS = ("text", "concise", "json", "sarif", "github")
 """Names of the formats; each is a module of this package with a function ``render``."""
 
-MACHINE_FORMATS = frozenset({"json", "sarif"})
-"""Formats that are one document, printed on standard output."""
-
 XPATH_FORMATS = frozenset({"json", "sarif"})
 """Formats that say where in the XML tree an element is; text does with ``--verbose``."""
 
