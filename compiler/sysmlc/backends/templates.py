@@ -15,7 +15,7 @@ def environment(folder: str, templates: Path | None) -> "Environment":
     """Templates of one back end, from ``templates/<folder>`` of the user, ``templates``, ours.
 
     jinja2 is imported here, because only back ends with templates need it. There is one for each
-    folder, so that a template is compiled once; one that has changed is read anew.
+    folder, so that a template is compiled once; one of the user's that has changed is read anew.
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 
@@ -28,4 +28,5 @@ def environment(folder: str, templates: Path | None) -> "Environment":
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        auto_reload=templates is not None,
     )

@@ -1,5 +1,6 @@
 """The command ``sysmlc``: finds the command word, or compiles when there is none."""
 
+import gc
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -23,6 +24,8 @@ COMMANDS = (
 """Command words; each is a module of this package with a click command ``command``."""
 
 _OWN_OPTIONS = frozenset({"--help", "-h", "--version"})
+_NEW_OBJECTS = 50_000
+"""New objects before the garbage collector looks for cycles: a compilation makes hardly any."""
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
@@ -75,6 +78,7 @@ def sysmlc() -> None:
 
 def main() -> None:
     """Run the command line; a fault of our own is one sentence and exit code 2."""
+    gc.set_threshold(_NEW_OBJECTS)
     _guarded(sysmlc, prog_name="sysmlc")
 
 

@@ -1,5 +1,6 @@
 """What ``sysmlc watch`` watches, and when it compiles: files that have come to rest."""
 
+import gc
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -94,6 +95,8 @@ def compiled(
 ) -> "list[tuple[Unit, Outcome]]":
     from sysmlc.cli import session
 
+    # Front ends freeze the graphs that they made; those of earlier compilations may go now.
+    gc.unfreeze()
     config = session.load_config(models, settings.config)
     units = session.units(models, config, output, settings.emit)
     return [(unit, session.outcome_of(unit, config, settings)) for unit in units]

@@ -1,7 +1,7 @@
 """Lines and columns for back ends and for trace.json."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import locate
@@ -17,4 +17,6 @@ class Locator:
     def __call__(self, places: Iterable[Place]) -> Mapping[Place, Place]:
         """The places that can be found, with line and column."""
         found = locate(self.sources, places)
-        return {p: replace(p, line=at.line, column=at.column) for p, at in found.items()}
+        return {
+            p: Place(p.file, p.ordinal, p.offset, at.line, at.column) for p, at in found.items()
+        }

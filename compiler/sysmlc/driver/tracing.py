@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Mapping
 
-from sysmlc.diagnostics import Place
+from sysmlc.diagnostics import Place, Subject
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.places import Locator
+from sysmlc.ir import Element, Graph
 from sysmlc.output import json_text
 
 COVERAGE = "coverage.json"
@@ -32,7 +33,8 @@ def trace_text(compilation: Compilation) -> str:
 def _elements(compilation: Compilation, ids: Iterable[str]) -> list[dict[str, object]]:
     graph = compilation.graph
     known = [element for element in map(graph.get, ids) if element is not None]
-    subjects = {element.id: graph.subject(element) for element in known}
+    names: dict[str, str] = {}
+    subjects = {element.id: _subject(graph, element, names) for element in known}
     places = Locator(compilation.sources)(s.place for s in subjects.values() if s.place)
     return [
         {
@@ -42,6 +44,23 @@ def _elements(compilation: Compilation, ids: Iterable[str]) -> list[dict[str, ob
         }
         for id, subject in sorted(subjects.items(), key=lambda pair: (pair[1].name, pair[0]))
     ]
+
+
+def _subject(graph: Graph, element: Element, names: dict[str, str]) -> Subject:
+    """``graph.subject``; most have a source of their own, and share the names above them."""
+    if not element.source:
+        return graph.subject(element)
+    name = _qualified_name(graph, element, names)
+    return Subject(name, element.id, Place(element.source, element.ordinal))
+
+
+def _qualified_name(graph: Graph, element: Element, names: dict[str, str]) -> str:
+    owner = graph.owner(element)
+    above = "" if owner is None else names.get(owner.id)
+    if above is None and owner is not None:
+        names[owner.id] = above = graph.qualified_name(owner)
+    own = element.name or f"<{element.kind}>"
+    return f"{above}::{own}" if owner is not None else own
 
 
 def _source(place: Place, places: Mapping[Place, Place]) -> dict[str, object]:

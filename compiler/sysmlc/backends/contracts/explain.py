@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from sysmlc.backends.templates import environment
@@ -95,7 +96,7 @@ def _name(graph: Graph, id: str) -> str:
     element = graph.get(id)
     if element is None:
         return ""
-    kind = re.sub(r"(?<!^)(?=[A-Z])", " ", element.kind).lower()
+    kind = _in_words(element.kind)
     if element.kind is Kind.TRANSITION:
         edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
         ends = [graph.target(element, edge) for edge in edges]
@@ -103,6 +104,11 @@ def _name(graph: Graph, id: str) -> str:
     owner = next((up for up in graph.ancestors(element) if up.name), None)
     of = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
     return f"{kind} '{element.name}'{of}" if element.name else f"{kind}{of}"
+
+
+@cache
+def _in_words(kind: str) -> str:
+    return re.sub(r"(?<!^)(?=[A-Z])", " ", kind).lower()
 
 
 def _quoted(vertex: Element) -> str:

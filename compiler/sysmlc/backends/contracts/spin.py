@@ -26,6 +26,8 @@ _INFIX = {
     Op.WEAK_UNTIL: "W",
 }
 _PREFIX = {Op.NOT: "!", Op.NEXT: "X ", Op.ALWAYS: "[]", Op.EVENTUALLY: "<>"}
+_ATOM = re.compile(r"!?(X )?(\{[^{}]*\}|\w+)")
+_NAME = re.compile(r"[a-z_]\w*")
 LIMIT = 20_000
 """Most propositions that one comparison may be written out to."""
 
@@ -78,7 +80,7 @@ def _text(formula: Formula, known: Mapping[str, Domain]) -> str:
 def _operand(formula: Formula, known: Mapping[str, Domain]) -> str:
     text = _text(formula, known)
     is_infix = isinstance(formula, Apply) and (formula.op in _INFIX or formula.op in _COMPARISONS)
-    return f"({text})" if is_infix and not re.fullmatch(r"!?(X )?(\{[^{}]*\}|\w+)", text) else text
+    return f"({text})" if is_infix and not _ATOM.fullmatch(text) else text
 
 
 def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
@@ -142,7 +144,7 @@ def _wrapped(text: str) -> str:
 
 def _proposition(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) -> str:
     if isinstance(known[name], BooleanDomain):
-        text = name if re.fullmatch(r"[a-z_]\w*", name) else f"{{{name}==1}}"
+        text = name if _NAME.fullmatch(name) else f"{{{name}==1}}"
         text = text if value else f"!{text}"
     else:
         text = f"{{{name}=={print_literal(value)}}}"
