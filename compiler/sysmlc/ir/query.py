@@ -152,37 +152,6 @@ def is_flow_property(feature: Element) -> bool:
     return feature.kind is Kind.FLOW_PROPERTY or feature.role == "flow property"
 
 
-def is_unit(element: Element) -> bool:
-    """Whether it is a measurement unit, in SysML v1 or v2."""
-    return element.kind is Kind.UNIT or element.role == "unit"
-
-
-def is_quantity_kind(element: Element) -> bool:
-    """Whether it is a kind of quantity, in SysML v1 or v2."""
-    return element.kind is Kind.QUANTITY_KIND or element.role == "quantity kind"
-
-
-def unit_of(graph: Graph, feature: Element) -> Element | None:
-    """Unit of the values of a feature, or of a value type: its own or the nearest inherited one."""
-    found = _measures(graph, feature)
-    return next((one for one in found if is_unit(one)), None)
-
-
-def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
-    """Quantity kind of the values of a feature, or of a value type; else that of its unit."""
-    own = next((one for one in _measures(graph, feature) if is_quantity_kind(one)), None)
-    unit = None if own else unit_of(graph, feature)
-    referred = [] if unit is None else graph.targets(unit, Edge.REFERENCES)
-    return own or next((one for one in referred if is_quantity_kind(one)), None)
-
-
-def _measures(graph: Graph, feature: Element) -> Iterator[Element]:
-    is_feature = feature.kind in (*STRUCTURAL_FEATURES, Kind.PARAMETER)
-    type_ = type_of(graph, feature) if is_feature else feature
-    for one in () if type_ is None else (type_, *generals(graph, type_)):
-        yield from graph.targets(one, Edge.REFERENCES)
-
-
 def parameters(graph: Graph, owner: Element, *directions: str) -> list[Element]:
     """Parameters of an operation or behaviour with one of the directions (all when none given).
 

@@ -3,7 +3,7 @@
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
-from sysmlc.ir.query import quantity_kind_of, unit_of
+from sysmlc.ir.measures import quantity_kind_of, unit_of
 
 
 def value(name, text, data_type="xs:string"):
