@@ -94,3 +94,15 @@ def test_any_sequence_of_changes_leaves_a_consistent_graph(graph, data):
                 graph.move(one, two)
         assert consistent(graph)
         assert verify(graph) == []
+
+
+def test_elements_that_front_ends_make_stand_below_their_owner_in_order_however_many() -> None:
+    graph = Graph()
+    graph.add(Element("top", Kind.PACKAGE, "top"))
+    names = [f"n{number}" for number in range(40)]
+    for number, name in enumerate(names):
+        graph.new(name, Kind.CLASS, name, "top", number, "a.uml")
+        assert [child.name for child in graph.owned(graph["top"])] == names[: number + 1]
+    assert graph.new("n3", Kind.CLASS, "again", "top", 40, "a.uml") is None
+    graph.add(Element("late", Kind.CLASS, "late", "top"))
+    assert [child.name for child in graph.owned(graph["top"])] == [*names, "late"]

@@ -169,7 +169,11 @@ class Graph:
         made = self._elements[id] = Element(id, kind, name, owner, ordinal, source)
         self._fresh.append(made)
         if owner is not None:
-            put_new(self._owned, owner, made)
+            owned = self._owned
+            if owner in owned:
+                put_new(owned, owner, made)
+            else:
+                owned[owner] = made
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:

@@ -2,6 +2,8 @@
 
 from reading_xmi import below_model, magicdraw, papyrus, read
 
+from sysmlc.ir import Edge
+
 
 def test_activities():
     reading = read(
@@ -170,6 +172,32 @@ def machine(start):
   <packagedElement xmi:type="uml:TimeEvent" xmi:id="te" isRelative="true"><when xmi:id="w"
     xmi:type="uml:TimeExpression"><expr xmi:type="uml:LiteralInteger" value="5"/></when>
   </packagedElement>"""
+
+
+def test_all_triggers_of_one_event_say_what_it_says():
+    reading = read(
+        papyrus(
+            """
+  <packagedElement xmi:type="uml:StateMachine" xmi:id="sm"><region xmi:id="r">
+    <subvertex xmi:type="uml:State" xmi:id="s"/>
+    <transition xmi:id="t1" source="s" target="s"><trigger xmi:id="a" event="te"/></transition>
+    <transition xmi:id="t2" source="s" target="s"><trigger xmi:id="b" event="te"/></transition>
+    <transition xmi:id="t3" source="s" target="s"><trigger xmi:id="c" event="ev"/></transition>
+    <transition xmi:id="t4" source="s" target="s"><trigger xmi:id="d" event="ev"/></transition>
+  </region></packagedElement>
+  <packagedElement xmi:type="uml:Signal" xmi:id="sig"/>
+  <packagedElement xmi:type="uml:SignalEvent" xmi:id="ev" name="Arrived" signal="sig"/>
+  <packagedElement xmi:type="uml:TimeEvent" xmi:id="te" isRelative="true"><when xmi:id="w"
+    xmi:type="uml:TimeExpression"><expr xmi:type="uml:LiteralInteger" value="5"/></when>
+  </packagedElement>"""
+        )
+    )
+    graph = reading.graph
+    timed = {"subkind": "time", "when": "5", "relative": True}
+    assert graph["a"].attrs == graph["b"].attrs == timed
+    signals = {r.source: r.target for r in graph.pending if r.edge is Edge.TYPED_BY}
+    assert signals == {"c": "sig", "d": "sig"}
+    assert [graph[id].name for id in "cd"] == ["Arrived", "Arrived"]
 
 
 def test_pre_and_postconditions():

@@ -202,8 +202,10 @@ class Context:
     def _other(self, element: Element, row: int, name: str, value: str) -> None:
         backwards = v.REVERSED.get((element.kind, name))
         if backwards is not None:
+            links, lowered, id = self.unit.links, self.lowered, element.id
+            links.begin(lowered)
             for target in value.split():
-                self.link(backwards, element.id, target, row, name, is_reversed=True)
+                links.append(Link(backwards, id, lowered, target, row, name, False, True))
         elif name in v.CONDITIONS:
             self.conditions(value.split(), name)
         elif name in _BOUNDS:

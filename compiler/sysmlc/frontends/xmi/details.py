@@ -23,8 +23,8 @@ def _parameter(
 def _pin(context: "Context", element: Element, _row: int, type_name: str, feature: str) -> None:
     element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
     element.attrs["subkind"] = metaclasses.hyphenated(feature)
-    owner = context.graph.owner(element)
-    if feature == "returnInformation" and owner is not None and owner.subkind == "reply":
+    owner = context.graph.owner(element) if feature == "returnInformation" else None
+    if owner is not None and owner.subkind == "reply":
         # Where no type is written the default is that of an accepted call, an output pin.
         element.attrs["direction"] = "in"
 
@@ -39,10 +39,10 @@ def _pseudostate(
 def _constraint(
     context: "Context", element: Element, row: int, _type_name: str, feature: str
 ) -> None:
-    owner = context.graph.owner(element)
     if feature in v.CONDITIONS:
         element.attrs["subkind"] = v.CONDITIONS[feature]
-    if feature in ("guard", "preCondition") and owner is not None:
+    owner = context.graph.owner(element) if feature in ("guard", "preCondition") else None
+    if owner is not None:
         context.guards.append((owner, element.id, row))
 
 
