@@ -95,15 +95,26 @@ def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
 
 def tidy(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...] = ()) -> Formula:
     """An equivalent formula, given the facts, without the parts that the rest implies."""
+    return _remembered(formula, tuple(known.items()), facts)
+
+
+@lru_cache(_REMEMBERED)
+def _remembered(
+    formula: Formula, known: tuple[tuple[str, Domain], ...], facts: tuple[Formula, ...]
+) -> Formula:
+    return _tidy(formula, dict(known), facts)
+
+
+def _tidy(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
     match formula:
         case Apply(Op.AND, args):
             return _tidy_and(args, known, facts)
         case Apply(Op.OR, args):
-            return f.either(*(tidy(arg, known, facts) for arg in args))
+            return f.either(*(_tidy(arg, known, facts) for arg in args))
         case Apply(Op.NOT, (inner,)):
-            return opposite(tidy(inner, known, facts))
+            return opposite(_tidy(inner, known, facts))
         case Apply(Op.IMPLIES, (left, right)):
-            return f.implies(tidy(left, known, facts), right)
+            return f.implies(_tidy(left, known, facts), right)
         case _:
             return _leaf(formula, known, facts)
 
@@ -121,7 +132,7 @@ def _tidy_and(
     parts = list(args)
     for index in reversed(range(len(parts))):
         others = (*facts, *parts[:index], *parts[index + 1 :])
-        parts[index] = tidy(parts[index], known, others)
+        parts[index] = _tidy(parts[index], known, others)
     return f.both(*parts)
 
 
