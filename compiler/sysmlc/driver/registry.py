@@ -29,6 +29,8 @@ _BACKENDS = {
     name: f"sysmlc.backends.{name}"
     for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable", "uml")
 }
+_DEFAULT = frozenset({"contracts", "recipe", "plantuml"})
+"""Ours with ``is_default``: the others are not even imported unless they are asked for."""
 _RULE_PACKAGES = ("frontends", "logic", "recipe", "simulation", "passes", "backends", "driver")
 
 
@@ -100,8 +102,10 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
     added = [name[1:] for name in wanted if name.startswith("+")]
     if plain:
         return load_backends([*plain, *added])
-    every = load_backends(backend_names())
-    return [backend for backend in every if backend.is_default or backend.name in _known(added)]
+    chosen = _known(added)
+    unasked = _BACKENDS.keys() - _DEFAULT - chosen
+    every = load_backends(name for name in backend_names() if name not in unasked)
+    return [backend for backend in every if backend.is_default or backend.name in chosen]
 
 
 def full_catalogue() -> dict[str, Rule]:
