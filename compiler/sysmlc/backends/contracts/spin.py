@@ -84,6 +84,14 @@ def _operand(formula: Formula, known: Mapping[str, Domain]) -> str:
 
 
 def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
+    names = dict.fromkeys(variable.name for variable in f.variables(formula))
+    return _spelt(formula, tuple((name, known[name]) for name in names))
+
+
+@lru_cache(_REMEMBERED)
+def _spelt(formula: Formula, found: tuple[tuple[str, Domain], ...]) -> str:
+    """A comparison written out. Raises TooLargeError."""
+    known = dict(found)
     variables = list(dict.fromkeys(f.variables(formula)))
     number = 1
     for variable in variables:
@@ -96,15 +104,7 @@ def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
         ):
             return f"!{_atom(name, primed, value, known)}"
         case _:
-            found = tuple((one.name, known[one.name]) for one in variables)
-            return _all_cases(formula, tuple(variables), found)
-
-
-@lru_cache(_REMEMBERED)
-def _all_cases(
-    formula: Formula, variables: tuple[Var, ...], known: tuple[tuple[str, Domain], ...]
-) -> str:
-    return _cases(formula, [*variables], {}, {}, dict(known))
+            return _cases(formula, variables, {}, {}, known)
 
 
 def _atom(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) -> str:
