@@ -82,3 +82,11 @@ def test_times_may_nest_as_deep_as_a_file_may():
 def test_a_literal_is_a_json_value_or_stays_text(type_name, written, value):
     found = default(type_name, written)
     assert (found, type(found)) == (value, type(value))
+
+
+@pytest.mark.parametrize(("written", "meant"), [("true", True), ("1", True), ("false", False)])
+def test_truth_is_written_in_two_ways(written, meant):
+    port = f'<ownedAttribute xmi:type="uml:Port" xmi:id="p" isConjugated="{written}"/>'
+    classed = f'<packagedElement xmi:type="uml:Class" xmi:id="c">{port}</packagedElement>'
+    assert read(papyrus(classed)).graph["p"].attrs.get("conjugated", False) is meant
+    assert default("LiteralBoolean", written) is meant

@@ -170,7 +170,7 @@ class Context:
             for target in self._targets(row, name, value):
                 self.link(edge, element.id, target, row, name)
         elif name in v.FLAGS:
-            if value == "true":
+            if value in v.TRUE:
                 element.attrs[v.FLAGS[name]] = True
         elif name in v.TEXTS:
             key, default = v.TEXTS[name]

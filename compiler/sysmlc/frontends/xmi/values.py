@@ -5,6 +5,7 @@ from math import isfinite
 from typing import NamedTuple
 
 from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.vocabulary import TRUE
 from sysmlc.ir import AttrValue
 
 _LITERALS = frozenset(
@@ -141,7 +142,7 @@ def _texts(document: Document, row: int) -> tuple[list[str], list[str]]:
 
 def _literal(type_name: str, text: str) -> AttrValue:
     if type_name == "LiteralBoolean":
-        return text == "true"
+        return text in TRUE
     if type_name == "LiteralString":
         return text
     if type_name == "LiteralNull":

@@ -215,6 +215,9 @@ REDUNDANT = frozenset(
 )
 """References that say what the other end, or ownership, says already."""
 
+TRUE = frozenset({"true", "1"})
+"""Ways to write a true xs:boolean (XML Schema part 2, clause 3.2.2)."""
+
 FLAGS = {
     "isAbstract": "abstract",
     "isConjugated": "conjugated",
