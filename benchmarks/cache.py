@@ -33,7 +33,7 @@ def cpu(path: Path, cache: Path) -> float:
     """CPU time of one process, user and system."""
     command = [str(Path(sysconfig.get_path("scripts")) / "sysmlc"), "check", str(path)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    env = {**os.environ, "SYSMLC_CACHE": str(cache)}
+    env = {**os.environ, "SYSMLC_CACHE": str(cache), "PYTHONDONTWRITEBYTECODE": ""}
     done = subprocess.run(command, capture_output=True, env=env)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode > 1:

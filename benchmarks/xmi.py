@@ -88,7 +88,8 @@ def all_outputs(path: Path, rounds: int) -> float:
         with tempfile.TemporaryDirectory() as folder:
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             command = [sysmlc, str(path), "--no-cache", "-o", folder]
-            subprocess.run(command, check=True, capture_output=True)
+            env = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
+            subprocess.run(command, check=True, capture_output=True, env=env)
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
         user = after.ru_utime - before.ru_utime
         seconds.append(user + after.ru_stime - before.ru_stime)
