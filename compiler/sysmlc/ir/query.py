@@ -318,6 +318,15 @@ def _satisfier(graph: Graph, requirement: Element) -> Element | None:
     return graph.target(requirement, Edge.SUBJECT) or graph.source(requirement, Edge.SATISFIES)
 
 
+def ids_in(value: object) -> Iterator[str]:
+    """The ids that an attribute holds, at whatever depth of tuples (docs/ir.md, ``clauses``)."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from ids_in(part)
+
+
 def bounds(multiplicity: AttrValue) -> tuple[int, int | None] | None:
     """Lower and upper bound of a multiplicity; upper None is unlimited.
 

@@ -192,9 +192,9 @@ class _Step:
         return (branches[0] if len(branches) == 1 else self.choose(node, branches),)
 
     def _open_branches(self, outgoing: list[TokenEdge]) -> list[TokenEdge]:
-        stated = [edge for edge in outgoing if not _is_else(edge)]
+        stated = [edge for edge in outgoing if not edge.is_else]
         true = [edge for edge in stated if self._is_open(edge)]
-        return true or [edge for edge in outgoing if _is_else(edge)]
+        return true or [edge for edge in outgoing if edge.is_else]
 
     def _is_open(self, edge: TokenEdge) -> bool:
         guard = edge.guard
@@ -259,7 +259,3 @@ class _Step:
             self.running.discard(node.id)
             if node.kind is NodeKind.STRUCTURED:
                 self._clear_region(node.id)
-
-
-def _is_else(edge: TokenEdge) -> bool:
-    return edge.guard is not None and edge.guard.condition is None

@@ -149,6 +149,11 @@ class TokenEdge:
         """The first drawn flow that it stands for."""
         return self.origins[0]
 
+    @property
+    def is_else(self) -> bool:
+        """Whether it is taken when no other branch of its decision is open."""
+        return self.guard is not None and self.guard.condition is None
+
 
 @dataclass(frozen=True, slots=True)
 class Interruptible:

@@ -68,7 +68,7 @@ class _Checker:
 
     def _checked(self, node: TokenNode) -> TokenNode:
         branches = self.tokens.outgoing(node)
-        stated = [branch for branch in branches if not _is_else(branch)]
+        stated = [branch for branch in branches if not branch.is_else]
         if node.firing is not Firing.CHOICE or not branches:
             return node
         open_sets = self._open_sets(stated)
@@ -186,10 +186,6 @@ class _Checker:
                 yield node
 
 
-def _is_else(edge: TokenEdge) -> bool:
-    return edge.guard is not None and edge.guard.condition is None
-
-
 def _condition(edge: TokenEdge) -> Formula:
     condition = edge.guard.condition if edge.guard else None
     return f.TRUE if condition is None else condition
@@ -204,5 +200,5 @@ def _first_overlap(
 
 
 def _two_elses(branches: list[TokenEdge]) -> list[TokenEdge]:
-    others = [branch for branch in branches if _is_else(branch)]
+    others = [branch for branch in branches if branch.is_else]
     return others if len(others) > 1 else []

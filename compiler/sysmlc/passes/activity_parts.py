@@ -32,7 +32,7 @@ class Part:
 
 def parts_of(graph: Graph, node: Element) -> list[Part]:
     """Parts in the order in which they run first."""
-    listed = [(word, tuple(_ids(ids))) for word, ids in _listed(graph, node)]
+    listed = [(word, tuple(query.ids_in(ids))) for word, ids in _listed(graph, node)]
     parts = [Part(derived_id(node.id, word), node, word, ids) for word, ids in listed if ids]
     return _completed(graph, node, parts) if parts else []
 
@@ -53,14 +53,6 @@ def _listed(graph: Graph, node: Element) -> list[tuple[str, object]]:
         if isinstance(clause, tuple)
         for word, ids in zip(("test", "body"), clause, strict=False)
     ]
-
-
-def _ids(value: object) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from _ids(part)
 
 
 # -- nodes that no part lists ------------------------------------------------------------------

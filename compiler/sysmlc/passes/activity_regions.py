@@ -21,9 +21,9 @@ def handlers_of(graph: Graph, node: Element) -> list[Handler]:
     value = node.attrs.get("handlers")
     found = []
     for bodies, _, types in _triples(value):
-        body = graph.get(next(_ids(bodies), None))
+        body = graph.get(next(query.ids_in(bodies), None))
         if body is not None:
-            found.append(Handler(body, tuple(_ids(types))))
+            found.append(Handler(body, tuple(query.ids_in(types))))
     return found
 
 
@@ -40,14 +40,6 @@ def _triples(value: object) -> Iterator[tuple[object, object, object]]:
         yield body, inputs, types
 
 
-def _ids(value: object) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from _ids(part)
-
-
 def expansion_nodes(graph: Graph, activity: Element) -> dict[str, Element]:
     """Expansion nodes, by id, with the expansion region on whose border they are."""
     found: dict[str, Element] = {}
@@ -56,10 +48,12 @@ def expansion_nodes(graph: Graph, activity: Element) -> dict[str, Element]:
             continue
         if element.kind is Kind.STRUCTURED:
             ends = (element.attrs.get("input_element"), element.attrs.get("output_element"))
-            found |= dict.fromkeys(_ids(ends), element)
+            found |= dict.fromkeys(query.ids_in(ends), element)
         else:
             names = ("region_as_input", "region_as_output")
-            regions = (graph.get(id) for name in names for id in _ids(element.attrs.get(name)))
+            regions = (
+                graph.get(id) for name in names for id in query.ids_in(element.attrs.get(name))
+            )
             region = next(filter(None, regions), None)
             found |= {} if region is None else {element.id: region}
     return found

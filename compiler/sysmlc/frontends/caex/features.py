@@ -101,15 +101,20 @@ def _structure(
     """The data type made for an attribute that has attributes of its own."""
     if not any(True for _ in node.of("Attribute")):
         return None
-    id = context.free(f"{element.id}#type", node)
-    data_type = Element(id, Kind.DATA_TYPE, node.name, owner.id, node.ordinal, document.name)
-    data_type.attrs.update(role="value type", subkind="attribute")
-    context.graph.add(data_type)
-    made = Type(id, node, document, Family.ATTRIBUTE)
-    made.base = declared
+    type = Element(f"{element.id}#type", Kind.DATA_TYPE, node.name, owner.id)
+    type.attrs.update(role="value type", subkind="attribute")
+    return _own_type(context, type, Type(type.id, node, document, Family.ATTRIBUTE), declared)
+
+
+def _own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
+    """Add the type that only one feature has; it specialises the declared one."""
+    element.id = type.id = context.free(element.id, type.node)
+    element.ordinal, element.source = type.node.ordinal, type.document.name
+    context.graph.add(element)
+    type.base = declared
     if declared is not None:
-        context.graph.connect(Edge.SPECIALIZES, id, declared.id)
-    return made
+        context.graph.connect(Edge.SPECIALIZES, type.id, declared.id)
+    return type
 
 
 def _semantics(node: Node) -> tuple[str, ...]:
@@ -172,17 +177,12 @@ def _own_interface(
     element: Element,
     declared: Type | None,
 ) -> Type | None:
+    """The interface block made for an interface that has interfaces of its own."""
     if not any(True for _ in node.of("ExternalInterface")):
         return None
-    id = context.free(f"{element.id}#type", node)
-    block = Element(id, Kind.CLASS, node.name, owner.id, node.ordinal, document.name)
+    block = Element(f"{element.id}#type", Kind.CLASS, node.name, owner.id)
     block.attrs.update(role="interface block", subkind="external-interface")
-    context.graph.add(block)
-    made = Type(id, node, document, Family.INTERFACE)
-    made.base = declared
-    if declared is not None:
-        context.graph.connect(Edge.SPECIALIZES, id, declared.id)
-    return made
+    return _own_type(context, block, Type(block.id, node, document, Family.INTERFACE), declared)
 
 
 def port_attributes(node: Node) -> dict[str, AttrValue]:

@@ -7,6 +7,7 @@ from typing import ClassVar, NamedTuple
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
+from sysmlc.ir.query import ids_in
 from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.libraries import (
     PRIMITIVE_TYPES,
@@ -117,16 +118,8 @@ def _attributes(graph: Graph) -> Iterator[_Use]:
     for holder_kind, named in _ATTRIBUTES.items():
         for element in graph.of_kind(holder_kind):
             for name, kind in named.items() if element.attrs else ():
-                for id in _ids(element.attrs.get(name)):
+                for id in ids_in(element.attrs.get(name)):
                     yield _Use(element, id, kind, attribute=name)
-
-
-def _ids(value: AttrValue) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, tuple):
-        for item in value:
-            yield from _ids(item)
 
 
 # -- finding -----------------------------------------------------------------------------------
