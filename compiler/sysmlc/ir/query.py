@@ -318,6 +318,11 @@ def _satisfier(graph: Graph, requirement: Element) -> Element | None:
     return graph.target(requirement, Edge.SUBJECT) or graph.source(requirement, Edge.SATISFIES)
 
 
+def is_requirement(element: Element) -> bool:
+    """Whether it is a requirement, in SysML v1 or v2."""
+    return element.role == "requirement" or element.kind is Kind.REQUIREMENT
+
+
 def ids_in(value: object) -> Iterator[str]:
     """The ids that an attribute holds, at whatever depth of tuples (docs/ir.md, ``clauses``)."""
     if isinstance(value, str):

@@ -91,14 +91,10 @@ def _components(graph: Graph, constraint: Element) -> Iterator[str]:
     subjects = graph.targets(constraint, Edge.REFERENCES) or ([] if owner is None else [owner])
     names: dict[str, None] = {}
     for subject in subjects:
-        satisfiers = graph.sources(subject, Edge.SATISFIES) if _is_requirement(subject) else []
+        satisfiers = graph.sources(subject, Edge.SATISFIES) if query.is_requirement(subject) else []
         for one in satisfiers or [subject]:
             names[query.component_name(graph, one)] = None
     yield from names
-
-
-def _is_requirement(element: Element) -> bool:
-    return element.role == "requirement" or element.kind is Kind.REQUIREMENT
 
 
 def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink) -> None:

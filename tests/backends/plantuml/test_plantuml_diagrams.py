@@ -4,6 +4,7 @@ import pytest
 from drawing import emitted, model, texts
 
 from sysmlc.ir import Graph, Kind
+from sysmlc.ir.text import parse_text
 
 KINDS = ("bdd", "ibd", "par", "act", "stm", "req", "sd", "uc")
 UNNAMED_IN_PICTURES = (Kind.APPLICATION, Kind.COMMENT)
@@ -61,6 +62,30 @@ def _escaped(text: str) -> str:
     """As the back end writes it; spelled out here, so that a fault there does not hide itself."""
     table = {'"': "22", "<": "3C", ">": "3E", "&": "26", "{": "7B"}
     return "".join(f"<U+00{table[char]}>" if char in table else char for char in text)
+
+
+REDEFINED = """\
+Package line "Line"
+  Class pump "Pump" role="block"
+  Class station "Station" role="block"
+    Property station.unnamed "" role="part" aggregation="composite"
+      -> typed-by pump
+    Property station.spare "spare" role="value"
+  Class big "Big station" role="block"
+    -> specializes station
+    Property big.unnamed "" role="value"
+      -> redefines station.spare
+    Property big.a "a" role="value"
+      -> redefines station.unnamed
+    Property big.b "b" role="value"
+      -> redefines big.unnamed
+"""
+
+
+def test_a_redefined_feature_without_a_name_is_told_by_its_type_or_what_it_redefines():
+    (text,) = (text for path, text in texts(parse_text(REDEFINED)).items() if "bdd" in path)
+    assert "a <U+007B>redefines : Pump}" in text
+    assert "b <U+007B>redefines spare}" in text
 
 
 def test_a_view_with_nothing_in_it_is_not_written():

@@ -11,6 +11,7 @@ from sysmlc.backends.plantuml.text import lines
 from sysmlc.backends.plantuml.uc_relations import use_case_relations
 from sysmlc.backends.plantuml.views import Box, BoxView
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import is_requirement
 
 _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
 _TEXT = 44
@@ -72,7 +73,7 @@ def _box(choice: Choice, item: Element, aliases: Aliases, in_lines: set[str]) ->
         return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
     if item.attrs.get("external"):
         return boxes.stub(graph, item, aliases)
-    if req.is_requirement(item):
+    if is_requirement(item):
         return req.box(graph, item, aliases)
     features = _features(choice, item)
     return boxes.box(graph, item, aliases, in_lines, {}, features)

@@ -52,7 +52,7 @@ def _homes(graph: Graph) -> dict[str | None, list[Element]]:
     for root in graph.roots():
         for element in graph.subtree(root):
             if _is_shown(graph, element) and element.id not in of_use_cases:
-                homes.setdefault(_package(graph, element), []).append(element)
+                homes.setdefault(labels.home(graph, element), []).append(element)
     return homes
 
 
@@ -81,13 +81,6 @@ def is_in_frame(graph: Graph, instance: Element) -> bool:
     around = (instance, *graph.ancestors(instance))
     frames = (one for one in around if one.kind is Kind.INSTANCE)
     return any(item.kind is Kind.CONNECTOR for one in frames for item in graph.owned(one))
-
-
-def _package(graph: Graph, element: Element) -> str | None:
-    for above in graph.ancestors(element):
-        if above.kind in (Kind.PACKAGE, Kind.PROFILE):
-            return above.id
-    return None
 
 
 def _of_package(

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable
 
 from sysmlc.ir import Edge, Element, Graph, Kind, templates
+from sysmlc.ir.query import redefined
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
@@ -11,6 +12,7 @@ _TOOL_NAMESPACE = re.compile(
     r"https?://www\.magicdraw\.com/(spec/Customization/|schemas/additional_stereotypes)"
 )
 """MagicDraw's own stereotypes (PartProperty, ValueProperty) repeat what the type says."""
+_PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
 _ROLE_WORDS = {
     "block": "block",
     "interface block": "interfaceBlock",
@@ -191,6 +193,18 @@ def collaboration_use(graph: Graph, element: Element) -> str:
     return f"{text} ({', '.join(parts)})" if parts else text
 
 
+def home(graph: Graph, element: Element) -> str | None:
+    """Id of the package whose diagram shows the element."""
+    return next((one.id for one in graph.ancestors(element) if one.kind in _PACKAGES), None)
+
+
+def note_text(item: Element) -> str:
+    """The text of a comment, or a constraint in braces."""
+    if item.kind is Kind.CONSTRAINT:
+        return condition(item)
+    return str(item.attrs.get("body", item.name))
+
+
 def condition(element: Element) -> str:
     """``{name: body}`` of a constraint."""
     body = str(element.attrs.get("body", ""))
@@ -207,8 +221,20 @@ def _modifiers(graph: Graph, element: Element) -> str:
     words = [word for word in ("ordered", "readonly", "static") if element.attrs.get(word)]
     words += ["nonunique"] if element.attrs.get("unique") is False else []
     for edge, verb in ((Edge.REDEFINES, "redefines"), (Edge.SUBSETS, "subsets")):
-        words += [f"{verb} {name(target)}" for target in graph.targets(element, edge)]
+        words += [f"{verb} {_referred(graph, target)}" for target in graph.targets(element, edge)]
     return " {" + ", ".join(words) + "}" if words else ""
+
+
+def _referred(graph: Graph, feature: Element) -> str:
+    """Name of a feature that another one redefines; without one it is told by what names it.
+
+    That is the named feature that it redefines itself, else its type, as in ``: Pump``.
+    """
+    if feature.name.strip():
+        return name(feature)
+    known = next((one for one in redefined(graph, feature) if one.name.strip()), None)
+    types = "" if known else type_name(graph, feature)
+    return f": {types}" if types else name(known or feature)
 
 
 def _lower_first(text: str) -> str:

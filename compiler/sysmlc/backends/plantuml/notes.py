@@ -17,7 +17,7 @@ def notes(
     texts = tuple(
         _note(graph, item, aliases)
         for item in graph.subtree(behaviour)
-        if _is_note(item, behaviour) and label(_text(item))
+        if _is_note(item, behaviour) and label(labels.note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
     return (*_features(graph, behaviour, aliases, kinds), *texts)
@@ -47,15 +47,9 @@ def _is_note(item: Element, behaviour: Element) -> bool:
     return item.kind is Kind.COMMENT
 
 
-def _text(item: Element) -> str:
-    if item.kind is Kind.CONSTRAINT:
-        return labels.condition(item)
-    return str(item.attrs.get("body", item.name))
-
-
 def _note(graph: Graph, item: Element, aliases: Aliases) -> Note:
     about = [target.id for target in graph.targets(item, Edge.REFERENCES)]
     about = about or ([item.owner] if item.owner else [])
     targets = tuple(aliases[id] for id in about if id in aliases)
     alias = aliases.make(item.id, "", "note")
-    return Note(alias, label(_text(item), _WIDTH), targets, (item.id,))
+    return Note(alias, label(labels.note_text(item), _WIDTH), targets, (item.id,))

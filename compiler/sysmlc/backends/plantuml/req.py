@@ -9,6 +9,7 @@ from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
 from sysmlc.backends.plantuml.text import lines, plain
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import is_requirement
 
 _WORDS = {"derive": "deriveReqt"}
 _EDGES = {
@@ -27,22 +28,10 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
     for root in graph.roots():
         for element in graph.subtree(root):
             if is_requirement(element) and not element.attrs.get("external"):
-                homes.setdefault(_home(graph, element), []).append(element)
+                homes.setdefault(labels.home(graph, element), []).append(element)
     every = relations(graph)
     for package, requirements in homes.items():
         yield from _of_package(graph, graph.get(package), requirements, every)
-
-
-def is_requirement(element: Element) -> bool:
-    """Whether it is a requirement, in SysML v1 or v2."""
-    return element.role == "requirement" or element.kind is Kind.REQUIREMENT
-
-
-def _home(graph: Graph, element: Element) -> str | None:
-    for above in graph.ancestors(element):
-        if above.kind in (Kind.PACKAGE, Kind.PROFILE):
-            return above.id
-    return None
 
 
 def relations(graph: Graph) -> list[Relation]:

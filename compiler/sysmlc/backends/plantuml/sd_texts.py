@@ -93,10 +93,3 @@ def _is_rule(item: Element, interaction: Element) -> bool:
 
 def _place(about: Iterable[Element], interaction: Element) -> str:
     return next((item.id for item in about), interaction.id)
-
-
-def note_text(item: Element) -> str:
-    """The text of a comment, or a constraint in braces."""
-    if item.kind is Kind.CONSTRAINT:
-        return labels.condition(item)
-    return str(item.attrs.get("body", item.name))

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.sd_texts import note_text, notes, time_text, times
+from sysmlc.backends.plantuml.sd_texts import notes, time_text, times
 from sysmlc.backends.plantuml.text import label, lines, stack
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Element, Graph, sequence
@@ -53,6 +54,6 @@ class Walk:
     def notes(self, item: Element, over: Sequence[str] = ()) -> Iterator[Step]:
         """Notes about the element, over these lifelines or all."""
         for note in self._notes.get(item.id, ()):
-            text = label(note_text(note), _WIDTH)
+            text = label(labels.note_text(note), _WIDTH)
             if self.is_new(note) and text:
                 yield Step("note", text, over=tuple(over), shows=(note.id,))

@@ -21,26 +21,21 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
     cases = [item for item in graph.of_kind(Kind.USE_CASE) if not item.attrs.get("external")]
     homes: dict[str | None, list[Element]] = {}
     for case in cases:
-        homes.setdefault(home(graph, case), []).append(case)
+        homes.setdefault(labels.home(graph, case), []).append(case)
     every = _relations(graph) if cases else []
     for package, own in homes.items():
         yield from _of_package(graph, graph.get(package), own, every)
 
 
-def home(graph: Graph, element: Element) -> str | None:
-    """Id of the package whose diagram shows it."""
-    return next((one.id for one in graph.ancestors(element) if one.kind in _PACKAGES), None)
-
-
 def actors(graph: Graph) -> set[str]:
     """Actors that use case diagrams show and that have nothing more for other diagrams."""
-    homes = {home(graph, case) for case in graph.of_kind(Kind.USE_CASE)}
+    homes = {labels.home(graph, case) for case in graph.of_kind(Kind.USE_CASE)}
     if not homes:
         return set()
     found = {
         item.id
         for item in graph.of_kind(Kind.ACTOR)
-        if home(graph, item) in homes and not any(o.kind in _ROWS for o in graph.owned(item))
+        if labels.home(graph, item) in homes and not any(o.kind in _ROWS for o in graph.owned(item))
     }
     for relation in relations(graph):
         ends = {relation.source, relation.target}
@@ -59,7 +54,7 @@ def _of_package(
     graph: Graph, package: Element | None, own: list[Element], every: Sequence[Relation]
 ) -> Iterator[Diagram]:
     at_home = package.id if package is not None else None
-    alone = [one for one in graph.of_kind(Kind.ACTOR) if home(graph, one) == at_home]
+    alone = [one for one in graph.of_kind(Kind.ACTOR) if labels.home(graph, one) == at_home]
     parts = split.chunks([item.id for item in own], _near(own, every))
     whole = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query import applications, lineage
+from sysmlc.ir import AttrValue, Edge, Element, Graph
+from sysmlc.ir.query import applications, is_requirement, lineage
 
 COLUMNS = (
     "id",
@@ -69,17 +69,16 @@ class Table:
         return tuple(row.element.id for row in self.rows)
 
 
-def is_requirement(element: Element) -> bool:
-    """Whether it is a requirement, in SysML v1 or v2, of a file of the unit."""
-    known = element.role == "requirement" or element.kind is Kind.REQUIREMENT
-    return known and not element.attrs.get("external")
+def is_listed(element: Element) -> bool:
+    """Whether tables list it: a requirement of a file of the unit."""
+    return is_requirement(element) and not element.attrs.get("external")
 
 
 def tables(graph: Graph) -> list[Table]:
     """One table for each root with requirements, in the order of the roots."""
     found = []
     for root in graph.roots():
-        held = [one for one in graph.subtree(root) if is_requirement(one)]
+        held = [one for one in graph.subtree(root) if is_listed(one)]
         if held:
             found.append(_table(graph, root, held))
     return found
@@ -164,7 +163,7 @@ def _named(graph: Graph, elements: list[Element]) -> list[str]:
 
 
 def _name(graph: Graph, element: Element) -> str:
-    if is_requirement(element) and _id(element):
+    if is_listed(element) and _id(element):
         return f"{_id(element)} {element.name}".strip()
     return graph.qualified_name(element)
 

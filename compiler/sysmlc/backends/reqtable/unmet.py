@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.backends.reqtable.rules import UNSATISFIED, UNVERIFIED
-from sysmlc.backends.reqtable.table import is_requirement
+from sysmlc.backends.reqtable.table import is_listed
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph
 
@@ -42,7 +42,7 @@ def _is_direct(graph: Graph, requirement: Element, edge: Edge) -> bool:
 def _answered(graph: Graph, requirement: Element, done: set[str]) -> Iterator[Element]:
     yield from graph.targets(requirement, Edge.DERIVES)
     owner = graph.owner(requirement)
-    if owner is not None and is_requirement(owner):
-        inside = [one for one in graph.owned(owner) if is_requirement(one)]
+    if owner is not None and is_listed(owner):
+        inside = [one for one in graph.owned(owner) if is_listed(one)]
         if all(one.id in done for one in inside):
             yield owner

@@ -9,6 +9,7 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.metaclasses import kind_of
 from sysmlc.frontends.xmi.vocabulary import HINTS
 from sysmlc.ir import Kind
+from sysmlc.ir.identity import ROOT, is_unmistakable
 
 _LONGEST = 8192
 """Characters of an href that count: a longer one leads nowhere, and is told by its beginning."""
@@ -16,10 +17,6 @@ _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 _MODEL_FILE = re.compile(r"([^.]+)(?:\.\w+)*\.(?:uml|xmi|mdzip|xml)$")
 _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
-_UNMISTAKABLE = 20
-"""Ids that tools make are at least this long; such an id means the same element everywhere."""
-_ROOT = "eee_1045467100313_"
-"""Start of the ids of MagicDraw's roots, the same in every project."""
 _PROJECT = re.compile(r"(local:/)?PROJECT-[^/]*\?resource=")
 
 
@@ -37,17 +34,12 @@ def normalised(href: str, file: str) -> str:
     return f"{path}#{fragment}"
 
 
-def is_unmistakable(fragment: str) -> bool:
-    """Whether an id is of the kind that tools make, the same in no two models."""
-    return len(fragment) >= _UNMISTAKABLE and not fragment.startswith(_ROOT)
-
-
 def is_in_project(href: str, fragment: str) -> bool:
     """Whether it leads into a project as MagicDraw names them: this one, or one that it uses.
 
     Which of them, only the id can tell, and those of the roots cannot.
     """
-    return not fragment.startswith(_ROOT) and _PROJECT.match(href) is not None
+    return not fragment.startswith(ROOT) and _PROJECT.match(href) is not None
 
 
 def can_lead_into(library: str, path: str, id: str) -> bool:

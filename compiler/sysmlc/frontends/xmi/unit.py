@@ -9,6 +9,7 @@ from sysmlc.frontends.xmi import fragments, hrefs
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
 from sysmlc.ir import Edge, Graph, Kind, Reference
+from sysmlc.ir.identity import is_unmistakable
 
 _NOT_KEPT = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
 
@@ -143,7 +144,7 @@ class Unit:
             return self._at_path(path, fragment)
         holders = self._having(fragment)
         exact = [h for h in holders if _archive(h.document.name) == path or h.document.name == path]
-        if not exact and hrefs.is_unmistakable(fragment):
+        if not exact and is_unmistakable(fragment):
             exact = holders
         if hrefs.is_in_project(target, fragment):
             here = _archive(lowered.document.name)

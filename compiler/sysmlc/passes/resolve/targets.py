@@ -6,13 +6,8 @@ from functools import cached_property
 from urllib.parse import unquote
 
 from sysmlc.ir import Element, Graph
+from sysmlc.ir.identity import is_unmistakable
 from sysmlc.passes.resolve.libraries import is_href, split
-
-_UNMISTAKABLE = 20
-"""Length from which tools' ids are unique in the world: Papyrus writes 23 characters, MagicDraw
-about 41, Enterprise Architect 43 (knowledge/xmi.md, section 2)."""
-_ROOT = "eee_1045467100313_"
-"""Start of the ids of MagicDraw's roots, the same in every project."""
 
 
 class Targets:
@@ -58,7 +53,7 @@ class Targets:
             )
         library, fragment = split(target)
         found = self._in(fragment, self.files(file, library))
-        if found is None and _is_unmistakable(fragment):
+        if found is None and is_unmistakable(fragment):
             found = _first(self._named(fragment))
         return found
 
@@ -73,10 +68,6 @@ class Targets:
     def _in(self, fragment: str, files: tuple[str, ...]) -> Element | None:
         found = self._named(fragment)
         return _first(element for element in found if element.source in files)
-
-
-def _is_unmistakable(fragment: str) -> bool:
-    return len(fragment) >= _UNMISTAKABLE and not fragment.startswith(_ROOT)
 
 
 def _basename(file: str) -> str:
