@@ -172,7 +172,7 @@ def test_value_and_default_are_both_kept_where_they_differ():
     )
     v, w = reading.one("Lib::C::v").attrs, reading.one("Lib::C::w").attrs
     assert (v["default"], v["default_value"]) == ("b", "a")
-    assert (w["default"], w.get("default_value")) == ("a", None)
+    assert (w["default"], w.get("default_value")) == ("a", "a")
 
 
 def test_an_attribute_with_attributes_has_a_data_type_of_its_own():

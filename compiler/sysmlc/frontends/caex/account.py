@@ -123,6 +123,8 @@ def _mark(context: Context, node: Node) -> None:
         names = {str(name) for name in known} if isinstance(known, tuple) else set()
         names.add(_EDGES.get(node.tag, Edge.SPECIALIZES).value)
         context.graph.set(holder, unresolved=tuple(sorted(names)))
+        if holder.id in (node.element, node.parent.element if node.parent else ""):
+            context.keep_path(holder, node)
 
 
 _SINGLE = {"class": rules.MISSING_CLASS, "alias": rules.UNDECLARED_ALIAS}

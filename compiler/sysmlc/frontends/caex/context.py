@@ -8,13 +8,20 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.paths import plain, split
 from sysmlc.frontends.caex.types import Missing, Type, Types
-from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
+from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
 
 Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
 
 _ROOTS = frozenset({*LIBRARIES, "InstanceHierarchy"})
+_REFERENCES = {
+    **ROLE_REFERENCES,
+    "InternalElement": "RefBaseSystemUnitPath",
+    "Attribute": "RefAttributeType",
+    "AttributeType": "RefAttributeType",
+}
+"""Attributes that name classes; of all other elements it is RefBaseClassPath."""
 
 
 class Context:
@@ -147,6 +154,14 @@ class Context:
         """The node as the subject of a finding: its path, its element, its place."""
         return Subject(path_of(node), node.element, document.place(node))
 
+    def keep_path(self, element: Element, node: Node) -> None:
+        """Keep a reference that leads nowhere as it is written, for the way back to CAEX."""
+        known = element.attrs.get("unresolved_paths")
+        path = (node.tag, reference_of(node))
+        kept = known if isinstance(known, tuple) else ()
+        if path not in kept:
+            self.graph.set(element, unresolved_paths=(*kept, path))
+
     def report_ids(self) -> None:
         """Ids that several elements of one file have, and elements that have none."""
         for id, alike in self._repeated.items():
@@ -159,6 +174,11 @@ class Context:
             first, *others = nodes
             more = f", nor have {len(others)} more elements of the file" if others else ""
             self.report(rules.NO_ID, document, first, element=path_of(first), more=more)
+
+
+def reference_of(node: Node) -> str:
+    """The class path, or the id of a master, that a node names."""
+    return node.attributes.get(_REFERENCES.get(node.tag, "RefBaseClassPath"), "").strip()
 
 
 def path_of(node: Node) -> str:

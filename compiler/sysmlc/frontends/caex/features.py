@@ -49,7 +49,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         role="value",
         data_type=data_type,
         default=None if given is None else value_of(given, data_type),
-        default_value=default if value is not None and default != value else None,
+        default_value=default if default != value else None,
         semantics=_semantics(node),
     )
     declared = _attribute_type(context, node, document)

@@ -165,6 +165,7 @@ class Links:
         subkind = special.PPR if meaning == special.PPR else "succession"
         made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind=subkind)
         first, second = self._in_order(ends) if meaning == special.ORDER else _by_part(ends)
+        graph.set(made, ports=(first.port, second.port))
         if {first.site.ppr, second.site.ppr} == {"process", "resource"}:
             graph.set(made, role="allocate")
         graph.connect(Edge.CLIENT, made.id, _standing_for(first.site))
@@ -190,6 +191,7 @@ class Links:
         top = holder.root if holder else None
         owner = (top.instance or (top.own.id if top.own else None)) if top else None
         made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind="internal-link")
+        made.attrs["sides"] = tuple(node.attributes.get(side, "") for side in SIDES.values())
         for edge, id in zip((Edge.CLIENT, Edge.SUPPLIER), known, strict=False):
             self._context.graph.connect(edge, made.id, id)
 

@@ -15,6 +15,9 @@ from sysmlc.ir import Edge, Element, Kind
 REPEATED = frozenset({"Constraint", "RefSemantic"})
 """What a repeated attribute holds that says what its class says."""
 
+_Path = tuple[str, ...]
+"""Ids of the features that an inner one lies in, outermost first."""
+
 
 def lower(context: Context, site: Site) -> None:
     """The members of an internal element: values for what its class has, features for the rest."""
@@ -59,21 +62,21 @@ def _attribute(context: Context, site: Site, node: Node) -> None:
     if known is None or says_more(context.types, site.document, node, known):
         features.attribute(context, own(context, site), node, site.document)
         return
-    waiting = [(node, known)]
+    waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
     while waiting:
-        one, member = waiting.pop()
+        one, member, path = waiting.pop()
         one.verdict = Verdict.MAPPED
-        _value(context, site, one, member)
-        _description(context, site, one, member)
+        _value(context, site, one, member, path)
+        _description(context, site, one, member, path)
         for child in one.children:
             inner = member.type.find(child.tag, child.name) if member.type else None
             if child.tag == "Attribute" and inner is not None:
-                waiting.append((child, inner))
+                waiting.append((child, inner, (*path, member.id)))
             elif child.tag in REPEATED:
                 mark(child)
 
 
-def _value(context: Context, site: Site, node: Node, known: Member) -> None:
+def _value(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
     """A slot for the value, unless it is the one that the class gives."""
     text = node.text("Value")
     if text is None or text == known.node.text("Value"):
@@ -82,9 +85,16 @@ def _value(context: Context, site: Site, node: Node, known: Member) -> None:
     data_type = known.node.attributes.get("AttributeDataType", "")
     slot = context.add(Kind.SLOT, node, site.document, owner, value=value_of(text, data_type))
     context.graph.connect(Edge.INSTANCE_OF, slot.id, known.id)
+    _lead(context, slot.id, path)
 
 
-def _description(context: Context, site: Site, node: Node, known: Member) -> None:
+def _lead(context: Context, id: str, path: _Path) -> None:
+    """The features that lead to an inner one, outermost first: their types have several uses."""
+    for outer in path:
+        context.graph.connect(Edge.PATH, id, outer)
+
+
+def _description(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
     """What is told of an attribute in an instance alone, where no slot can carry it."""
     text = node.text("Description")
     if node.element or not (text or "").strip() or text == known.node.text("Description"):
@@ -95,6 +105,7 @@ def _description(context: Context, site: Site, node: Node, known: Member) -> Non
     comment.attrs["body"] = str(text).strip()
     context.graph.add(comment)
     context.graph.connect(Edge.REFERENCES, id, known.id)
+    _lead(context, id, path)
 
 
 def _interface(context: Context, site: Site, node: Node) -> None:
@@ -102,21 +113,21 @@ def _interface(context: Context, site: Site, node: Node) -> None:
     if known is None:
         features.interface(context, own(context, site), node, site.document)
         return
-    waiting = [(node, known)]
+    waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
     while waiting:
-        one, member = waiting.pop()
+        one, member, path = waiting.pop()
         one.verdict, one.element = Verdict.MAPPED, member.id
-        _port_values(context, site, one, member)
+        _port_values(context, site, one, member, path)
         id = one.attributes.get("ID")
         if id:
             site.interface_ids.append((member.id, id))
         for child in one.of("ExternalInterface"):
             inner = member.type.find(child.tag, child.name) if member.type else None
             if inner is not None:
-                waiting.append((child, inner))
+                waiting.append((child, inner, (*path, member.id)))
 
 
-def _port_values(context: Context, site: Site, node: Node, known: Member) -> None:
+def _port_values(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
     """A slot for what the attributes of an interface say here and not in the class."""
     said = features.port_attributes(node)
     of_class = context.graph[known.id].attrs
@@ -131,6 +142,7 @@ def _port_values(context: Context, site: Site, node: Node, known: Member) -> Non
     slot.attrs.update(new)
     context.graph.add(slot)
     context.graph.connect(Edge.INSTANCE_OF, id, known.id)
+    _lead(context, id, path)
     meaning = context.special.get(known.id, "")
     if meaning in special.DOCUMENTS:
         documents.lower(context, node, site.document, owner, known.id, meaning, new)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from xml.sax.saxutils import escape, quoteattr
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
@@ -77,9 +78,28 @@ def _keep(context: Context, document: Document, node: Node, element: Element) ->
     for key, value in _flat(node):
         known = made.attrs.get(key)
         made.attrs[key] = value if known is None else f"{known}\n{value}"
+    made.attrs["xml"] = _as_written(node)
     context.graph.add(made)
     context.graph.connect(Edge.REFERENCES, made.id, element.id)
     mark(node, Verdict.MAPPED)
+
+
+def _as_written(top: Node) -> str:
+    """The node as XML without namespaces, for the way back to CAEX."""
+    parts: list[str] = []
+    waiting: list[Node | str] = [top]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, str):
+            parts.append(one)
+            continue
+        values = (f" {k.rpartition('}')[2]}={quoteattr(v)}" for k, v in one.attributes.items())
+        texts = one.texts or {}
+        folded = (f"<{tag}>{escape(text)}</{tag}>" for tag, text in texts.items() if tag)
+        own = escape(texts.get("", "")).strip()
+        parts.append(f"<{one.tag}{''.join(values)}>{own}{''.join(folded)}")
+        waiting += [f"</{one.tag}>", *reversed(one.children)]
+    return "".join(parts)
 
 
 def _flat(top: Node) -> Iterator[tuple[str, str]]:

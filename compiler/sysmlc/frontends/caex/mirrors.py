@@ -77,6 +77,8 @@ def _report(
     context: Context, document: Document, node: Node, reference: str, is_circle: bool = False
 ) -> None:
     rule = rules.MIRROR_CYCLE if is_circle else rules.MIRROR_WITHOUT_MASTER
+    if node.element in context.graph:
+        context.keep_path(context.graph[node.element], node)
     context.report(rule, document, node, element=node.name, reference=reference)
 
 
