@@ -38,6 +38,15 @@ def test_explain_without_a_code_lists_all_rules_in_order(here):
     assert {"SM170", "SM176", "SM900"} <= set(codes)
 
 
+def test_explain_goes_on_without_a_back_end_that_cannot_be_imported(here, monkeypatch):
+    every = here.sysmlc("explain").stdout
+    monkeypatch.setitem(sys.modules, "sysmlc.backends.ecore", None)
+    result = here.sysmlc("explain")
+    assert result.exit_code == 0
+    assert result.stdout == every
+    assert "note: the rules of sysmlc.backends.ecore are missing" in result.stderr
+
+
 def test_show_prints_the_graph_that_can_be_compiled_again(here):
     text = here.sysmlc("show", "plant.ir").stdout
     here.write("again.ir", text)

@@ -22,11 +22,10 @@ Examples:
 @click.argument("code", required=False, metavar="[CODE|NAME]")
 def command(code: str | None) -> None:
     """Explain the rule with this code or name; without one, list all rules."""
-    from sysmlc.cli.session import fail
-    from sysmlc.driver import full_catalogue
+    from sysmlc.cli.session import fail, known_rules
     from sysmlc.suggest import did_you_mean
 
-    rules = full_catalogue()
+    rules = known_rules()
     if code is None:
         for rule in rules.values():
             click.echo(f"{rule.code}  {rule.severity.value:<7}  {rule.name}")

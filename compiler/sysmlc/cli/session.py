@@ -12,6 +12,7 @@ import click
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
     from sysmlc.config import Config
+    from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation, Opened, Outcome, Request
 
@@ -55,10 +56,16 @@ def fail(message: str) -> NoReturn:
     sys.exit(2)
 
 
+def known_rules() -> "dict[str, Rule]":
+    """Every rule by its code; those of a module that cannot be imported are noted as missing."""
+    from sysmlc.driver import full_catalogue
+
+    return full_catalogue(lambda note: click.echo(f"sysmlc: note: {note}", err=True))
+
+
 def load_config(models: Sequence[Path], file: Path | None) -> "Config":
     """The configuration for these models; ends with exit code 2 when it is wrong."""
     from sysmlc import config
-    from sysmlc.driver import full_catalogue
     from sysmlc.suggest import did_you_mean
 
     try:
@@ -67,7 +74,7 @@ def load_config(models: Sequence[Path], file: Path | None) -> "Config":
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
     if chosen:
-        rules = full_catalogue().values()
+        rules = known_rules().values()
         known = {rule.code for rule in rules} | {rule.name for rule in rules}
         for name in chosen:
             if name not in known:

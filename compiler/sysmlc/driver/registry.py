@@ -1,7 +1,7 @@
 """Front ends, back ends and rules: where they are found, without importing what is not used."""
 
 import pkgutil
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, replace
 from importlib import import_module
@@ -108,11 +108,17 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
     return [backend for backend in every if backend.is_default or backend.name in chosen]
 
 
-def full_catalogue() -> dict[str, Rule]:
-    """Every rule there is: imports every module that may hold one, and the plug-ins that load."""
+def full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:
+    """Every rule there is: imports every module that may hold one, and the plug-ins that load.
+
+    ``note`` is told of each module that cannot be imported: its rules are missing.
+    """
     for package in _RULE_PACKAGES:
         for module in _modules(f"sysmlc.{package}"):
-            import_module(module)
+            try:
+                import_module(module)
+            except Exception as problem:
+                note(f"the rules of {module} are missing: {problem!r}")
     others = {entry.name: entry for entry in plug_ins()}
     for name in others:
         with suppress(BackendError):
