@@ -391,3 +391,10 @@ def test_a_condition_of_a_service_that_cannot_be_read_is_told():
     _, codes, sink = run(samples.task().replace(place, tagged))
     assert codes == ["SM616"]
     assert "'piece in hand' at 'Plant::Place'" in next(iter(sink)).message
+
+
+def test_properties_of_a_material_that_have_no_names_may_have_values_of_several_types():
+    plate = '  Class plate "Plate" level="material"\n'
+    values = '    Property plate.size default=2.5\n    Property plate.colour default="red"\n'
+    (material,) = model(samples.task().replace(plate, plate + values)).materials
+    assert [value for _, value in material.properties] == [2.5, "red"]

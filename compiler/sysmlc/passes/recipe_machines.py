@@ -188,9 +188,14 @@ def material(context: Context, element: Element) -> Material:
         tags.text("position"),
         tags.integer("buffer"),
         bool(tags.flag("noWait")),
-        tuple(sorted(_properties(context, element))),
+        tuple(sorted(_properties(context, element), key=_by_name)),
         element.id,
     )
+
+
+def _by_name(property_: tuple[str, object]) -> tuple[str, str]:
+    """Properties of one name can have values that do not compare, as 1 and ``red``."""
+    return property_[0], str(property_[1])
 
 
 def _properties(
