@@ -3,6 +3,7 @@
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
+from sysmlc.driver import Request, compile_model
 from sysmlc.ir.measures import quantity_kind_of, unit_of
 
 
@@ -96,6 +97,34 @@ def test_a_standard_library_in_the_file_is_used_and_is_not_of_the_plant_either()
     )
     (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
     assert (general.source, general.attrs["external"]) == ("plant.aml", True)
+
+
+@pytest.mark.parametrize(
+    ("path", "problem"),
+    [
+        ("Base@Lib/Role", "'Base', an alias that no ExternalReference declares"),
+        ("AutomationMLBaseRoleClassLib/Gone", "'AutomationMLBaseRoleClassLib/Gone', which does"),
+    ],
+)
+def test_what_is_wrong_in_a_standard_library_that_the_file_holds_is_told_at_its_place(
+    path, problem, tmp_path
+):
+    held = f'<RoleClass Name="R" RefBaseClassPath="{path}"/>'
+    source = aml(roles(held, "AutomationMLBaseRoleClassLib"))
+    (tmp_path / "plant.aml").write_bytes(source.data)
+    made = compile_model(Request((tmp_path / "plant.aml",)))
+    (found,) = made.diagnostics
+    assert found.message.startswith(
+        "'AutomationMLBaseRoleClassLib::R' of the standard library 'AutomationMLBaseRoleClassLib'"
+        f" refers to {problem}"
+    )
+    assert (found.rule.code, found.severity, found.subject.place.ordinal) == ("SM149", "warning", 2)
+    assert made.exit_code() == 0
+
+
+def test_what_is_wrong_in_a_library_of_the_plant_is_an_error():
+    reading = Read(roles('<RoleClass Name="R" RefBaseClassPath="Base@Lib/Role"/>'))
+    assert [one[:5] for one in reading.findings] == ["SM133"]
 
 
 # -- internal elements -------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from sysmlc.frontends.caex import measures, rules
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
-from sysmlc.frontends.caex.vocabulary import ORDER
+from sysmlc.frontends.caex.vocabulary import LIBRARIES, ORDER, STANDARD
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.encoding import codec
@@ -131,10 +131,32 @@ _SINGLE = {"class": rules.MISSING_CLASS, "alias": rules.UNDECLARED_ALIAS}
 """What is told at each reference; a file or library that is missing takes down many."""
 
 
+_PROBLEMS = {
+    "class": "which does not exist",
+    "alias": "an alias that no ExternalReference declares",
+}
+
+
 def _report_single(context: Context, missing: Missing, document: Document, node: Node) -> None:
     name = missing.name
+    library = [one.name for one in (node, *node.above()) if one.tag in LIBRARIES]
+    if library and library[0] in STANDARD:
+        _report_library(context, missing, document, node, library[0])
+        return
     facts = {"element": f"'{path_of(node)}'", "family": "class", "path": name, "alias": name}
     context.report(_SINGLE[missing.what], document, node, **facts)
+
+
+def _report_library(
+    context: Context, missing: Missing, document: Document, node: Node, library: str
+) -> None:
+    """The plant is not at fault, and it is read: what is wrong is told all the same."""
+    name = path_of(node)
+    # Without an element: a finding about library content would be left out.
+    subject = Subject(name, place=document.place(node))
+    facts = {"element": f"'{name}'", "library": library, "path": missing.name}
+    problem = _PROBLEMS[missing.what]
+    context.sink.report(rules.LIBRARY_FAULT, subject, notes=(), help="", problem=problem, **facts)
 
 
 def _report_outside(

@@ -45,6 +45,20 @@ UNDECLARED_ALIAS = rule(
     right='<ExternalReference Path="libs/roles.aml" Alias="Base"/>\n'
     '<RoleClass Name="Gate" RefBaseClassPath="Base@Roles/Resource"/>',
 )
+LIBRARY_FAULT = rule(
+    "SM149",
+    "fault-in-standard-library",
+    Severity.WARNING,
+    "{element} of the standard library '{library}' refers to '{path}', {problem}",
+    why="The file holds a copy of a library of AutomationML that is not whole. The plant is read, "
+    "but what the class should inherit is not known.",
+    help="take the library anew from its publisher, with the references that it declares",
+    wrong='<RoleClassLib Name="AutomationMLBaseRoleClassLib">\n'
+    '<RoleClass Name="Port" RefBaseClassPath="Base@Interfaces/Port"/>',
+    right='<ExternalReference Path="libs/base.aml" Alias="Base"/>\n'
+    '<RoleClassLib Name="AutomationMLBaseRoleClassLib">\n'
+    '<RoleClass Name="Port" RefBaseClassPath="Base@Interfaces/Port"/>',
+)
 CYCLE = rule(
     "SM134",
     "class-cycle",
