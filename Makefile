@@ -37,7 +37,7 @@ format: .venv/.ready ## put the code into its form
 	.venv/bin/ruff format
 
 bench: .venv/.ready ## the measurements of benchmarks/
-	@failed=0; for name in startup xmi cache; do \
+	@failed=0; for name in startup xmi aml cache; do \
 	  echo "== $$name"; .venv/bin/python benchmarks/$$name.py || failed=1; \
 	done; exit $$failed
 

@@ -8,19 +8,18 @@ With SYSMLC_CORPUS set four real models are measured too. Exit code 1 when a bud
 """
 
 import argparse
-import json
 import os
 import resource
 import subprocess
 import sys
 import sysconfig
 import tempfile
-import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
-from xmi_model import MEGABYTE, write
+import measuring
+from measuring import Report, Row, rounds_for
+from xmi_model import write
 
 _WORK = Path(__file__).with_name("xmi_work.py")
 _REAL = (
@@ -30,7 +29,6 @@ _REAL = (
     "magicdraw/Tank_control_2.mdzip",
 )
 _SUFFIX = {"papyrus": ".uml", "magicdraw": ".xml"}
-_MILLI = 1000
 
 BUDGET = {"papyrus": 60.0, "magicdraw": 30.0}
 """Milliseconds of CPU time for each megabyte, from XML to the resolved graph."""
@@ -45,39 +43,9 @@ PYECORE = 15.0
 """How many times less CPU time than pyecore."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """Least CPU time in ms/MB of each lap, and memory as a multiple of the size."""
-
-    times: dict[str, float]
-    memory: float
-    megabytes: float
-
-    @property
-    def total(self) -> float:
-        return sum(self.times.values())
-
-
-def calibration() -> float:
-    """CPU time of a million additions."""
-    start = time.process_time()
-    total = 0
-    for number in range(1_000_000):
-        total += number
-    return time.process_time() - start
-
-
 def measure(work: str, path: Path, rounds: int, metamodel: str = "") -> Row:
     """The best of several processes that do the same."""
-    return min((_once(work, path, metamodel) for _ in range(rounds)), key=lambda row: row.total)
-
-
-def _once(work: str, path: Path, metamodel: str) -> Row:
-    command = [sys.executable, str(_WORK), work, str(path), metamodel]
-    done = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
-    megabytes = done["size"] / MEGABYTE
-    times = {lap: _MILLI * seconds / megabytes for lap, seconds in done["times"].items()}
-    return Row(times, done["memory"] / done["size"], megabytes)
+    return measuring.measure(_WORK, work, path, rounds, metamodel)
 
 
 def all_outputs(path: Path, rounds: int) -> float:
@@ -96,22 +64,6 @@ def all_outputs(path: Path, rounds: int) -> float:
     return min(seconds)
 
 
-class Report:
-    """Prints lines and remembers whether a budget was missed."""
-
-    def __init__(self) -> None:
-        self.is_good = True
-
-    def line(self, name: str, text: str) -> None:
-        print(f"{name:<34} {text}", flush=True)
-
-    def budget(self, name: str, text: str, value: float, limit: float, unit: str) -> None:
-        """A line with a limit that the value must not exceed."""
-        met = value <= limit
-        self.is_good &= met
-        self.line(name, f"{text}  budget {limit:g} {unit}: {'met' if met else 'MISSED'}")
-
-
 def generated(options: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Path]]:
     """The generated files, each removed when the next is made."""
     for dialect in options.dialects:
@@ -125,11 +77,10 @@ def generated(options: argparse.Namespace, folder: Path) -> Iterator[tuple[str, 
 
 def report_file(report: Report, path: Path, budget: float, options: argparse.Namespace) -> Row:
     """Lines about one file; the row of ours."""
-    rounds = options.rounds if path.stat().st_size < 50 * MEGABYTE else 1
+    rounds = rounds_for(path, options.rounds)
     ours = measure("ours", path, rounds)
-    laps = " + ".join(f"{name} {ms:.1f}" for name, ms in ours.times.items())
-    text = f"{ours.total:6.1f} ms/MB ({laps}), memory {ours.memory:.1f} x"
-    report.budget(f"{path.name} ({ours.megabytes:.1f} MB)", text, ours.total, budget, "ms/MB")
+    name = f"{path.name} ({ours.megabytes:.1f} MB)"
+    report.budget(name, ours.text, ours.total, budget, "ms/MB")
     if path.suffix != ".mdzip":
         for work in ("lxml", "expat"):
             other = measure(work, path, rounds)
@@ -187,7 +138,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     report = Report()
-    report.line("calibration loop", f"{min(calibration() for _ in range(5)):6.3f} s")
+    report.calibration()
     with tempfile.TemporaryDirectory() as folder:
         report_generated(report, options, Path(folder))
     report_real(report, options)

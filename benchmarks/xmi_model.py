@@ -12,10 +12,10 @@ from pathlib import Path
 from random import Random
 from typing import BinaryIO
 
+from measuring import MEGABYTE
 from model_cells import Part, cell, shared
 from model_dialects import DIALECTS, MARK, NUMBER, Dialect
 
-MEGABYTE = 1_000_000
 _VARIANTS = 8
 """Cells that differ in words and numbers; the file is made of them in turn."""
 

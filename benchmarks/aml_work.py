@@ -1,0 +1,31 @@
+"""What ``aml.py`` measures, each in a process of its own: ``python aml_work.py WORK FILE``."""
+
+import sys
+from pathlib import Path
+
+from work import Measured, Work, expat, lxml, run
+
+
+def ours(path: Path) -> tuple[Measured, int]:
+    """The front end, and then the pass ``resolve``."""
+    from sysmlc.diagnostics import Coverage, Sink
+    from sysmlc.frontends.caex import FRONTEND
+    from sysmlc.ir import Graph
+    from sysmlc.passes.resolve import Resolve
+    from sysmlc.sources import load
+
+    graph, sink = Graph(), Sink()
+    measured = Measured()
+    sources = [one for one in load(path, path.name) if FRONTEND.detect(one)]
+    FRONTEND.read(sources, graph, sink, Coverage())
+    measured.lap("read")
+    Resolve().run(graph, sink)
+    measured.lap("resolve")
+    assert len(graph) > 0
+    return measured, sum(len(source.data) for source in sources)
+
+
+WORKS: dict[str, Work] = {"ours": ours, "lxml": lxml, "expat": expat}
+
+if __name__ == "__main__":
+    sys.exit(run(WORKS))
