@@ -82,6 +82,11 @@ class Drawing:
             region = owners[region] if region in owners else self.region[region]
         yield ACTIVITY_REGION
 
+    def around_both(self, one: Element, other: Element) -> str:
+        """The innermost region that both nodes are in."""
+        before, after = (list(self.around(self.region[node.id])) for node in (one, other))
+        return next(region for region in before if region in after)
+
 
 def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """The drawing of an activity. Raises CannotPlayError after it has reported why."""

@@ -42,7 +42,8 @@ def _add_handlers(draft: Draft, node: Element) -> None:
     caught = draft.extra(node, "caught", NodeKind.MERGE, f"the exception of {label}", region)
     handlers = _distinct(draft.drawing.handlers[node.id])
     if len(handlers) == 1:
-        draft.link(caught.id, handlers[0].body.id, node, region)
+        body = handlers[0].body
+        draft.link(caught.id, body.id, node, draft.drawing.around_both(node, body))
     else:
         _choose_handler(draft, node, caught.id, handlers)
     if draft.outgoing[node.id]:
@@ -50,7 +51,8 @@ def _add_handlers(draft: Draft, node: Element) -> None:
         outcome = draft.extra(node, "outcome", NodeKind.MERGE, label, region)
         draft.exits[node.id] = outcome.id
         for handler in handlers:
-            draft.link(handler.body.id, outcome.id, node, region)
+            around = draft.drawing.around_both(node, handler.body)
+            draft.link(handler.body.id, outcome.id, node, around)
 
 
 def _distinct(handlers: list[Handler]) -> list[Handler]:
@@ -69,7 +71,8 @@ def _choose_handler(draft: Draft, node: Element, caught: str, handlers: list[Han
     names = [_type_names(draft, handler) for handler in handlers]
     answer = draft.inputs.answer(f"exception_{draft.short[node.id]}", names, node)
     for handler, name in zip(handlers, names, strict=True):
-        draft.link(choice.id, handler.body.id, node, region, guard=Guard(name, answer.equals(name)))
+        around, guard = draft.drawing.around_both(node, handler.body), answer.equals(name)
+        draft.link(choice.id, handler.body.id, node, around, guard=Guard(name, guard))
     leaves = _leaving(draft)
     draft.link(choice.id, leaves, node, ACTIVITY_REGION, guard=Guard("else", None))
 
