@@ -1,7 +1,10 @@
 """Formulas as text: reading what was printed gives the same formula; the corpus can be read."""
 
+import copy
+import gc
 import json
 import os
+import pickle
 from pathlib import Path
 
 import pytest
@@ -108,3 +111,30 @@ def _domain(type_):
     if isinstance(type_[0], int):
         return IntegerDomain(*type_)
     return EnumerationDomain(tuple(type_))
+
+
+@given(formulas, formulas)
+@settings(max_examples=100, deadline=None)
+def test_formulas_are_one_object_exactly_when_they_are_equal(left, right):
+    assert (left is right) == (repr(left) == repr(right))
+    assert pickle.loads(pickle.dumps(left)) is left
+    assert copy.deepcopy(left) is left
+
+
+def test_a_truth_is_no_number():
+    """Python says that True is 1; tables of formulas must not take one for the other."""
+    truth, number = f.eq(Var("x"), f.TRUE), f.eq(Var("x"), Const(1))
+    assert Const(True) != Const(1)
+    assert truth != number
+    assert [print_formula(one) for one in (truth, number)] == ["x=true", "x=1"]
+    assert f.both(f.eq(Var("n"), Const(1)), Const(1)) != f.eq(Var("n"), Const(1))
+    assert [Const(0) in {Const(False)}, Const(False) in {Const(False)}] == [False, True]
+
+
+def test_formulas_that_nobody_has_are_forgotten():
+    before = len(f._APPLIED)
+    made = f.both(*(f.eq(Var(f"only_here_{number}"), Const(number)) for number in range(50)))
+    assert len(f._APPLIED) > before + 50
+    del made
+    gc.collect()
+    assert len(f._APPLIED) == before

@@ -5,9 +5,11 @@ never by calling the classes from outside: they keep operands flat and constants
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
+from typing import TypeVar
+from weakref import WeakValueDictionary
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""
@@ -45,39 +47,69 @@ class Op(StrEnum):
     __hash__ = str.__hash__
 
 
-@dataclass(frozen=True, slots=True)
+# Formulas that are equal are one object, so that comparing them and looking them up costs nothing,
+# however deep they are. A table holds those that somebody still has.
+
+
+@dataclass(frozen=True, slots=True, eq=False, init=False, weakref_slot=True)
 class Const:
-    """A literal value."""
+    """A literal value. ``Const(True)`` is not ``Const(1)``, though Python calls them equal."""
 
     value: Literal
 
+    def __new__(cls, value: Literal) -> "Const":
+        return _CONSTANTS.get((value.__class__, value)) or _made(
+            _CONSTANTS, (value.__class__, value), cls, value=value
+        )
 
-@dataclass(frozen=True, slots=True)
+    def __reduce__(self) -> tuple[type["Const"], tuple[Literal]]:
+        """Copies and what is read back are the same object again."""
+        return Const, (self.value,)
+
+
+@dataclass(frozen=True, slots=True, eq=False, init=False, weakref_slot=True)
 class Var:
     """A variable; ``primed`` means its value in the next step."""
 
     name: str
     primed: bool = False
 
+    def __new__(cls, name: str, primed: bool = False) -> "Var":
+        key = (name, primed)
+        return _VARIABLES.get(key) or _made(_VARIABLES, key, cls, name=name, primed=primed)
 
-@dataclass(frozen=True, slots=True)
+    def __reduce__(self) -> tuple[type["Var"], tuple[str, bool]]:
+        return Var, (self.name, self.primed)
+
+
+@dataclass(frozen=True, slots=True, eq=False, init=False, weakref_slot=True)
 class Apply:
     """An operator applied to one or more operands."""
 
     op: Op
     args: tuple["Formula", ...]
-    _hash: int = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_hash", hash((self.op, self.args)))
-
-    def __hash__(self) -> int:
-        """Kept, for formulas are keys, and deep ones take long to walk through."""
-        return self._hash
+    def __new__(cls, op: Op, args: tuple["Formula", ...]) -> "Apply":
+        key = (op, args)
+        return _APPLIED.get(key) or _made(_APPLIED, key, cls, op=op, args=args)
 
     def __reduce__(self) -> tuple[type["Apply"], tuple[Op, tuple["Formula", ...]]]:
-        """Made anew when it is read back: hashes of text differ from process to process."""
         return Apply, (self.op, self.args)
+
+
+_T = TypeVar("_T", Const, Var, Apply)
+_K = TypeVar("_K")
+_CONSTANTS: WeakValueDictionary[tuple[type, Literal], Const] = WeakValueDictionary()
+_VARIABLES: WeakValueDictionary[tuple[str, bool], Var] = WeakValueDictionary()
+_APPLIED: WeakValueDictionary[tuple[Op, tuple["Formula", ...]], Apply] = WeakValueDictionary()
+
+
+def _made(table: WeakValueDictionary[_K, _T], key: _K, class_: type[_T], **fields: object) -> _T:
+    made = object.__new__(class_)
+    for name, value in fields.items():
+        object.__setattr__(made, name, value)
+    table[key] = made
+    return made
 
 
 Formula = Const | Var | Apply

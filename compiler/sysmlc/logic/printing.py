@@ -1,5 +1,7 @@
 """Formulas as text: the neutral form of corpus/gr1, extended by the operators of LTL."""
 
+from functools import lru_cache
+
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 
 _STRENGTH = {
@@ -17,6 +19,8 @@ _PREFIX = (Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY)
 _TIGHT = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 _FROM_THE_RIGHT = (Op.IMPLIES, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL)
 _FROM_THE_LEFT = (Op.IFF, Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD)
+_REMEMBERED = 1 << 14
+"""Texts that are kept: JSON and Markdown show the same formulas, machines of one kind have them."""
 
 
 def print_formula(formula: Formula) -> str:
@@ -29,6 +33,7 @@ def print_literal(value: Literal) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+@lru_cache(_REMEMBERED)
 def _print(formula: Formula, strength: int) -> str:
     match formula:
         case Const(value):
