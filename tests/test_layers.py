@@ -11,7 +11,7 @@ LAYERS = [
     {"sources"},
     {"diagnostics"},
     {"ir"},
-    {"logic", "recipe"},
+    {"logic", "recipe", "overlay"},
     {"synthesis", "simulation"},
     {"frontends", "passes", "backends"},
     {"driver", "config"},

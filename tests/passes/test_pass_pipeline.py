@@ -84,4 +84,4 @@ def test_invalid_graph_of_a_front_end_is_noticed_before_the_first_pass():
 def test_run_of_the_first_passes_needs_none_of_the_others():
     seen: list[str] = []
     run(Graph(), Sink(), until="classify", after_pass=lambda name, _: seen.append(name))
-    assert seen == ["resolve", "inherit", "classify"]
+    assert seen == ["resolve", "overlay", "inherit", "classify"]

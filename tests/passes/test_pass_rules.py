@@ -14,7 +14,7 @@ MODULES = {
     "inherit": range(200, 210),
     "classify": range(210, 260),
     "ports": range(300, 310),
-    "flows": range(310, 350),
+    "flows": range(310, 320),
     "behaviours": range(400, 410),
     "interactions": range(440, 450),
 }

@@ -40,6 +40,13 @@ def reading(function: _F) -> _F:
                 help="Configuration, instead of the nearest sysmlc.toml.",
             ),
             click.option(
+                "--overlay",
+                multiple=True,
+                type=click.Path(path_type=Path),
+                metavar="FILE",
+                help="Refine the model by this overlay, beside MODEL.overlay.yaml.",
+            ),
+            click.option(
                 "--strict-input", is_flag=True, help="Content that is not supported is an error."
             ),
             click.option("--verify-each", is_flag=True, help="Check the graph after each pass."),

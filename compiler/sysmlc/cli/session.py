@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation, Opened, Outcome, Request
 
+_AS_WRITTEN = frozenset({"resolve", "overlay"})
+"""Passes that only complete what the authors wrote."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
@@ -33,6 +35,7 @@ class Settings:
     emit: tuple[str, ...] = ()
     templates: Path | None = None
     diagrams: str | None = None
+    overlay: tuple[Path, ...] = ()
     has_cache: bool = True
 
     @property
@@ -140,6 +143,13 @@ def compile_unit(
     return _compile(_with_backends(request, emit), settings)
 
 
+def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Compilation":
+    """Read files as they are written: references resolved, nothing refined."""
+    request = _request(files, config, settings)
+    passes = tuple(one for one in request.pipeline() if one.name in _AS_WRITTEN)
+    return _compile(replace(request, passes=passes), settings)
+
+
 def outcome_of(
     unit: Unit, config: "Config", settings: Settings, has_files: bool = True
 ) -> "Outcome":
@@ -173,6 +183,7 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         templates=_templates(config, settings),
         strict_input=settings.strict_input or config.strict_input,
         diagrams=settings.diagrams or config.diagrams,
+        overlays=settings.overlay,
         verify_each=settings.verify_each,
         cache=cache.default() if settings.is_plain else None,
     )

@@ -91,6 +91,8 @@ def _is_input(_change: object, path: str) -> bool:
     """
     from sysmlc.config import FILE_NAME
     from sysmlc.driver.inputs import SUFFIXES
+    from sysmlc.overlay import SUFFIX
 
     file = Path(path)
-    return file.suffix.lower() in SUFFIXES or file.name in (FILE_NAME, "pyproject.toml")
+    is_model = file.suffix.lower() in SUFFIXES or file.name.endswith(SUFFIX)
+    return is_model or file.name in (FILE_NAME, "pyproject.toml")

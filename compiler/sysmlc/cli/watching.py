@@ -29,7 +29,7 @@ class Watch:
         self._settle = settle
         config, files = _unit_files(models, settings)
         self._config = config.folder
-        named = [*files, config.file] if config.file else files
+        named = [*files, *settings.overlay, *([config.file] if config.file else [])]
         self._named = [path.absolute() for path in named]
         self._paths = dict.fromkeys(self._named)
         self._built: Stamps = {}

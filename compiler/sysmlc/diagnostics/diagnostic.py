@@ -10,7 +10,8 @@ class Place:
     """Where something stands in an input.
 
     XML elements are found by ``ordinal`` (number of the start tag in document order, from 0),
-    because parsers' line numbers stop at 65,535; text by ``offset`` (bytes from 0). Line and
+    because parsers' line numbers stop at 65,535; text by ``offset`` (bytes from 0), which is
+    the ordinal too of elements that a text defines (an overlay). Line and
     column, where they are known already, count characters from 1. -1 and 0 mean unknown.
     """
 

@@ -66,6 +66,8 @@ def _plain(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, st
 
 def _spots(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
     """Offsets and XPaths of the places that can be found."""
+    if not xpath.is_xml(source.data):
+        return _plain(source, places)
     ordinals = {place.ordinal for place in places if place.ordinal >= 0}
     offsets = {place.offset for place in places if place.ordinal < 0 <= place.offset}
     spots = xpath.find(source, ordinals, offsets)
@@ -80,6 +82,8 @@ def _spots(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, st
 def _offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
     if not ordinals:
         return {}
+    if not xpath.is_xml(source.data):
+        return {ordinal: ordinal for ordinal in ordinals if ordinal <= len(source.data)}
     found: dict[int, int] = {}
     made = parser()
     last = max(ordinals)

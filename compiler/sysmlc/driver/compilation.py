@@ -19,6 +19,7 @@ from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
+from sysmlc.overlay import Refinement
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
@@ -51,6 +52,8 @@ class Request:
     templates: Path | None = None
     strict_input: bool = False
     diagrams: str = DERIVED
+    overlays: tuple[Path, ...] = ()
+    """Overlays that are named; those beside the inputs are found."""
     verify_each: bool = False
     frontends: tuple[Frontend, ...] | None = None
     passes: tuple[Pass, ...] | None = None
@@ -104,8 +107,8 @@ def open_unit(request: Request) -> Opened:
     """Read the inputs of a request, and what they refer to; parse nothing."""
     sink = Sink(request.config.rules)
     frontends = request.frontends or tuple(registry.frontends(request.cache))
-    root = unit_root(request.inputs, request.config.folder)
-    reading = read_unit(request.inputs, root, frontends, sink)
+    root = unit_root((*request.inputs, *request.overlays), request.config.folder)
+    reading = read_unit(request.inputs, root, frontends, sink, request.overlays)
     drawings = () if request.diagrams == DERIVED else beside(reading, root, sink)
     return Opened(root, reading, sink, frontends, drawings)
 
@@ -143,8 +146,12 @@ class _Run:
         inputs = tuple(
             InputFile(r.source.name, r.source.sha256, r.frontend.name) for r in reading.recognised
         )
-        inputs += tuple(InputFile(d.name, d.sha256, "diagrams") for d in self._drawings)
+        beside = [(laid.source, "overlay") for laid in reading.overlays]
+        beside += [(drawing, "diagrams") for drawing in self._drawings]
+        inputs += tuple(InputFile(one.name, one.sha256, what) for one, what in beside)
         broken = not self._read(reading)
+        said = [laid.refinement for laid in reading.overlays if laid.refinement is not None]
+        self._graph.store(Refinement, said)
         broken = not all(self._refine(step) for step in self._passes) or broken
         emitted = [] if broken else self._emit(inputs, reading)
         if self._request.strict_input:
@@ -158,7 +165,7 @@ class _Run:
             inputs=inputs,
             artefacts=tuple(emitted),
             withheld=withheld_artefacts(emitted, self._graph, diagnostics),
-            sources=(*reading.sources(), *self._drawings),
+            sources=self._sources(reading),
             is_complete=reading.is_complete
             and not broken
             and not any(map(_cuts_short, diagnostics)),
@@ -201,8 +208,13 @@ class _Run:
             self._sink.report(faults.INVALID_GRAPH, Subject(), where=what, problem=problem)
         return not problems
 
+    def _sources(self, reading: Reading) -> tuple[Source, ...]:
+        """Everything that findings and traces may point into."""
+        laid = (one.source for one in reading.overlays)
+        return (*reading.sources(), *laid, *self._drawings)
+
     def _emit(self, inputs: tuple[InputFile, ...], reading: Reading) -> list[Artefact]:
-        locate = Locator((*reading.sources(), *self._drawings))
+        locate = Locator(self._sources(reading))
         request = self._request
         options = EmitOptions(request.templates, inputs, locate, request.diagrams)
         failed: set[str] = set()

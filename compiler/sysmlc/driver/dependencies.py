@@ -42,6 +42,8 @@ def _parts(
     yield repr((sorted(config.rules.items()), config.suppress, _sorted(config.passes)))
     for found in opened.reading.recognised:
         yield repr((found.source.name, found.source.sha256, found.frontend.name))
+    for laid in opened.reading.overlays:
+        yield repr((laid.source.name, laid.source.sha256))
     for beside in opened.drawings:
         yield repr((beside.name, beside.sha256))
     for finding in opened.sink:

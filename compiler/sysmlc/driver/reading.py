@@ -8,7 +8,9 @@ from pathlib import Path
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
+from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay
 from sysmlc.frontends.base import Frontend, Mentioning
+from sysmlc.overlay import files_of
 from sysmlc.sources import Roots, Source, SourceError, load
 
 
@@ -18,6 +20,7 @@ class Reading:
 
     recognised: tuple[Recognised, ...]
     is_complete: bool
+    overlays: tuple[LoadedOverlay, ...] = ()
 
     def sources(self) -> tuple[Source, ...]:
         """The sources alone."""
@@ -25,15 +28,22 @@ class Reading:
 
 
 def read_unit(
-    inputs: Sequence[Path], root: Path, frontends: Sequence[Frontend], sink: Sink
+    inputs: Sequence[Path],
+    root: Path,
+    frontends: Sequence[Frontend],
+    sink: Sink,
+    overlays: Sequence[Path] = (),
 ) -> Reading:
     """The sources of the unit; what cannot be read is reported."""
     reader = _Reader(root, frontends, sink)
     for path, named in collect(inputs, root, sink).items():
         reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED)
+    for path in overlays:
+        reader.read_overlay(path, is_named=True)
     reader.follow_links()
     ordered = tuple(reader.found[name] for name in sorted(reader.found))
-    return Reading(ordered, not sink.has_errors())
+    laid = tuple(reader.overlays[name] for name in sorted(reader.overlays))
+    return Reading(ordered, not sink.has_errors(), laid)
 
 
 class _Reader:
@@ -41,6 +51,7 @@ class _Reader:
 
     def __init__(self, root: Path, frontends: Sequence[Frontend], sink: Sink) -> None:
         self.found: dict[str, Recognised] = {}
+        self.overlays: dict[str, LoadedOverlay] = {}
         self._root = root
         self._roots = Roots((root,))
         self._frontends = frontends
@@ -58,6 +69,24 @@ class _Reader:
         for found in recognise(sources, self._frontends, otherwise, self._sink):
             self.found[found.source.name] = found
             self._waiting.append((path, found))
+        overlay = beside(path) if sources else None
+        if overlay is not None:
+            self.read_overlay(overlay, is_named=False)
+
+    def read_overlay(self, path: Path, *, is_named: bool) -> None:
+        """Read an overlay, and the models that its entries name."""
+        real = Path(os.path.realpath(path))
+        if real in self._seen:
+            return
+        self._seen.add(real)
+        found = load_overlay(path, self._root, self._sink, is_named=is_named)
+        if found is None:
+            return
+        self.overlays[found.source.name] = found
+        for file in files_of(found.refinement) if found.refinement else ():
+            target = self._roots.resolve(path, file)
+            if target is not None:
+                self.read(target, None)
 
     def follow_links(self) -> None:
         """Read what the files refer to, and so on; what is elsewhere stays external."""

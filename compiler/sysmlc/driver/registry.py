@@ -27,11 +27,30 @@ GROUP = "sysmlc.backends"
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "ir"))
 _BACKENDS = {
     name: f"sysmlc.backends.{name}"
-    for name in ("contracts", "recipe", "plantuml", "graph", "ecore", "ir", "reqtable", "uml")
+    for name in (
+        "contracts",
+        "recipe",
+        "plantuml",
+        "graph",
+        "ecore",
+        "ir",
+        "reqtable",
+        "uml",
+        "aml",
+    )
 }
 _DEFAULT = frozenset({"contracts", "recipe", "plantuml"})
 """Ours with ``is_default``: the others are not even imported unless they are asked for."""
-_RULE_PACKAGES = ("frontends", "logic", "recipe", "simulation", "passes", "backends", "driver")
+_RULE_PACKAGES = (
+    "frontends",
+    "logic",
+    "recipe",
+    "overlay",
+    "simulation",
+    "passes",
+    "backends",
+    "driver",
+)
 
 
 class BackendError(Exception):

@@ -32,6 +32,7 @@ CLASSIFIERS = (
 BEHAVIORS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION)
 STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
+DOMAINS = ("physical", "information")
 
 _OPPOSITE = {"in": "out", "out": "in"}
 
@@ -172,6 +173,15 @@ def classifier_behavior(graph: Graph, classifier: Element) -> Element | None:
         found = graph.target(one, Edge.CLASSIFIER_BEHAVIOR)
         if found is not None:
             return found
+    return None
+
+
+def domain_of(graph: Graph, classifier: Element) -> str | None:
+    """``physical`` or ``information``: its own or that of the nearest general one that has it."""
+    for one in (classifier, *generals(graph, classifier)):
+        given = one.attrs.get("domain") or tag(graph, one, "domain")
+        if given in DOMAINS:
+            return str(given)
     return None
 
 

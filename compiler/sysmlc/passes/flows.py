@@ -9,6 +9,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
     conforms,
     connectors_of,
+    domain_of,
     end_direction,
     ends,
     flow_properties,
@@ -18,7 +19,6 @@ from sysmlc.ir.query import (
     is_boundary,
     opposite,
     role_of,
-    tag,
     type_of,
 )
 from sysmlc.passes.connector_paths import check_paths
@@ -32,8 +32,6 @@ from sysmlc.passes.flow_rules import (
     FLOW_WITHOUT_END,
     MIXED_DOMAINS,
 )
-
-_DOMAINS = ("physical", "information")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,18 +74,9 @@ def _attach(graph: Graph, flow: Element) -> None:
 
 
 def _give_domain(graph: Graph, flow: Element) -> None:
-    found = {_domain(graph, item) for item in graph.targets(flow, Edge.CONVEYS)}
+    found = {domain_of(graph, item) for item in graph.targets(flow, Edge.CONVEYS)}
     if len(found) == 1 and "domain" not in flow.attrs:
         graph.set(flow, domain=found.pop())
-
-
-def _domain(graph: Graph, classifier: Element) -> str | None:
-    """Domain of a classifier: its own or that of the nearest general one that has it."""
-    for one in (classifier, *generals(graph, classifier)):
-        given = one.attrs.get("domain") or tag(graph, one, "domain")
-        if given in _DOMAINS:
-            return str(given)
-    return None
 
 
 def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
@@ -99,8 +88,8 @@ def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
             sink.report(FLOW_WITHOUT_END, subject, flow=_title(graph, flow), end=name)
     if not graph.targets(flow, Edge.CONVEYS) and Edge.CONVEYS.value not in unresolved:
         sink.report(FLOW_OF_NOTHING, graph.subject(flow), flow=_title(graph, flow))
-    for port, along in _ported_ends(graph, flow):
-        _check_direction(graph, sink, flow, port, along)
+    for port, along, way in _ported_ends(graph, flow):
+        _check_direction(graph, sink, flow, port, along, way)
         _check_items(graph, sink, flow, port)
     _check_realizing(graph, sink, flow)
 
@@ -116,14 +105,15 @@ def _title(graph: Graph, relation: Element) -> str:
     return " - ".join(graph.qualified_name(one) if one else "?" for one in joined)
 
 
-def _ported_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str]]:
-    """Ports at the ends of the flow, with the direction that the flow has in each."""
-    for end, outside, inside in (
-        (flow_source(graph, flow), "out", "in"),
-        (flow_target(graph, flow), "in", "out"),
+def _ported_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
+    """Ports at the ends of the flow, with the direction that it has in each, and in words."""
+    for edge, outside, inside, way in (
+        (Edge.FLOW_SOURCE, "out", "in", "leaves"),
+        (Edge.FLOW_TARGET, "in", "out", "enters"),
     ):
-        if end is not None and end.kind is Kind.PORT:
-            yield end, inside if _runs_inside(graph, flow, end) else outside
+        for end in graph.targets(flow, edge):
+            if end.kind is Kind.PORT:
+                yield end, inside if _runs_inside(graph, flow, end) else outside, way
 
 
 def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
@@ -135,14 +125,16 @@ def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
     return False
 
 
-def _check_direction(graph: Graph, sink: Sink, flow: Element, port: Element, along: str) -> None:
+def _check_direction(
+    graph: Graph, sink: Sink, flow: Element, port: Element, along: str, way: str
+) -> None:
     if port.attrs.get("direction") != opposite(along):
         return
     sink.report(
         FLOW_AGAINST_PORT,
         graph.subject(flow),
         flow=_title(graph, flow),
-        way="leaves" if flow_source(graph, flow) is port else "enters",
+        way=way,
         port=graph.qualified_name(port),
         direction=port.attrs["direction"],
     )
@@ -207,7 +199,7 @@ def _settle_domain(graph: Graph, sink: Sink, connector: Element) -> None:
     carried: dict[str, list[str]] = {}
     for flow in graph.sources(connector, Edge.REALIZING):
         for item in graph.targets(flow, Edge.CONVEYS):
-            domain = _domain(graph, item)
+            domain = domain_of(graph, item)
             if domain is not None:
                 carried.setdefault(domain, []).append(f"'{item.name}'")
     if len(carried) == 1:

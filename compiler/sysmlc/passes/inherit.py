@@ -31,7 +31,7 @@ class Inherit:
     """
 
     name: ClassVar[str] = "inherit"
-    after: ClassVar[tuple[str, ...]] = ("resolve",)
+    after: ClassVar[tuple[str, ...]] = ("resolve", "overlay")
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Add the edges and report; see the class."""

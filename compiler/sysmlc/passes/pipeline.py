@@ -12,6 +12,7 @@ from sysmlc.passes.base import Pass
 
 NAMES = (
     "resolve",
+    "overlay",
     "inherit",
     "classify",
     "ports",

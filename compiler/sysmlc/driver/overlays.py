@@ -1,0 +1,42 @@
+"""Overlays of a unit: those beside its models, and those that are named."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from sysmlc.diagnostics import Sink
+from sysmlc.driver import faults
+from sysmlc.driver.inputs import name_of
+from sysmlc.overlay import SUFFIX, Refinement, read
+from sysmlc.sources import Roots, Source, SourceError
+from sysmlc.sources.limits import DEFAULT_LIMITS
+from sysmlc.sources.whole import read_whole
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedOverlay:
+    """The file of an overlay and what it says; nothing when it cannot be used."""
+
+    path: Path
+    source: Source
+    refinement: Refinement | None
+
+
+def beside(model: Path) -> Path | None:
+    """The overlay that lies beside a model: ``gate.overlay.yaml`` for ``gate.aml``."""
+    path = model.with_name(model.stem + SUFFIX)
+    return path if os.path.lexists(path) else None
+
+
+def load_overlay(path: Path, root: Path, sink: Sink, *, is_named: bool) -> LoadedOverlay | None:
+    """Read an overlay. What cannot be read, or leads out of the root unnamed, is reported."""
+    name = name_of(path, root)
+    if not is_named and not Roots((root,)).allows(path):
+        sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
+        return None
+    try:
+        source = Source(name, read_whole(path, name, DEFAULT_LIMITS))
+    except SourceError as problem:
+        faults.report_unreadable(problem, sink)
+        return None
+    return LoadedOverlay(path, source, read(source, sink))

@@ -1,0 +1,140 @@
+"""What one overlay says, as values with the places where it says it."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Place, Subject
+from sysmlc.ir import AttrValue
+
+
+class Spot(NamedTuple):
+    """Where something stands: line and column from 1, and the byte from 0."""
+
+    line: int = 1
+    column: int = 1
+    offset: int = 0
+
+
+class Term(NamedTuple):
+    """A word of the overlay: a name, an id, a path or ``file#qualified name``."""
+
+    text: str
+    spot: Spot
+
+
+class Key(NamedTuple):
+    """What an entry is about: an id or a path, and the path that helps when the id is gone."""
+
+    text: str
+    path: str
+    spot: Spot
+
+
+@dataclass(frozen=True, slots=True)
+class ItemEntry:
+    """A kind of thing that flows. A plain name makes a new block."""
+
+    key: Key
+    domain: str
+    description: str
+    specializes: tuple[Term, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PortEntry:
+    """What the author says of a port; empty and None where the model is left as it is."""
+
+    key: Key
+    direction: str
+    type: Term | None
+
+
+@dataclass(frozen=True, slots=True)
+class FlowEntry:
+    """An item that flows over a connector, to one end, from one end, or both ways."""
+
+    item: Term
+    source: Term | None
+    target: Term | None
+    is_both: bool
+    spot: Spot
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectorEntry:
+    """Item flows of a connector."""
+
+    key: Key
+    flows: tuple[FlowEntry, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterEntry:
+    """A parameter of an operation, in its place among the others."""
+
+    name: Term
+    type: Term | None
+    direction: str
+
+
+@dataclass(frozen=True, slots=True)
+class OperationEntry:
+    """An operation; ``parameters`` is None when those of its method count."""
+
+    name: Term
+    parameters: tuple[ParameterEntry, ...] | None
+    method: Term | None
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class ValueEntry:
+    """A value property, for what a plant does not say of its state."""
+
+    name: Term
+    type: Term | None
+    default: AttrValue
+
+
+@dataclass(frozen=True, slots=True)
+class BlockEntry:
+    """What the author adds to a block."""
+
+    key: Key
+    specializes: tuple[Term, ...]
+    values: tuple[ValueEntry, ...]
+    operations: tuple[OperationEntry, ...]
+    behavior: Term | None
+    calls: tuple[tuple[Term, Term], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Allocation:
+    """Something of the model that is allocated to something else of it."""
+
+    source: Term
+    target: Term
+    spot: Spot
+
+
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """One overlay. Entries are in an order of their own, whatever order the file has."""
+
+    file: str
+    package: str
+    spot: Spot
+    items: tuple[ItemEntry, ...]
+    ports: tuple[PortEntry, ...]
+    connectors: tuple[ConnectorEntry, ...]
+    blocks: tuple[BlockEntry, ...]
+    allocations: tuple[Allocation, ...]
+
+    def subject(self, term: Term | Key) -> Subject:
+        """A word of the overlay as the subject of a finding."""
+        return Subject(term.text, place=place_of(self.file, term.spot))
+
+
+def place_of(file: str, spot: Spot) -> Place:
+    """The place of a spot in a file."""
+    return Place(file, line=spot.line, column=spot.column)

@@ -1,0 +1,226 @@
+"""YAML as a tree in which every value knows where it stands; nothing of it is ever executed.
+
+The tree is built from events (YAML 1.2 chapter 3): no depth of a file uses up our stack, and an
+alias shares what it stands for, so that a small file cannot grow without end.
+"""
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from sysmlc.overlay.model import Spot
+
+if TYPE_CHECKING:
+    from ruamel.yaml.error import StreamMark
+    from ruamel.yaml.events import CollectionStartEvent, Event
+
+Scalar = str | int | float | bool | None
+
+_LARGEST = 4 << 20
+_DEEPEST = 20
+_MOST = 100_000
+_NEWLINE = re.compile("\r\n|\r|\n")
+_STRING = "tag:yaml.org,2002:str"
+_CONSTANTS: dict[str, Scalar] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+}
+_INTEGER = re.compile(r"[-+]?[0-9]{1,15}")
+_REAL = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]{1,3})?")
+
+
+class TreeError(Exception):
+    """The text is no YAML that we read; ``spot`` says where."""
+
+    def __init__(self, problem: str, spot: Spot) -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.spot = spot
+
+
+@dataclass(slots=True)
+class Value:
+    """A scalar, a list or a mapping. ``size`` counts what is in it, aliases as often as used."""
+
+    spot: Spot
+    scalar: Scalar = None
+    text: str = ""
+    """A scalar as it is written."""
+    items: "list[Value] | None" = None
+    entries: "dict[str, Value] | None" = None
+    keys: dict[str, Spot] = field(default_factory=dict)
+    again: list[tuple[str, Spot]] = field(default_factory=list)
+    """Keys that stand there once more."""
+    size: int = 1
+
+    def plain(self) -> object:
+        """The value as JSON knows it."""
+        if self.items is not None:
+            return [one.plain() for one in self.items]
+        if self.entries is not None:
+            return {key: one.plain() for key, one in self.entries.items()}
+        return self.scalar
+
+
+def parse(data: bytes) -> Value:
+    """The document in a file; an empty file is an empty mapping. Raises TreeError."""
+    if len(data) > _LARGEST:
+        raise TreeError(f"it is larger than {_LARGEST >> 20} MB", Spot())
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode("utf-8", "replace")
+        spot = Lines(before, 0).spot(len(before))
+        raise TreeError("it is not UTF-8 here", spot) from None
+    return _Builder(text, len(data) - len(text.encode())).document()
+
+
+class Lines:
+    """From characters to lines, columns and bytes."""
+
+    def __init__(self, text: str, mark: int) -> None:
+        self._text = text
+        self._starts = [0, *(found.end() for found in _NEWLINE.finditer(text))]
+        self._bytes = [mark]
+        for start, end in zip(self._starts, self._starts[1:], strict=False):
+            self._bytes.append(self._bytes[-1] + len(text[start:end].encode()))
+
+    def spot(self, index: int) -> Spot:
+        """The place of a character, counted from 0."""
+        line = bisect_right(self._starts, index) - 1
+        start = self._starts[line]
+        offset = self._bytes[line] + len(self._text[start:index].encode())
+        return Spot(line + 1, index - start + 1, offset)
+
+
+class _Builder:
+    """Builds the tree while events arrive."""
+
+    def __init__(self, text: str, mark: int) -> None:
+        self._text = text
+        self._lines = Lines(text, mark)
+        self._open: list[_Open] = []
+        self._anchors: dict[str, Value | None] = {}
+        self._top: Value | None = None
+
+    def document(self) -> Value:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.error import MarkedYAMLError, YAMLError
+        from ruamel.yaml.reader import ReaderError
+
+        try:
+            for number, event in enumerate(YAML(typ="rt", pure=True).parse(self._text)):
+                if number > _MOST:
+                    raise TreeError("it has too many values", self._spot(event.start_mark))
+                self._take(event)
+        except MarkedYAMLError as error:
+            mark = error.problem_mark or error.context_mark
+            raise TreeError(_first_line(error.problem or error), self._spot(mark)) from None
+        except ReaderError as error:
+            spot = self._lines.spot(error.position)
+            raise TreeError(f"the character #x{error.character:04x} is not allowed", spot) from None
+        except (YAMLError, ValueError) as error:
+            raise TreeError(_first_line(error), Spot()) from None
+        return self._top or Value(Spot(), entries={})
+
+    def _spot(self, mark: "StreamMark | None") -> Spot:
+        return Spot() if mark is None else self._lines.spot(mark.index)
+
+    def _take(self, event: "Event") -> None:
+        from ruamel.yaml import events
+
+        spot = self._spot(event.start_mark)
+        match event:
+            case events.AliasEvent():
+                self._add(self._shared(str(event.anchor), spot), "")
+            case events.ScalarEvent():
+                _refuse_tag(event.tag, spot)
+                scalar = event.value if event.style else _resolved(event.value)
+                self._add(Value(spot, scalar, event.value), event.anchor or "")
+            case events.MappingStartEvent():
+                self._start(event, Value(spot, entries={}))
+            case events.SequenceStartEvent():
+                self._start(event, Value(spot, items=[]))
+            case events.MappingEndEvent() | events.SequenceEndEvent():
+                done = self._open.pop()
+                self._add(done.value, done.anchor)
+            case events.DocumentStartEvent() if self._top is not None:
+                raise TreeError("a second document begins", spot)
+
+    def _shared(self, name: str, spot: Spot) -> Value:
+        if name not in self._anchors:
+            raise TreeError(f"there is no anchor '{name}' before this", spot)
+        known = self._anchors[name]
+        if known is None:
+            raise TreeError(f"'{name}' contains itself", spot)
+        return known
+
+    def _start(self, event: "CollectionStartEvent", made: Value) -> None:
+        _refuse_tag(event.tag, made.spot)
+        if len(self._open) == _DEEPEST:
+            raise TreeError("it is nested too deeply", made.spot)
+        if event.anchor:
+            self._anchors[event.anchor] = None
+        self._open.append(_Open(made, event.anchor or ""))
+
+    def _add(self, value: Value, anchor: str) -> None:
+        if anchor:
+            self._anchors[anchor] = value
+        if not self._open:
+            self._top = value
+            return
+        self._open[-1].take(value)
+        if self._open[-1].value.size > _MOST:
+            raise TreeError("its aliases make it too large", value.spot)
+
+
+@dataclass(slots=True)
+class _Open:
+    """A list or mapping that is not closed; ``key`` waits for its value."""
+
+    value: Value
+    anchor: str
+    key: tuple[str, Spot] | None = None
+
+    def take(self, inner: Value) -> None:
+        self.value.size += inner.size
+        if self.value.items is not None:
+            self.value.items.append(inner)
+        elif self.key is None:
+            self.key = (_key(inner), inner.spot)
+        else:
+            self._put(*self.key, inner)
+            self.key = None
+
+    def _put(self, key: str, spot: Spot, inner: Value) -> None:
+        if self.value.entries is None or key in self.value.entries:
+            self.value.again.append((key, spot))
+            return
+        self.value.entries[key] = inner
+        self.value.keys[key] = spot
+
+
+def _key(value: Value) -> str:
+    if value.items is not None or value.entries is not None:
+        raise TreeError("a key is a word, not a list or a mapping", value.spot)
+    return value.text
+
+
+def _refuse_tag(tag: object, spot: Spot) -> None:
+    if tag is not None and str(tag) not in ("!", _STRING):
+        raise TreeError(f"the tag {tag} is not read", spot)
+
+
+def _resolved(text: str) -> Scalar:
+    """What a plain scalar means in the core schema (YAML 1.2.2 clause 10.3.2)."""
+    if text in _CONSTANTS:
+        return _CONSTANTS[text]
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    return float(text) if _REAL.fullmatch(text) else text
+
+
+def _first_line(problem: object) -> str:
+    return (str(problem).strip().splitlines() or ["it cannot be read"])[0]

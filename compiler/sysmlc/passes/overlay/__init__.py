@@ -1,0 +1,30 @@
+"""Pass ``overlay``: what overlays add to the model (thesis 3.4)."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.overlay import Refinement
+
+
+@dataclass(frozen=True, slots=True)
+class Overlay:
+    """Add item types, flows, port directions, operations, behaviours and allocations.
+
+    Assumes resolved references, and overlays that the driver has stored in the graph.
+    Guarantees: each entry is in the graph as an author of SysML would have drawn it, or is
+    reported where it stands in the overlay. It runs before features are inherited and ports
+    directed, so that what is added is inherited, directed and checked like all else.
+    """
+
+    name: ClassVar[str] = "overlay"
+    after: ClassVar[tuple[str, ...]] = ("resolve",)
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Add in place and report; see the class."""
+        refinements = graph.derived(Refinement)
+        if refinements:
+            from sysmlc.passes.overlay.adding import add_all
+
+            add_all(refinements, graph, sink)

@@ -1,0 +1,214 @@
+"""Finds what the words of an overlay mean: by id first, then by path or qualified name."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Rule, Sink
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
+from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
+from sysmlc.overlay import Key, Refinement, Term
+from sysmlc.overlay.model import Spot
+from sysmlc.overlay.paths import beside, join, split
+from sysmlc.passes.overlay import rules
+from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
+from sysmlc.suggest import did_you_mean
+
+_PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
+_TELLING = 5_000
+"""Names among which the nearest is looked for; comparing more takes seconds."""
+_LISTED = 5
+
+
+class Sort(NamedTuple):
+    """What a word may mean: kinds of elements, and how a sentence calls them."""
+
+    title: str
+    kinds: tuple[Kind, ...]
+
+
+BLOCK = Sort("block", (Kind.CLASS, Kind.COMPONENT))
+TYPE = Sort("type", tuple(kind for kind in CLASSIFIERS if kind not in BEHAVIORS))
+PORT = Sort("port", (Kind.PORT,))
+FEATURE = Sort("port or part", (Kind.PORT, Kind.PROPERTY))
+CONNECTOR = Sort("connector", (Kind.CONNECTOR,))
+OPERATION = Sort("operation", (Kind.OPERATION,))
+BEHAVIOR = Sort("activity or state machine", (Kind.ACTIVITY, Kind.STATE_MACHINE))
+PACKAGE = Sort("package", (Kind.PACKAGE,))
+ANYTHING = Sort("element", ())
+
+
+@dataclass(slots=True)
+class Finder:
+    """Looks in one graph for what one overlay names, and adds what it says."""
+
+    graph: Graph
+    sink: Sink
+    refinement: Refinement
+    items: dict[str, Element] = field(default_factory=dict)
+    """Item types by the keys of their entries."""
+    _other_ids: dict[str, Element] = field(default_factory=dict)
+    _roots: dict[str, list[Element]] = field(default_factory=dict)
+
+    # -- what words mean -----------------------------------------------------------------------
+
+    def entry(self, key: Key, sort: Sort) -> Element | None:
+        """What an entry is about; None when that is not clear, which is reported."""
+        found = self.named(key.text, sort)
+        if not found and key.path:
+            found = self.named(key.path, sort)
+            if len(found) == 1:
+                new = found[0].id
+                self.report(rules.BY_PATH, key, id=key.text, path=key.path, new=new)
+        return self._only(Term(key.text, key.spot), found, sort, key.path)
+
+    def term(self, term: Term, sort: Sort) -> Element | None:
+        """What a word means; None when that is not clear, which is reported."""
+        if sort is TYPE:
+            known = self.items.get(term.text) or self._primitive(term.text)
+            if known is not None:
+                return known
+        return self._only(term, self.named(term.text, sort), sort, "")
+
+    def named(self, text: str, sort: Sort) -> list[Element]:
+        """Everything that an id, a path, a qualified name or ``file#qualified name`` means."""
+        by_id = self._by_id(text)
+        if by_id is not None:
+            return _unique([self._as(by_id, sort)])
+        file, sign, name = text.partition("#")
+        unit_name = beside(self.refinement.file, file) if sign else ""
+        words = name if sign else text
+        for names in dict.fromkeys((split(words), tuple(words.split("::")))):
+            found = [self._as(one, sort) for one in self._along(names, unit_name)]
+            if any(found):
+                return _unique(found)
+        return []
+
+    def _by_id(self, text: str) -> Element | None:
+        found = self.graph.get(text)
+        if found is not None:
+            return found
+        if not self._other_ids:
+            self._other_ids = dict(_other_ids(self.graph))
+        return self._other_ids.get(text) or self._other_ids.get(plain(text))
+
+    def _along(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
+        if not self._roots:
+            for root in self.graph.roots():
+                self._roots.setdefault(root.name, []).append(root)
+        level = self._roots.get(names[0], [])
+        for name in names[1:]:
+            inside = [one for top in level for one in self._inside(top, name)]
+            level = list(dict.fromkeys(inside))
+        for one in level:
+            if not file or one.source == file:
+                yield one
+
+    def _inside(self, top: Element, name: str) -> list[Element]:
+        """What has this name in an element, or in what it is an instance or usage of."""
+        waiting = [top]
+        for one in waiting[:]:
+            waiting += self.graph.targets(one, Edge.INSTANCE_OF)
+            type_ = type_of(self.graph, one)
+            waiting += [] if type_ is None else [type_]
+        for one in waiting[:]:
+            waiting += generals(self.graph, one)
+        for one in waiting:
+            found = [inner for inner in self.graph.owned(one) if inner.name == name]
+            if found:
+                return found
+        return []
+
+    def _as(self, element: Element, sort: Sort) -> Element | None:
+        """The element, or what classifies it when only that is of the sort."""
+        if not sort.kinds or element.kind in sort.kinds:
+            return element
+        if sort is FEATURE:
+            return self.graph.target(element, Edge.REPRESENTS)
+        if sort in (BLOCK, TYPE):
+            found = self.graph.target(element, Edge.INSTANCE_OF) or type_of(self.graph, element)
+            if found is not None and found.kind in sort.kinds:
+                return found
+        return None
+
+    def _primitive(self, name: str) -> Element | None:
+        if name not in _PRIMITIVES:
+            return None
+        for known in self.graph.of_kind(Kind.DATA_TYPE):
+            if known.subkind == "primitive" and known.name == name:
+                return known
+        href = PRIMITIVE_TYPES + name
+        attrs: dict[str, AttrValue] = {"external": True, "href": href, "subkind": "primitive"}
+        return self.graph.add(Element(derived_id(href, "stub"), Kind.DATA_TYPE, name, attrs=attrs))
+
+    # -- what is reported ----------------------------------------------------------------------
+
+    def report(self, rule: Rule, term: Term | Key, **facts: str) -> None:
+        """Report a rule about a word of the overlay."""
+        self.sink.report(rule, self.refinement.subject(term), notes=(), help="", **facts)
+
+    def _only(self, term: Term, found: list[Element], sort: Sort, path: str) -> Element | None:
+        if len(found) == 1:
+            return found[0]
+        if found:
+            listed = self._listed(found)
+            self.report(rules.AMBIGUOUS, term, word=term.text, sort=sort.title, listed=listed)
+        elif (other := self.named(term.text, ANYTHING)) and len(other) == 1:
+            kind = other[0].kind.value
+            self.report(rules.WRONG_SORT, term, word=term.text, sort=sort.title, kind=kind)
+        else:
+            advice = did_you_mean(path or term.text, self.known(sort))
+            self.report(rules.NO_MATCH, term, word=term.text, sort=sort.title, advice=advice)
+        return None
+
+    def _listed(self, found: Iterable[Element]) -> str:
+        words = [f"{self.path(one)} ({one.id})" for one in found]
+        return ", ".join(words[:_LISTED]) + (", ..." if len(words) > _LISTED else "")
+
+    def known(self, sort: Sort) -> list[str]:
+        """Paths of what a word of this sort may mean, as far as a person can choose among them."""
+        elements = self.graph.of_kind(*sort.kinds) if sort.kinds else list(self.graph)
+        own = [one for one in elements if one.name and not one.attrs.get("library")]
+        return [*(self.items if sort is TYPE else ()), *(self.path(one) for one in own[:_TELLING])]
+
+    def path(self, element: Element) -> str:
+        """Path by which an element can be named."""
+        names = [element.name, *(one.name for one in self.graph.ancestors(element))]
+        return join(reversed(names)) if all(names) else element.id
+
+    # -- what is added -------------------------------------------------------------------------
+
+    def add(
+        self, id: str, kind: Kind, name: str, owner: str | None, spot: Spot, **attrs: AttrValue
+    ) -> Element:
+        """The element of the overlay with this id, new or known, with these attributes."""
+        known = self.graph.get(id)
+        if known is None:
+            file = self.refinement.file
+            known = self.graph.add(Element(id, kind, name, owner, spot.offset, file, attrs={}))
+        self.graph.set(known, **attrs)
+        return known
+
+
+def _other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
+    """Ids that stand for an element beside its own: of repeated interfaces, in another spelling."""
+    for element in graph:
+        yield plain(element.id), element
+    for element in graph.of_kind(Kind.PROPERTY, Kind.INSTANCE):
+        pairs = element.attrs.get("interface_ids")
+        for pair in pairs if isinstance(pairs, tuple) else ():
+            port = graph.get(str(pair[0])) if isinstance(pair, tuple) else None
+            if port is not None and isinstance(pair, tuple):
+                yield from ((word(str(pair[1])), port) for word in _SPELLINGS)
+
+
+def plain(id: str) -> str:
+    """An id without braces and in lower case: writers of AutomationML differ in both."""
+    return id.strip().strip("{}").lower()
+
+
+_SPELLINGS: tuple[Callable[[str], str], ...] = (str, plain)
+
+
+def _unique(found: Iterable[Element | None]) -> list[Element]:
+    return list(dict.fromkeys(one for one in found if one is not None))
