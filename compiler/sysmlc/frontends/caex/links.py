@@ -37,9 +37,9 @@ class Links:
 
     def lower(self, document: Document) -> None:
         """Add a connector for each link of a file; those of classes come first."""
-        for node in document.nodes:
-            if node.tag == "InternalLink":
-                self._link(node, document)
+        for row, tag in enumerate(document.tags):
+            if tag == "InternalLink":
+                self._link(document.node(row), document)
 
     def _link(self, node: Node, document: Document) -> None:
         node.verdict = Verdict.MAPPED
@@ -130,15 +130,16 @@ class Links:
     def _connector(self, node: Node, document: Document, holder: Site, ends: list[End]) -> None:
         top = holder.root
         owner = top.instance or (top.own.id if top.own else None)
-        if any(end.site.root is not top for end in ends) and owner is not None:
+        crosses = any(end.site.root is not top for end in ends)
+        if crosses and owner is not None:
             owner = self._context.graph[owner].owner
         connector = self._context.add(Kind.CONNECTOR, node, document, owner)
         for side, end in zip(SIDES, ends, strict=True):
-            self._add_end(connector, node, side, end, top)
+            self._add_end(connector, node, side, end, crosses)
         if not top.instance and owner is not None:
             self._drawn.add((owner, _key(ends, top)))
 
-    def _add_end(self, connector: Element, node: Node, side: str, end: End, top: Site) -> None:
+    def _add_end(self, connector: Element, node: Node, side: str, end: End, crosses: bool) -> None:
         graph = self._context.graph
         made = Element(
             f"{connector.id}#{side}",
@@ -151,7 +152,7 @@ class Links:
         graph.add(made)
         graph.connect(Edge.END, connector.id, made.id)
         graph.connect(Edge.ROLE, made.id, end.port)
-        if end.site.root is not top and end.site.root.instance:
+        if crosses and end.site.root.instance:
             graph.connect(Edge.PATH, made.id, end.site.root.instance)
         for part in end.site.parts_below(end.site.root):
             graph.connect(Edge.PATH, made.id, part)

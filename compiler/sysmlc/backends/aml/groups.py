@@ -1,0 +1,48 @@
+"""Facets and groups: internal elements that only show others (IEC 62714-1)."""
+
+from sysmlc.backends.aml import header
+from sysmlc.backends.aml.book import Book, File
+from sysmlc.backends.aml.node import Node
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.identity import derived_id
+
+_BASE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
+ROLES = {Kind.FACET: f"{_BASE}/Facet", Kind.GROUP: f"{_BASE}/Group"}
+"""Role classes of the standard that make an internal element one of these."""
+_TAGS = {
+    Kind.PROPERTY: ("Attribute", "RefAttributeType"),
+    Kind.PORT: ("ExternalInterface", "RefBaseClassPath"),
+}
+
+
+def write(book: Book, element: Element, file: File) -> Node:
+    """The internal element of a facet or group, with mirrors of what it shows."""
+    node = book.put(element, Node("InternalElement", {"Name": element.name}))
+    node.attributes["ID"] = book.ids.of(element)
+    header.write(book, element, node)
+    if "associated_facet" in element.attrs:
+        facet = node.add(Node("Attribute", {"Name": "AssociatedFacet"}))
+        facet.attributes["AttributeDataType"] = "xs:string"
+        facet.say("Value", str(element.attrs["associated_facet"]))
+    for target in book.graph.targets(element, Edge.REFERENCES):
+        book.say(Edge.REFERENCES, element, target)
+        _mirror(book, element, node, target)
+    node.add(Node("RoleRequirements", {"RefBaseRoleClassPath": _role(book, element, file)}))
+    return node
+
+
+def _role(book: Book, element: Element, file: File) -> str:
+    """The role class as it is written in this file: it may be behind an alias."""
+    plain = ROLES[element.kind]
+    for id, place in book.places.items():
+        if "/".join(place.names) == plain:
+            return book.path(book.graph[id], file) or plain
+    return plain
+
+
+def _mirror(book: Book, element: Element, above: Node, target: Element) -> None:
+    tag, attribute = _TAGS.get(target.kind, ("InternalElement", "RefBaseSystemUnitPath"))
+    node = above.add(Node(tag, {"Name": target.name}))
+    if tag != "Attribute":
+        node.attributes["ID"] = derived_id(element.id, f"caex mirror {target.id}")
+    book.late.append((node, attribute, target))

@@ -1,0 +1,147 @@
+"""External interfaces: ports, with direction, cardinality, category and values."""
+
+from sysmlc.backends.aml import header
+from sysmlc.backends.aml.attributes import unresolved
+from sysmlc.backends.aml.book import Book, File
+from sysmlc.backends.aml.families import Family, is_inline
+from sysmlc.backends.aml.node import Node
+from sysmlc.backends.aml.rules import UNSAID_EDGE
+from sysmlc.backends.aml.values import text_of, type_of
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_DIRECTIONS = {"in": "In", "out": "Out", "inout": "InOut"}
+_VALUE = "value."
+
+
+def write(book: Book, port: Element, file: File, above: Node) -> Node:
+    """Add the external interface of a port, with those below it."""
+    top = _interface(book, port, file, above)
+    waiting = [(top, _own_type(book, port))]
+    while waiting:
+        node, type_ = waiting.pop()
+        for one in book.owned(type_):
+            if one.kind is Kind.PORT:
+                inner = _interface(book, one, file, node)
+                waiting.append((inner, _own_type(book, one)))
+    return top
+
+
+def _interface(book: Book, port: Element, file: File, above: Node) -> Node:
+    node = book.put(port, Node("ExternalInterface", {"Name": port.name}))
+    node.attributes["ID"] = book.ids.of(port)
+    above.add(node)
+    above.interfaces[port.id] = node
+    for target in book.graph.targets(port, Edge.REDEFINES):
+        above.interfaces.setdefault(target.id, node)
+    _refer(book, port, node, file)
+    say(port, node)
+    header.write(book, port, node)
+    return node
+
+
+def _refer(book: Book, port: Element, node: Node, file: File) -> None:
+    graph = book.graph
+    master = graph.target(port, Edge.MIRRORS)
+    types = graph.targets(port, Edge.TYPED_BY)
+    if master is not None:
+        for one in types:
+            book.say(Edge.TYPED_BY, port, one)
+        book.say(Edge.MIRRORS, port, master)
+        book.late.append((node, "RefBaseClassPath", master))
+        return
+    path = class_path(book, port, file) or unresolved(port, "ExternalInterface")
+    if path:
+        node.attributes["RefBaseClassPath"] = path
+
+
+def class_path(book: Book, port: Element, file: File) -> str:
+    """Path of the interface class that types a port, or the empty string."""
+    graph = book.graph
+    for one in graph.targets(port, Edge.TYPED_BY):
+        declared = graph.target(one, Edge.SPECIALIZES) if is_inline(one) else one
+        if is_inline(one):
+            book.said.add(one.id)
+            book.say(Edge.TYPED_BY, port, one)
+        if declared is None:
+            continue
+        place = book.places.get(declared.id)
+        if place is not None and place.family is Family.INTERFACE:
+            path = book.path(declared, file)
+            if path:
+                book.say(Edge.TYPED_BY, port, one)
+                return path
+        facts = {"edge": "typed-by", "kind": str(port.kind), "target": str(declared.kind)}
+        book.losses.note(UNSAID_EDGE, port, **facts)
+        book.say(Edge.TYPED_BY, port, one)
+    return ""
+
+
+def _own_type(book: Book, port: Element) -> Element | None:
+    """The class that was made for an interface with interfaces of its own."""
+    type_ = book.graph.target(port, Edge.TYPED_BY)
+    return type_ if type_ is not None and is_inline(type_) else None
+
+
+def say(element: Element, node: Node) -> None:
+    """Add as attributes what a port, or a slot for one, says."""
+    attrs = element.attrs
+    direction = _DIRECTIONS.get(str(attrs.get("direction")))
+    if direction:
+        _attribute(node, "Direction", direction)
+    if "multiplicity" in attrs:
+        _cardinality(node, str(attrs["multiplicity"]))
+    if "category" in attrs:
+        _attribute(node, "Category", str(attrs["category"]))
+    for key in sorted(attrs):
+        if key.startswith(_VALUE):
+            _value(node, key.removeprefix(_VALUE).split("."), attrs[key])
+
+
+def _cardinality(node: Node, multiplicity: str) -> None:
+    lower, between, upper = multiplicity.partition("..")
+    made = node.add(Node("Attribute", {"Name": "Cardinality"}))
+    _attribute(made, "MinOccur", lower)
+    _attribute(made, "MaxOccur", upper if between else lower)
+
+
+def _attribute(node: Node, name: str, value: AttrValue) -> None:
+    made = node.child("Attribute", name) or node.add(Node("Attribute", {"Name": name}))
+    if type_of(value):
+        made.attributes["AttributeDataType"] = type_of(value)
+    made.say("Value", text_of(value))
+
+
+def _value(node: Node, names: list[str], value: AttrValue) -> None:
+    for name in names[:-1]:
+        node = node.child("Attribute", name) or node.add(Node("Attribute", {"Name": name}))
+    _attribute(node, names[-1], value)
+
+
+# -- in an instance ----------------------------------------------------------------------------
+
+
+def repeated(book: Book, port: Element, file: File, above: Node) -> Node:
+    """The interface of an internal element that its class has too; added when it is not there."""
+    for one in [*reversed(_around(book, port)), port]:
+        known = above.interfaces.get(one.id)
+        if known is None:
+            known = above.add(Node("ExternalInterface", {"Name": one.name}))
+            above.interfaces[one.id] = known
+            path = class_path(book, one, file)
+            if path:
+                known.attributes["RefBaseClassPath"] = path
+        above = known
+    return above
+
+
+def _around(book: Book, port: Element) -> list[Element]:
+    """The ports that a port is nested in, nearest first."""
+    graph, found = book.graph, []
+    owner = graph.owner(port)
+    while owner is not None and is_inline(owner) and owner.subkind == "external-interface":
+        outer = graph.source(owner, Edge.TYPED_BY)
+        if outer is None or outer in found:
+            break
+        found.append(outer)
+        owner = graph.owner(outer)
+    return found

@@ -1,0 +1,31 @@
+"""What CAEX says in other words than the graph, and what it cannot say."""
+
+import pytest
+from writing_aml import at, read, refined, root, round_trip, saved
+
+from sysmlc.backends.aml import rules
+from sysmlc.sources import Source
+
+RULES = (
+    rules.UNSAID_KIND,
+    rules.UNSAID_EDGE,
+    rules.UNSAID_ATTRIBUTE,
+    rules.MOVED,
+    rules.APPROXIMATED,
+    rules.ILLEGAL,
+    rules.ADDED,
+)
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
+    assert rule.code in [one[:5] for one in saved(refined(rule.wrong))[1]]
+    assert saved(refined(rule.right))[1] == []
+
+
+def test_a_loss_is_counted_and_told_once():
+    machines = "".join(f'    StateMachine m{n} "M{n}"\n' for n in range(3))
+    gate = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
+    assert saved(refined(gate + machines))[1] == [
+        "SM740 AutomationML has no place for StateMachine (3 left out of the saved plant)"
+    ]
