@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from html import unescape
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
+from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.frontends.caex import measures, rules
 from sysmlc.frontends.caex.context import Context, path_of
@@ -38,27 +39,44 @@ def links(source: Source) -> list[str]:
 def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
     """Count every element of each file once, and report what is not read or leads nowhere."""
     for document in context.documents:
-        counts = coverage.file(document.name)
-        table: Counter[tuple[str, Verdict]] = Counter()
+        _count(document, coverage.file(document.name))
         lost: dict[str, list[Node]] = {}
-        misplaced: list[tuple[Node, Node]] = []
-        for node in document.nodes:
-            verdict = node.verdict or Verdict.UNSUPPORTED
-            table[node.tag, verdict] += 1
-            for tag in node.texts or ():
-                if tag:
-                    table[tag, verdict] += 1
-            if node.verdict is None:
-                lost.setdefault(node.tag, []).append(node)
-            if node.children:
-                misplaced += _misplaced(node)
-        for (tag, verdict), number in table.items():
-            counts.count(tag, verdict, number)
+        for row, verdict in enumerate(document.verdicts):
+            if verdict is None:
+                lost.setdefault(document.tags[row], []).append(document.node(row))
+        unordered = map(document.node, _unordered(document))
+        misplaced = [pair for node in unordered for pair in _misplaced(node)]
         _report_lost(context, document, lost)
         _report_order(context, document, misplaced)
     _report_missing(context, sources)
     context.report_ids()
     measures.report_strange(context)
+
+
+def _count(document: Document, counts: FileCoverage) -> None:
+    """Count every element once; what is folded shares the verdict of its parent."""
+    verdicts = document.verdicts
+    found = Counter(zip(document.tags, verdicts, strict=True))
+    for (tag, verdict), number in found.items():
+        counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
+    for tag, column in document.texts.items():
+        for verdict, number in Counter(map(verdicts.__getitem__, column)).items() if tag else ():
+            counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
+
+
+def _unordered(document: Document) -> list[int]:
+    """Rows with a child that stands after one that the schema has behind it."""
+    ranks = [ORDER.get(tag, -1) for tag in document.tags]
+    highest: dict[int, int] = {}
+    found: dict[int, None] = {}
+    for parent, rank in zip(document.parents, ranks, strict=True):
+        if rank < 0:
+            continue
+        if rank < highest.get(parent, -1):
+            found[parent] = None
+        else:
+            highest[parent] = rank
+    return sorted(found)
 
 
 def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Rule, Sink, Subject, Verdict
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.paths import plain, split
+from sysmlc.frontends.caex.identifiers import Identifiers
+from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
@@ -35,30 +36,13 @@ class Context:
         self.sink = sink
         self.types = Types(documents)
         self._provide = provide
-        self.nodes: dict[str, tuple[Document, Node]] = {}
+        self.ids = Identifiers(documents)
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
         self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
-        self._plain: dict[str, tuple[Document, Node]] = {}
-        self._repeated: dict[str, list[tuple[Document, Node]]] = {}
         self._shared: set[tuple[str, str]] = set()
-        self._anonymous: dict[Document, list[Node]] = {}
-        self._know_ids()
         self._know_roots()
-
-    def _know_ids(self) -> None:
-        for document in self.documents:
-            for node in document.nodes:
-                id = node.attributes.get("ID")
-                if id:
-                    if id in self.nodes:
-                        self._repeated.setdefault(id, [self.nodes[id]]).append((document, node))
-                    else:
-                        self.nodes[id] = (document, node)
-                    self._plain.setdefault(plain(id), (document, node))
-                elif node.tag == "InternalElement":
-                    self._anonymous.setdefault(document, []).append(node)
 
     def _know_roots(self) -> None:
         names = Counter(
@@ -95,7 +79,7 @@ class Context:
     def id_of(self, node: Node, document: Document, owner: str | None) -> str:
         """The node's own id, or one made of its owner's and its name."""
         id = node.attributes.get("ID")
-        if id and id not in self._repeated:
+        if id and not self.ids.is_repeated(id):
             return id if id not in self.graph else self.free(id, node)
         if id:
             return self.free(f"{document.name}#{id}", node)
@@ -109,18 +93,12 @@ class Context:
         return f"{id}~{node.ordinal}" if id in self.graph else id
 
     def find(self, id: str, document: Document | None = None) -> tuple[Document, Node] | None:
-        """The node with the id: literally, else without regard to braces, case and alias.
-
-        Of several files that have the id, ``document`` is the one that is meant.
-        """
-        if id in self._repeated:
-            alike = self._repeated[id]
-            return next((one for one in alike if one[0] is document), alike[0])
-        return self.nodes.get(id) or self._plain.get(plain(id.rpartition("@")[2]))
+        """The node with the ID; of several files that have it, ``document`` is meant."""
+        return self.ids.find(id, document)
 
     def tell_lenient(self, document: Document, node: Node, id: str) -> None:
         """Tell that an id was found only by leaving braces and case aside."""
-        known = self._plain.get(plain(id)) if id not in self.nodes else None
+        known = self.ids.find_plain(id) if id not in self.ids else None
         if known is not None:
             meant = known[1].attributes["ID"]
             self.report(rules.LENIENT_ID, document, node, element=node.name, id=id, meant=meant)
@@ -164,15 +142,25 @@ class Context:
 
     def report_ids(self) -> None:
         """Ids that several elements of one file have, and elements that have none."""
-        for id, alike in self._repeated.items():
+        for id, alike in self.ids.repeated():
             seen: set[Document] = set()
             for document, node in alike:
                 if document in seen:
                     self.report(rules.REPEATED_ID, document, node, id=id, element=node.name)
                 seen.add(document)
-        for document, nodes in self._anonymous.items():
-            first, *others = nodes
-            more = f", nor have {len(others)} more elements of the file" if others else ""
+        for document in self.documents:
+            self._report_anonymous(document)
+
+    def _report_anonymous(self, document: Document) -> None:
+        rows = zip(document.tags, document.attributes, strict=True)
+        without = [
+            row
+            for row, (tag, values) in enumerate(rows)
+            if tag == "InternalElement" and not values.get("ID")
+        ]
+        if without:
+            first, others = document.node(without[0]), len(without) - 1
+            more = f", nor have {others} more elements of the file" if others else ""
             self.report(rules.NO_ID, document, first, element=path_of(first), more=more)
 
 

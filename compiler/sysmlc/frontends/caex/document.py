@@ -1,89 +1,95 @@
-"""A CAEX file as a tree of nodes, made in one pass; texts that every file is full of are folded."""
+"""A CAEX file as columns: one row an element, in document order; folded texts have none."""
 
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Place, Verdict
-from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
-from sysmlc.sources.xml import Parser, parse, parser, too_deep
-
-FOLDED = frozenset({"Value", "DefaultValue", "Description", "Version"})
-"""Elements that are kept as text of their parent: a third of the elements of a plant."""
-
-_STRUCTURE = frozenset(
-    {
-        "Attribute",
-        "AttributeType",
-        "ExternalInterface",
-        "InterfaceClass",
-        "InternalElement",
-        "InternalLink",
-        "RefSemantic",
-        "RoleClass",
-        "RoleRequirements",
-        "SupportedRoleClass",
-        "SystemUnitClass",
-    }
-)
-"""Elements that hold no text of their own."""
-
-_NONE: list["Node"] = []
-"""Shared by all nodes without children; never changed."""
+from sysmlc.frontends.caex.columns import FOLDED, fill
+from sysmlc.sources import Source, SourceError
 
 
 class Node:
-    """One XML element of CAEX. ``tag`` is its local name, ``ordinal`` its place in the file.
+    """One row of a document. There is one node for each row that was asked for.
 
-    ``texts`` holds the folded children by tag, and under the empty name the text of the
-    element itself. ``element`` is the id of what it became in the graph.
+    ``tag`` is its local name, ``ordinal`` its place in the file.
     """
 
-    __slots__ = (
-        "attributes",
-        "children",
-        "element",
-        "ordinal",
-        "parent",
-        "tag",
-        "texts",
-        "verdict",
-    )
+    __slots__ = ("attributes", "document", "row", "tag")
 
-    children: "list[Node]"
-    texts: dict[str, str] | None
-    verdict: Verdict | None
+    def __init__(self, document: "Document", row: int) -> None:
+        self.document = document
+        self.row = row
+        self.tag = document.tags[row]
+        self.attributes = document.attributes[row]
 
-    def __init__(
-        self, tag: str, attributes: dict[str, str], parent: "Node | None", ordinal: int
-    ) -> None:
-        self.tag = tag
-        self.attributes = attributes
-        self.parent = parent
-        self.ordinal = ordinal
-        self.children = _NONE
-        self.texts = None
-        self.verdict = None
-        self.element = ""
+    @property
+    def ordinal(self) -> int:
+        """Place among all elements of the file."""
+        return self.document.ordinals[self.row]
+
+    @property
+    def parent(self) -> "Node | None":
+        """The node around it; None at the root."""
+        row = self.document.parents[self.row]
+        return None if row < 0 else self.document.node(row)
+
+    @property
+    def element(self) -> str:
+        """Id of what it became in the graph, or the empty string."""
+        return self.document.elements[self.row]
+
+    @element.setter
+    def element(self, id: str) -> None:
+        self.document.elements[self.row] = id
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """What became of it; None while nothing did."""
+        return self.document.verdicts[self.row]
+
+    @verdict.setter
+    def verdict(self, verdict: Verdict) -> None:
+        self.document.verdicts[self.row] = verdict
 
     @property
     def name(self) -> str:
         """The attribute ``Name``."""
         return self.attributes.get("Name", "")
 
+    @property
+    def children(self) -> list["Node"]:
+        """The nodes directly below it."""
+        return list(map(self.document.node, self.document.children(self.row)))
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """Texts of the folded children by tag, its own under the empty name."""
+        columns = self.document.texts.items()
+        return {tag: column[self.row] for tag, column in columns if self.row in column}
+
     def text(self, tag: str) -> str | None:
         """Text of a child, or None when there is no such child."""
-        if self.texts is not None and tag in self.texts:
-            return self.texts[tag]
+        column = self.document.texts.get(tag)
+        if column is not None and self.row in column:
+            return column[self.row]
         child = next(self.of(tag), None)
-        return None if child is None else (child.texts or {}).get("", "")
+        return None if child is None else child.own_text
+
+    @property
+    def own_text(self) -> str:
+        """The text of the element itself."""
+        return self.document.texts[""].get(self.row, "")
 
     def all_texts(self, tag: str) -> list[str]:
         """Texts of all children with this tag."""
-        folded = [self.texts[tag]] if self.texts is not None and tag in self.texts else []
-        return folded + [(child.texts or {}).get("", "") for child in self.of(tag)]
+        column = self.document.texts.get(tag, {})
+        folded = [column[self.row]] if self.row in column else []
+        return folded + [child.own_text for child in self.of(tag)]
 
     def of(self, *tags: str) -> Iterator["Node"]:
         """Children with these tags, in order."""
-        return (child for child in self.children if child.tag in tags)
+        document, all_tags = self.document, self.document.tags
+        rows = [row for row in document.children(self.row) if all_tags[row] in tags]
+        return map(document.node, rows)
 
     def above(self) -> Iterator["Node"]:
         """The nodes that the node lies in, nearest first."""
@@ -94,118 +100,88 @@ class Node:
 
     def walk(self) -> Iterator["Node"]:
         """The node and all below it, in document order."""
-        waiting = [self]
-        while waiting:
-            node = waiting.pop()
-            yield node
-            waiting.extend(reversed(node.children))
+        return map(self.document.node, range(self.row, self.document.ends[self.row]))
 
 
 class Document:
-    """One file: its root, and all its nodes in document order."""
+    """Columns of one file.
 
-    __slots__ = ("is_built_in", "name", "nodes", "root")
+    ``tags`` are local names; ``ends[row]`` is the first row after the row's content;
+    ``ordinals`` are places among all elements of the file. ``texts`` holds by tag the texts of
+    folded children, and under the empty name the row's own, for the rows that have some.
+    ``elements`` are ids of what the rows became in the graph.
+    """
 
-    def __init__(self, name: str, nodes: list[Node], is_built_in: bool = False) -> None:
+    __slots__ = (
+        "_nodes",
+        "attributes",
+        "elements",
+        "ends",
+        "is_built_in",
+        "name",
+        "ordinals",
+        "parents",
+        "tags",
+        "texts",
+        "verdicts",
+    )
+
+    def __init__(self, name: str, is_built_in: bool = False) -> None:
         self.name = name
-        self.root = nodes[0]
-        self.nodes = nodes
         self.is_built_in = is_built_in
+        self.tags: list[str] = []
+        self.attributes: list[dict[str, str]] = []
+        self.parents: list[int] = []
+        self.ends: list[int] = []
+        self.ordinals: list[int] = []
+        self.texts: dict[str, dict[int, str]] = {tag: {} for tag in ("", *FOLDED)}
+        self.verdicts: list[Verdict | None] = []
+        self.elements: list[str] = []
+        self._nodes: dict[int, Node] = {}
+
+    @property
+    def root(self) -> Node:
+        """The element that holds all others."""
+        return self.node(0)
 
     @property
     def version(self) -> str:
         """Version of the schema as the file states it: "2.15", "3.0", or the empty string."""
-        return self.root.attributes.get("SchemaVersion", "")
+        return self.attributes[0].get("SchemaVersion", "")
+
+    def node(self, row: int) -> Node:
+        """The node of a row, always the same one."""
+        known = self._nodes.get(row)
+        if known is None:
+            known = self._nodes[row] = Node(self, row)
+        return known
+
+    def children(self, row: int) -> list[int]:
+        """Rows directly below a row."""
+        end, ends = self.ends[row], self.ends
+        rows = []
+        row += 1
+        while row < end:
+            rows.append(row)
+            row = ends[row]
+        return rows
 
     def place(self, node: Node) -> Place:
         """Place of a node."""
         return Place(self.name, node.ordinal)
 
+    def forget(self) -> None:
+        """Let the nodes go: document and nodes know each other."""
+        self._nodes.clear()
+
 
 def read(source: Source, is_built_in: bool = False) -> Document:
-    """The tree of the file. Raises SourceError."""
-    top = Node("", {}, None, -1)
-    made = parser()
-    nodes: list[Node] = []
-    _fill(top, nodes, made, source)
-    parse(source, made)
-    root = nodes[0]
-    if root.tag != "CAEXFile":
+    """The columns of the file. Raises SourceError."""
+    document = Document(source.name, is_built_in)
+    fill(document, source)
+    if document.tags[0] != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
-    root.parent = None
-    return Document(source.name, nodes, is_built_in)
-
-
-class _Local(dict[str, str]):
-    """Local name of each tag, found once."""
-
-    def __missing__(self, tag: str) -> str:
-        self[tag] = name = tag.rpartition("}")[2]
-        return name
-
-
-def _fill(top: Node, nodes: list[Node], made: Parser, source: Source) -> None:
-    """Set the handlers that build the tree; they are called for every element.
-
-    Text is listened to only where CAEX has some: between the other elements stand line ends.
-    """
-    stack = [top]
-    local = _Local()
-    limit = DEFAULT_LIMITS.depth
-    ordinal = -1
-    folding = ""
-    depth = 0
-    listening = False
-
-    def start(tag: str, values: dict[str, str]) -> None:
-        nonlocal ordinal, folding, depth, listening
-        ordinal += 1
-        name = local[tag]
-        parent = stack[-1]
-        if name not in _STRUCTURE:
-            made.CharacterDataHandler = text
-            listening = True
-            if not values and not folding and _folds(parent, name):
-                folding, depth = name, len(stack)
-                return
-        node = Node(name, values, parent, ordinal)
-        nodes.append(node)
-        if parent.children is _NONE:
-            parent.children = [node]
-        else:
-            parent.children.append(node)
-        stack.append(node)
-        if len(stack) > limit:
-            too_deep(source, made)
-
-    def end(_tag: str) -> None:
-        nonlocal folding, listening
-        if listening:
-            made.CharacterDataHandler = None
-            listening = False
-        if folding and len(stack) == depth:
-            folding = ""
-        else:
-            stack.pop()
-
-    def text(data: str) -> None:
-        holder = stack[-1]
-        if holder.texts is None:
-            holder.texts = {}
-        key = folding if len(stack) == depth else ""
-        holder.texts[key] = holder.texts.get(key, "") + data
-
-    made.StartElementHandler = start
-    made.EndElementHandler = end
-
-
-def _folds(parent: Node, name: str) -> bool:
-    """Whether the text becomes one of its parent's; a second one of a name stays an element."""
-    if name not in FOLDED:
-        return False
-    if parent.texts is None:
-        parent.texts = {}
-    if name in parent.texts:
-        return False
-    parent.texts[name] = ""
-    return True
+    rows = len(document.tags)
+    document.verdicts = [None] * rows
+    document.elements = [""] * rows
+    return document

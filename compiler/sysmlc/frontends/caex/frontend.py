@@ -56,6 +56,8 @@ class CaexFrontend:
             context = Context(documents, graph, sink, Standard().provide)
             _lower(context)
             account.account(context, coverage, ordered)
+            for document in documents:
+                document.forget()
 
 
 def _lower(context: Context) -> None:

@@ -22,9 +22,13 @@ _KEPT = frozenset(
 )
 
 
+_SAID = _KEPT | {"Copyright", "Description", "RefSemantic", "Version"}
+"""All that is said about the element around it."""
+
+
 def lower(context: Context, document: Document) -> None:
     """Add what is said about the elements of a file; those of the file itself are read before."""
-    for node in document.nodes:
+    for node in map(document.node, _holders(document)):
         element = context.graph.get(node.element)
         if element is None:
             continue
@@ -32,6 +36,15 @@ def lower(context: Context, document: Document) -> None:
             _texts(context, node, element)
         for child in node.children:
             _child(context, document, child, element)
+
+
+def _holders(document: Document) -> list[int]:
+    """Rows that something is said about: few of a large file."""
+    tags, parents = document.tags, document.parents
+    rows = {parents[row] for row, tag in enumerate(tags) if tag in _SAID}
+    rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
+    rows.update(document.texts["Description"], document.texts["Version"])
+    return sorted(rows)
 
 
 def _texts(context: Context, node: Node, element: Element) -> None:

@@ -1,0 +1,116 @@
+"""From the bytes of a file to the columns of a document, in one pass of the XML parser.
+
+The handlers here are called for every element of a file: they do the least that they can.
+"""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.sources import DEFAULT_LIMITS, Source
+from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser, too_deep
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.caex.document import Document
+
+FOLDED = ("Description", "Version", "DefaultValue", "Value")
+"""Elements that are kept as text of their parent: a third of the elements of a plant."""
+
+_STRUCTURE = frozenset(
+    {
+        "Attribute",
+        "AttributeType",
+        "ExternalInterface",
+        "InterfaceClass",
+        "InternalElement",
+        "InternalLink",
+        "RefSemantic",
+        "RoleClass",
+        "RoleRequirements",
+        "SupportedRoleClass",
+        "SystemUnitClass",
+    }
+)
+"""Elements that hold no text of their own."""
+
+
+class _Local(dict[str, str]):
+    """Local name of each tag, found once."""
+
+    def __missing__(self, tag: str) -> str:
+        self[tag] = name = tag.rpartition(SEPARATOR)[2]
+        return name
+
+
+def fill(document: "Document", source: Source) -> None:
+    """Fill the columns. Raises SourceError."""
+    made = parser()
+    try:
+        _handle(document, source, made)
+        parse(source, made)
+    finally:
+        # The handlers know the parser and the columns: nothing else ends this circle.
+        made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
+
+
+def _handle(document: "Document", source: Source, made: Parser) -> None:
+    """Set the handlers.
+
+    Text is listened to only where CAEX has some: between the other elements stand line ends.
+    The text of what is inside a folded element is its parent's, too.
+    """
+    tags, ends, texts = document.tags, document.ends, document.texts
+    stack = [-1]
+    local = _Local()
+    deepest = DEFAULT_LIMITS.depth
+    own = texts[""]
+    ordinal = -1
+    folding: dict[int, str] | None = None
+    depth = 0
+    add_tag, add_attributes = tags.append, document.attributes.append
+    add_parent, add_ordinal = document.parents.append, document.ordinals.append
+    add_end, push, pop = ends.append, stack.append, stack.pop
+
+    def start(tag: str, values: dict[str, str]) -> None:
+        nonlocal ordinal, folding, depth
+        ordinal += 1
+        name = local[tag]
+        if name not in _STRUCTURE:
+            made.CharacterDataHandler = text
+            made.EndElementHandler = end_of_text
+            above = stack[-1]
+            if not values and name in texts and folding is None and above >= 0:
+                column = texts[name]
+                if above not in column:
+                    folding, depth = column, len(stack)
+                    column[above] = ""
+                    return
+        row = len(tags)
+        add_tag(name)
+        add_attributes(values)
+        add_parent(stack[-1])
+        add_ordinal(ordinal)
+        add_end(0)
+        push(row)
+        if len(stack) > deepest:
+            too_deep(source, made)
+
+    def end(_tag: str) -> None:
+        ends[pop()] = len(tags)
+
+    def end_of_text(_tag: str) -> None:
+        nonlocal folding
+        made.CharacterDataHandler = None
+        if folding is None:
+            made.EndElementHandler = end
+        elif len(stack) == depth:
+            folding = None
+            made.EndElementHandler = end
+            return
+        ends[pop()] = len(tags)
+
+    def text(data: str) -> None:
+        row = stack[-1]
+        column = folding if folding is not None and len(stack) == depth else own
+        column[row] = column.get(row, "") + data
+
+    made.StartElementHandler = start
+    made.EndElementHandler = end

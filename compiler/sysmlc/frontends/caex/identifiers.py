@@ -1,0 +1,76 @@
+"""IDs of the elements of a unit: which row has which, and how one is found."""
+
+from bisect import bisect_right
+from collections.abc import Iterator
+
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.paths import plain
+
+Place = tuple[Document, Node]
+"""A node and the file that it stands in."""
+
+
+class Identifiers:
+    """Rows by ID. The rows of all files are numbered one after the other."""
+
+    def __init__(self, documents: list[Document]) -> None:
+        self._documents = documents
+        self._starts = [0]
+        for document in documents:
+            self._starts.append(self._starts[-1] + len(document.tags))
+        self._numbers: dict[str, int] = {}
+        self._repeated: dict[str, list[int]] = {}
+        self._plain: dict[str, int] | None = None
+        self._know([v.get("ID") or "" for one in documents for v in one.attributes])
+
+    def _know(self, written: list[str]) -> None:
+        numbers = dict(zip(written, range(len(written)), strict=True))
+        numbers.pop("", None)
+        if len(numbers) < len(written) - written.count(""):
+            numbers = {}
+            for number, id in enumerate(written):
+                if id and numbers.setdefault(id, number) != number:
+                    self._repeated.setdefault(id, [numbers[id]]).append(number)
+        self._numbers = numbers
+
+    def __contains__(self, id: str) -> bool:
+        """Whether an element has the ID, literally."""
+        return id in self._numbers
+
+    def is_repeated(self, id: str) -> bool:
+        """Whether several elements have the ID."""
+        return id in self._repeated
+
+    def repeated(self) -> Iterator[tuple[str, list[Place]]]:
+        """Each ID that several elements have, with these."""
+        for id, numbers in self._repeated.items():
+            yield id, list(map(self._place, numbers))
+
+    def find(self, id: str, document: Document | None = None) -> Place | None:
+        """The node with the ID: literally, else without regard to braces, case and alias.
+
+        Of several files that have the ID, ``document`` is the one that is meant.
+        """
+        if id in self._repeated:
+            alike = list(map(self._place, self._repeated[id]))
+            return next((one for one in alike if one[0] is document), alike[0])
+        number = self._numbers.get(id)
+        return self.find_plain(id.rpartition("@")[2]) if number is None else self._place(number)
+
+    def find_plain(self, id: str) -> Place | None:
+        """The node whose ID differs at most in braces and case."""
+        if self._plain is None:
+            self._plain = {}
+            for known, number in self._numbers.items():
+                self._plain.setdefault(plain(known), number)
+        found = self._plain.get(plain(id))
+        return None if found is None else self._place(found)
+
+    def row(self, id: str) -> int | None:
+        """The row that has the ID, where the unit is one file and no other row has it."""
+        return None if id in self._repeated else self._numbers.get(id)
+
+    def _place(self, number: int) -> Place:
+        index = bisect_right(self._starts, number) - 1
+        document = self._documents[index]
+        return document, document.node(number - self._starts[index])
