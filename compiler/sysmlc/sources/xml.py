@@ -36,9 +36,13 @@ def parser() -> Parser:
     return made
 
 
-def plain_parser() -> Parser:
-    """An expat parser that takes names as they are written: for XML with unbound prefixes."""
-    made = expat.ParserCreate()
+def plain_parser(names: dict[str, str] | None = None) -> Parser:
+    """An expat parser that takes names as they are written: for XML with unbound prefixes.
+
+    ``names`` says what handlers are given for a name; what it lacks is given as written.
+    """
+    made = expat.ParserCreate(intern={} if names is None else names)
+    made.buffer_size = _BUFFER
     made.buffer_text = True
     made.StartDoctypeDeclHandler = _refuse_doctype
     return made

@@ -3,11 +3,13 @@
 The handlers here are called for every element of a file: they do the least that they can.
 """
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
-from sysmlc.sources.xml import parse, parser, too_deep
+from sysmlc.frontends.xmi.prefixes import IrregularError, Prefixes
+from sysmlc.sources import DEFAULT_LIMITS, Source
+from sysmlc.sources.xml import parse, parser, plain_parser, too_deep
 
 if TYPE_CHECKING:
     from sysmlc.frontends.xmi.document import Document
@@ -15,52 +17,70 @@ if TYPE_CHECKING:
 _DRAWINGS = frozenset({"diagramRepresentation", "filePart"})
 """Elements of MagicDraw's extensions whose content is only counted: up to 87 % of a file."""
 
+_IRREGULAR = "MDFoundation:MDExtension"
+"""What MagicDraw attaches is another document of XMI, whose prefixes mean something else."""
+
+_SPECIAL = _DRAWINGS | {_IRREGULAR}
+
 _TOP = [-1]
 
+_Start = Callable[[str, dict[str, str]], None]
+"""Handler of an element's start; takes its name and its attributes."""
 
-def fill(document: "Document", source: Source) -> list[str]:
-    """Fill the columns; return the namespaces that the file declares. Raises SourceError."""
+
+def fill(document: "Document", source: Source) -> tuple[str, ...]:
+    """Fill the columns; return the namespaces that the file declares outside drawings.
+
+    Raises SourceError.
+    """
     filling = _Filling(document, source)
-    try:
-        filling.run()
-    except SourceError:
-        if not filling.has_hidden:
-            raise
+    filling.run()
+    return tuple(filling.declared)
+
+
+def fill_swiftly(document: "Document", source: Source, prefixes: Prefixes) -> tuple[str, ...]:
+    """The same for files as nearly all are; some attributes keep their prefixes.
+
+    Raises SourceError or IrregularError for any other: faults, namespaces declared below the
+    root, drawings inside drawings.
+    """
+    filling = _Filling(document, source, prefixes)
+    filling.run()
     if filling.stack != _TOP:
-        # A fault inside a drawing, or a drawing inside it: its end was taken for that of the outer.
-        filling = _Filling(document, source, has_nested_drawings=True)
-        filling.run()
-    document.ordinals = _ordinals(len(document.tags), filling.breaks)
-    return list(filling.declared)
+        raise IrregularError
+    return tuple(prefixes.declared.values())
 
 
 class _Filling:
-    """One run of the parser over a file."""
+    """One run of the parser over a file; the swift one knows what prefixes mean."""
 
     def __init__(
-        self, document: "Document", source: Source, has_nested_drawings: bool = False
+        self, document: "Document", source: Source, prefixes: Prefixes | None = None
     ) -> None:
-        self.has_hidden = False
         self.breaks: list[tuple[int, int]] = []
         """Rows after which content is hidden, and the number of elements hidden so far."""
         self.stack = [*_TOP]
         self.declared: dict[str, None] = {}
         self._document = document
         self._source = source
-        self._has_nested_drawings = has_nested_drawings
-        self._made = parser()
-        for column in (document.tags, document.attributes, document.parents, document.ends):
-            column.clear()
-        document.texts.clear()
-        document.drawn.clear()
+        self._prefixes = prefixes
+        self._made = parser() if prefixes is None else plain_parser(prefixes.names)
 
     def run(self) -> None:
-        made = self._made
-        made.StartNamespaceDeclHandler = lambda _, uri: self.declared.setdefault(uri or "")
-        self._handle_elements()
-        parse(self._source, made)
+        start = self._handle_elements()
+        if self._prefixes is not None:
+            self._handle_root(self._prefixes, start)
+        parse(self._source, self._made)
+        self._document.ordinals = _ordinals(len(self._document.tags), self.breaks)
 
-    def _handle_elements(self) -> None:
+    def _handle_root(self, prefixes: Prefixes, start: _Start) -> None:
+        def root(tag: str, values: dict[str, str]) -> None:
+            self._made.StartElementHandler = start
+            start(prefixes.begin(tag, values), values)
+
+        self._made.StartElementHandler = root
+
+    def _handle_elements(self) -> _Start:
         tags, stack, texts = self._document.tags, self.stack, self._document.texts
         ends = self._document.ends
         add_tag, add_attributes = tags.append, self._document.attributes.append
@@ -75,7 +95,7 @@ class _Filling:
             add_parent(stack[-1])
             add_end(0)
             push(row)
-            if tag in _DRAWINGS or len(stack) > deepest:
+            if tag in _SPECIAL or len(stack) > deepest:
                 self._special(tag)
 
         def end(_tag: str) -> None:
@@ -86,15 +106,21 @@ class _Filling:
                 row = stack[-1]
                 texts[row] = texts[row] + data if row in texts else data
 
+        def namespace(_: str | None, uri: str | None) -> None:
+            self.declared[uri or ""] = None
+
+        self._made.StartNamespaceDeclHandler = namespace
         self._made.StartElementHandler = start
         self._made.EndElementHandler = end
         self._made.CharacterDataHandler = text
+        return start
 
     def _special(self, tag: str) -> None:
         if len(self.stack) > DEFAULT_LIMITS.depth:
             too_deep(self._source, self._made)
-        self.has_hidden = True
-        if self._has_nested_drawings:
+        if tag == _IRREGULAR:
+            raise IrregularError
+        if self._prefixes is None:
             self._hide_nested(tag)
         else:
             self._hide(tag)
@@ -113,6 +139,7 @@ class _Filling:
         self._made.StartElementHandler = None
         self._made.EndElementHandler = end_hidden
         self._made.CharacterDataHandler = None
+        self._made.StartNamespaceDeclHandler = None
 
     def _hide_nested(self, outer: str) -> None:
         depth = hidden = 0
@@ -133,6 +160,7 @@ class _Filling:
         self._made.StartElementHandler = start_hidden
         self._made.EndElementHandler = end_hidden
         self._made.CharacterDataHandler = None
+        self._made.StartNamespaceDeclHandler = None
 
     def _show(self, tag: str, hidden: int) -> None:
         document = self._document

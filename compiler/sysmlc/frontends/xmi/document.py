@@ -5,8 +5,12 @@ from collections.abc import Iterator
 from typing import cast
 
 from sysmlc.frontends.xmi import namespaces
-from sysmlc.frontends.xmi.columns import fill
-from sysmlc.sources import Source
+from sysmlc.frontends.xmi.columns import fill, fill_swiftly
+from sysmlc.frontends.xmi.prefixes import IrregularError, Prefixes
+from sysmlc.sources import Source, SourceError
+
+Shape = tuple[str, str, tuple[str, ...]]
+"""What decides what becomes of a row: feature, type, and names of the attributes in order."""
 
 
 class Document:
@@ -15,8 +19,8 @@ class Document:
     ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
     the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
     ``xmi:type`` (or empty), which is no longer in ``attributes``; ``ends[row]`` is the first
-    row after the row's content;
-    ``declared`` are the namespaces that the file declares.
+    row after the row's content; ``shapes[shape_numbers[row]]`` is the row's shape;
+    ``declared`` are the namespaces that the file declares outside drawings.
     """
 
     __slots__ = (
@@ -32,6 +36,8 @@ class Document:
         "ordinals",
         "parents",
         "repeated",
+        "shape_numbers",
+        "shapes",
         "tags",
         "texts",
         "type_key",
@@ -49,6 +55,8 @@ class Document:
         self.drawn: Counter[str] = Counter()
         self.features: list[str] = []
         self.types: list[str] = []
+        self.shapes: list[Shape] = []
+        self.shape_numbers: list[int] = []
         self.ids: dict[str, int] = {}
         self.repeated: dict[str, list[int]] = {}
         self.declared: tuple[str, ...] = ()
@@ -109,16 +117,24 @@ class Document:
 
 def read(source: Source) -> Document:
     """The columns of the file. Raises SourceError."""
-    document = Document(source.name)
-    declared = fill(document, source)
-    document.declared = tuple(declared)
-    _index(document, [uri for uri in declared if namespaces.is_xmi(uri)])
+    try:
+        prefixes = Prefixes()
+        document = Document(source.name)
+        _index(document, fill_swiftly(document, source, prefixes))
+        if prefixes.expand(document):
+            _index_shapes(document)
+        prefixes.check_hidden(source.data)
+    except (IrregularError, SourceError):
+        document = Document(source.name)
+        _index(document, fill(document, source))
     return document
 
 
-def _index(document: Document, spaces: list[str]) -> None:
-    local = {tag: tag.rpartition("}")[2] for tag in dict.fromkeys(document.tags)}
-    document.features = [local[tag] for tag in document.tags]
+def _index(document: Document, declared: tuple[str, ...]) -> None:
+    document.declared = declared
+    local = {tag: _local(tag) for tag in dict.fromkeys(document.tags)}
+    document.features = list(map(local.__getitem__, document.tags))
+    spaces = [uri for uri in declared if namespaces.is_xmi(uri)]
     xmi = spaces[0] if spaces else ""
     for other in spaces[1:]:
         _rename(document, other, xmi)
@@ -126,6 +142,12 @@ def _index(document: Document, spaces: list[str]) -> None:
     document.idref_key = f"{xmi}}}idref"
     _index_types(document)
     _index_ids(document)
+    _index_shapes(document)
+
+
+def _local(tag: str) -> str:
+    """The name without namespace or prefix."""
+    return tag.rpartition("}")[2].rpartition(":")[2]
 
 
 def _index_types(document: Document) -> None:
@@ -140,6 +162,21 @@ class _Short(dict[str, str]):
     def __missing__(self, name: str) -> str:
         short = self[name] = name.rpartition(":")[2]
         return short
+
+
+def _index_shapes(document: Document) -> None:
+    numbers = _Numbers()
+    shapes = zip(document.features, document.types, map(tuple, document.attributes), strict=True)
+    document.shape_numbers = list(map(numbers.__getitem__, shapes))
+    document.shapes = list(numbers)
+
+
+class _Numbers(dict[Shape, int]):
+    """Shapes, numbered as they are met."""
+
+    def __missing__(self, shape: Shape) -> int:
+        self[shape] = number = len(self)
+        return number
 
 
 def _index_ids(document: Document) -> None:

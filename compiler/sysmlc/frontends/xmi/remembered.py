@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sysmlc import __version__
 from sysmlc.cache import Cache
-from sysmlc.frontends.xmi import columns, document
+from sysmlc.frontends.xmi import columns, document, prefixes
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.sources import Source
 
@@ -50,6 +50,6 @@ def _from_entry(name: str, entry: bytes | None) -> Document | None:
 
 def _code() -> str:
     """What the form of an entry depends on: Python, our version, and the code that makes it."""
-    files = (Path(str(module.__file__)).stat() for module in (columns, document))
+    files = (Path(str(module.__file__)).stat() for module in (columns, document, prefixes))
     stamps = "-".join(f"{stat.st_size:x}-{stat.st_mtime_ns:x}" for stat in files)
     return f"{sys.version_info.major}.{sys.version_info.minor}-{__version__}-{stamps}"
