@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.overlay import Refinement
 from sysmlc.passes.overlay.allocations import add_allocation
-from sysmlc.passes.overlay.behaviors import add_behaviors
+from sysmlc.passes.overlay.behaviors import add_behaviors, note_behaviors
 from sysmlc.passes.overlay.blocks import refine_block
 from sysmlc.passes.overlay.calls import resolve_calls
 from sysmlc.passes.overlay.finder import Finder
@@ -28,6 +28,7 @@ def add_all(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None
         check_domains(finder)
         for block in finder.refinement.blocks:
             refine_block(finder, block)
+            note_behaviors(finder, block)
     for finder in finders:
         for block in finder.refinement.blocks:
             add_behaviors(finder, block)

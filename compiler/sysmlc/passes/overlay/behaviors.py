@@ -8,6 +8,13 @@ from sysmlc.passes.overlay.blocks import add_parameter, operation_of
 from sysmlc.passes.overlay.finder import BEHAVIOR, BLOCK, Finder
 
 
+def note_behaviors(finder: Finder, entry: BlockEntry) -> None:
+    """Look for the behaviours of a block while all of them are where their model has them."""
+    for term in (entry.behavior, *(operation.method for operation in entry.operations)):
+        if term is not None:
+            finder.behaviors[term.text] = finder.named(term.text, BEHAVIOR)
+
+
 def add_behaviors(finder: Finder, entry: BlockEntry) -> None:
     """Make activities and state machines methods, or the block's classifier behaviour."""
     block = block_of(finder, entry)
@@ -58,7 +65,7 @@ def _give(
     known = graph.target(holder, edge)
     if known is not None and graph.owner(known) is block and known.name == _last(term):
         return known
-    found = finder.term(term, BEHAVIOR)
+    found = finder.only(term, finder.behaviors.get(term.text, []), BEHAVIOR, "")
     if found is None:
         return None
     taken = _taken_by(finder, found)

@@ -1,6 +1,7 @@
 """Finds what the words of an overlay mean: by id first, then by path or qualified name."""
 
-from collections.abc import Callable, Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
 from sysmlc.suggest import did_you_mean
 
+_GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
 _TELLING = 5_000
 """Names among which the nearest is looked for; comparing more takes seconds."""
@@ -47,8 +49,11 @@ class Finder:
     refinement: Refinement
     items: dict[str, Element] = field(default_factory=dict)
     """Item types by the keys of their entries."""
-    _other_ids: dict[str, Element] = field(default_factory=dict)
-    _roots: dict[str, list[Element]] = field(default_factory=dict)
+    behaviors: dict[str, list[Element]] = field(default_factory=dict)
+    """What the words for behaviours meant before any behaviour was moved."""
+    _other_ids: dict[str, Element] | None = None
+    _roots: list[Element] = field(default_factory=list)
+    _size: int = -1
 
     # -- what words mean -----------------------------------------------------------------------
 
@@ -60,7 +65,7 @@ class Finder:
             if len(found) == 1:
                 new = found[0].id
                 self.report(rules.BY_PATH, key, id=key.text, path=key.path, new=new)
-        return self._only(Term(key.text, key.spot), found, sort, key.path)
+        return self.only(Term(key.text, key.spot), found, sort, key.path)
 
     def term(self, term: Term, sort: Sort) -> Element | None:
         """What a word means; None when that is not clear, which is reported."""
@@ -68,7 +73,7 @@ class Finder:
             known = self.items.get(term.text) or self._primitive(term.text)
             if known is not None:
                 return known
-        return self._only(term, self.named(term.text, sort), sort, "")
+        return self.only(term, self.named(term.text, sort), sort, "")
 
     def named(self, text: str, sort: Sort) -> list[Element]:
         """Everything that an id, a path, a qualified name or ``file#qualified name`` means."""
@@ -85,24 +90,27 @@ class Finder:
         return []
 
     def _by_id(self, text: str) -> Element | None:
-        found = self.graph.get(text)
+        found = self.graph.get(text) or self.graph.get(plain(text))
         if found is not None:
             return found
-        if not self._other_ids:
+        if self._other_ids is None:
             self._other_ids = dict(_other_ids(self.graph))
-        return self._other_ids.get(text) or self._other_ids.get(plain(text))
+        return self._other_ids.get(plain(text))
 
     def _along(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
-        if not self._roots:
-            for root in self.graph.roots():
-                self._roots.setdefault(root.name, []).append(root)
-        level = self._roots.get(names[0], [])
+        level = [one for one in self.roots() if one.name == names[0]]
         for name in names[1:]:
             inside = [one for top in level for one in self._inside(top, name)]
             level = list(dict.fromkeys(inside))
         for one in level:
             if not file or one.source == file:
                 yield one
+
+    def roots(self) -> list[Element]:
+        """What no element owns; packages of overlays join them while overlays are added."""
+        if len(self.graph) != self._size:
+            self._size, self._roots = len(self.graph), self.graph.roots()
+        return self._roots
 
     def _inside(self, top: Element, name: str) -> list[Element]:
         """What has this name in an element, or in what it is an instance or usage of."""
@@ -147,7 +155,8 @@ class Finder:
         """Report a rule about a word of the overlay."""
         self.sink.report(rule, self.refinement.subject(term), notes=(), help="", **facts)
 
-    def _only(self, term: Term, found: list[Element], sort: Sort, path: str) -> Element | None:
+    def only(self, term: Term, found: list[Element], sort: Sort, path: str) -> Element | None:
+        """The one that was found; that there is none, or several, is reported."""
         if len(found) == 1:
             return found[0]
         if found:
@@ -193,21 +202,20 @@ class Finder:
 def _other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
     """Ids that stand for an element beside its own: of repeated interfaces, in another spelling."""
     for element in graph:
-        yield plain(element.id), element
+        if plain(element.id) != element.id:
+            yield plain(element.id), element
     for element in graph.of_kind(Kind.PROPERTY, Kind.INSTANCE):
         pairs = element.attrs.get("interface_ids")
         for pair in pairs if isinstance(pairs, tuple) else ():
             port = graph.get(str(pair[0])) if isinstance(pair, tuple) else None
             if port is not None and isinstance(pair, tuple):
-                yield from ((word(str(pair[1])), port) for word in _SPELLINGS)
+                yield plain(str(pair[1])), port
 
 
 def plain(id: str) -> str:
-    """An id without braces and in lower case: writers of AutomationML differ in both."""
-    return id.strip().strip("{}").lower()
-
-
-_SPELLINGS: tuple[Callable[[str], str], ...] = (str, plain)
+    """A GUID without braces and in lower case, as writers differ in both; else the id itself."""
+    found = _GUID.fullmatch(id.strip())
+    return found[1].lower() if found else id
 
 
 def _unique(found: Iterable[Element | None]) -> list[Element]:

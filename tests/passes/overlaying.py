@@ -1,0 +1,72 @@
+"""A small plant for the tests of overlays, and laying one over it."""
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.ir.text import parse_text
+from sysmlc.overlay import Refinement, read
+from sysmlc.passes import pipeline
+from sysmlc.sources import Source
+
+PLANT = """\
+Package plant "Plant"
+  Class track "Track" role="interface block"
+  Class tag "Tag" role="block"
+  Class stopper "Stopper" role="block"
+    Port s-in "p_sIn"
+      -> typed-by track
+    Port s-out "p_sOut"
+      -> typed-by track
+  Class switch "Switch" role="block"
+    Port w-in "p_swIn" direction="in"
+      -> typed-by track
+  Class gate "Gate" role="block"
+    Operation gate.open "open"
+    Property st "st" aggregation="composite" role="part"
+      -> typed-by stopper
+    Property sw "sw" aggregation="composite" role="part"
+      -> typed-by switch
+    Connector l1 "l1"
+      -> end l1.a l1.b
+      ConnectorEnd l1.a
+        -> role s-out
+        -> path st
+      ConnectorEnd l1.b
+        -> role w-in
+        -> path sw
+    Connector loop "loop"
+      -> end loop.a loop.b
+      ConnectorEnd loop.a
+        -> role s-out
+        -> path st
+      ConnectorEnd loop.b
+        -> role s-in
+        -> path st
+    Connector twin1 "twin"
+    Connector twin2 "twin"
+"""
+MODEL = """\
+Package model "Gate" @gate.uml:1
+  Activity handle "Handle" @gate.uml:2
+    Parameter handle.p "pallet" @gate.uml:3
+    Control start "start" subkind="initial" @gate.uml:4
+    ControlFlow flow @gate.uml:5
+      -> flow-source start
+      -> flow-target call
+    Action call "getIn" subkind="call-operation" @gate.uml:6
+"""
+
+
+def overlay_of(text: str, sink: Sink, file: str = "plant.overlay.yaml") -> Refinement | None:
+    """What an overlay says."""
+    return read(Source(file, text.encode("utf-8")), sink)
+
+
+def laid_over(
+    *overlays: str, model: str = PLANT + MODEL, until: str = "overlay"
+) -> tuple[Graph, Sink]:
+    """The graph of a model behind a pass with overlays laid over it, and what was found."""
+    graph, sink = parse_text(model), Sink()
+    found = [overlay_of(text, sink, f"{n}.overlay.yaml") for n, text in enumerate(overlays)]
+    graph.store(Refinement, [one for one in found if one is not None])
+    pipeline.run(graph, sink, verify_each=True, until=until)
+    return graph, sink

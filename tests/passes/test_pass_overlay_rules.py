@@ -1,0 +1,34 @@
+"""Each rule about overlays: an overlay that has the fault, and one that nearly has it."""
+
+import pytest
+from overlaying import laid_over
+from passing import codes
+
+from sysmlc.driver import full_catalogue
+
+RULES = [rule for rule in full_catalogue().values() if 320 <= int(rule.code[2:]) < 340]
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_rule_reports_its_wrong_overlay_and_not_its_right_one(rule):
+    assert rule.code in codes(laid_over(rule.wrong)[1])
+    assert rule.code not in codes(laid_over(rule.right)[1])
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_right_overlay_is_right_in_every_way(rule):
+    found = [one for one in laid_over(rule.right)[1] if one.severity != "info"]
+    assert found == []
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_finding_has_file_line_and_column(rule):
+    found = next(one for one in laid_over(rule.wrong)[1] if one.rule is rule)
+    place = found.subject.place
+    is_of_model = rule.name.startswith("call-")
+    assert place.file == ("gate.uml" if is_of_model else "0.overlay.yaml")
+    assert is_of_model or (place.line > 0 and place.column > 0)
+
+
+def test_there_are_twenty_rules():
+    assert len(RULES) == 20
