@@ -38,22 +38,37 @@ def reference_features(ecore: Path) -> frozenset[str]:
 def written(data: bytes, features: frozenset[str]) -> Iterator[Written]:
     """All local references of a document; one without target has the empty ``target_type``."""
     root = etree.fromstring(data, etree.XMLParser(huge_tree=True, resolve_entities=False))
-    elements = {id: one for one in _elements(root) if (id := _xmi(one, "}id"))}
-    for element in _content(root):
+    elements = elements_of(root)
+    for element in content_of(root):
         target = _xmi(element, "}idref")
         if target:
             yield _written(element.getparent(), _name(element), target, elements)
-        for feature, ids in _attributes(element, root, elements, features):
+        for feature, ids in attributes_of(element, root, elements, features):
             for one in ids:
                 yield _written(element, feature, one, elements)
 
 
-def _attributes(
+def elements_of(root: etree._Element) -> dict[str, etree._Element]:
+    """Every element that has an id, by that."""
+    return {id: one for one in _elements(root) if (id := _xmi(one, "}id"))}
+
+
+def feature_of(
+    element: etree._Element, elements: Mapping[str, etree._Element]
+) -> tuple[str, str, str] | None:
+    """What a child that is a reference to one of the elements is: owner, feature, and so."""
+    if _xmi(element, "}idref") not in elements:
+        return None
+    return _type(element.getparent()), _name(element), "child"
+
+
+def attributes_of(
     element: etree._Element,
     root: etree._Element,
     elements: Mapping[str, etree._Element],
     features: frozenset[str],
 ) -> Iterator[tuple[str, list[str]]]:
+    """Attributes of an element that are references, with the ids that they name."""
     is_application = element.getparent() is root and "UML" not in str(element.tag)
     for name, value in element.attrib.items():
         feature, text = str(name), str(value)
@@ -74,7 +89,8 @@ def _written(
     return Written(holders, _type(source), feature, target, "" if found is None else _type(found))
 
 
-def _content(root: etree._Element) -> Iterable[etree._Element]:
+def content_of(root: etree._Element) -> Iterable[etree._Element]:
+    """The elements of the model, without what tools keep beside it."""
     noted: set[etree._Element] = set()
     for element in _elements(root):
         if element.getparent() in noted or _name(element) in _NOTED:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context, Event
+from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, value_in
 from sysmlc.frontends.xmi.unit import Lowered, Unit
@@ -41,6 +42,7 @@ def _collected(name: str) -> _Reader:
     def read(context: Context, row: int) -> None:
         owner = context.owner(row)
         context.subtree(row, Verdict.MAPPED)
+        look_inside(context, row, _RECORDED)
         if owner is not None:
             context.rows_of.setdefault(name, []).append((owner, row))
 
@@ -50,6 +52,7 @@ def _collected(name: str) -> _Reader:
 def _part_of_others(context: Context, row: int) -> None:
     """Events are read by the triggers that name them."""
     context.subtree(row, Verdict.MAPPED)
+    context.event_rows.append(row)
 
 
 FEATURES: dict[str, _Reader] = {
@@ -72,6 +75,9 @@ _COLUMNS = {
 }
 
 
+_RECORDED = frozenset(name for names in _COLUMNS.values() for name in names)
+
+
 # -- when all documents are read ---------------------------------------------------------------
 
 
@@ -86,6 +92,11 @@ def finish(context: Context) -> None:
         _trigger(context, element, row)
     for complete, element, row in context.deferred:
         complete(context, element, row)
+    for row in context.event_rows:
+        # Of UML before 2.4 messages know the signature, which is told there.
+        is_old = context.document.types[row].startswith(("Send", "Receive"))
+        if not is_old and (context.document.name, row) not in context.events:
+            look_inside(context, row, ("signal", "operation"))
     for element, target, row in context.guards:
         _transition_guard(context, element, target, row)
     _parameter_directions(context)

@@ -5,8 +5,9 @@ from itertools import islice
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
-from sysmlc.frontends.xmi import details, metaclasses, rules
+from sysmlc.frontends.xmi import dangling, details, metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.dangling import Loose
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
@@ -49,6 +50,7 @@ class Context:
         self.extensions: list[int] = []
         self.parts: list[int] = []
         self.triggers: list[tuple[Element, int]] = []
+        self.event_rows: list[int] = []
         self.events: dict[tuple[str, int], Event] = {}
         self.deferred: list[tuple[Completion, Element, int]] = []
         self.ends: list[tuple[Element, int]] = []
@@ -58,6 +60,7 @@ class Context:
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
         self.lost: dict[int, str] = {}
         self.baseless: list[int] = []
+        self.loose: list[Loose] = []
         self.flow_targets: frozenset[str] | None = None
         self._bounds: dict[str, list[AttrValue]] = {}
         self._positions: dict[tuple[str, str], int] = {}
@@ -121,6 +124,8 @@ class Context:
         for name, value in values.items():
             if name not in PASSED_OVER and "}" not in name:
                 self.attribute(element, row, name, value)
+            elif name in v.REDUNDANT:
+                self.look(row, name, value)
         return True
 
     def may_own(self, owner: str, kind: Kind) -> bool:
@@ -213,8 +218,20 @@ class Context:
         elif name == "kind" and element.kind in _DIVIDED:
             if value != _DIVIDED[element.kind]:
                 element.attrs["subkind"] = metaclasses.hyphenated(value)
-        elif name not in PASSED_OVER and name not in v.REDUNDANT and value != v.default(name):
+        elif name in v.REDUNDANT:
+            self.look(row, name, value)
+        elif name in naming.NAMING:
+            self.keep_ids(element, v.snake(name), self.document.tokens(value))
+        elif name not in PASSED_OVER and value != v.default(name):
             self.keep(element, v.snake(name), value)
+
+    def look(self, row: int, feature: str, value: str, is_said_elsewhere: bool = True) -> None:
+        """Note the ids of a reference that nobody follows which are not in this file."""
+        ids = self.document.ids
+        missing = [target for target in self.document.tokens(value) if target not in ids]
+        if missing and not self.document.is_in_extension(row):
+            ordinal = self.document.ordinals[row]
+            self.loose.append(Loose(self.gids[row], ordinal, feature, missing, is_said_elsewhere))
 
     def keep(self, element: Element, key: str, value: str) -> None:
         """Keep what no table names: ids of elements, a truth value, or text."""
@@ -309,7 +326,8 @@ class Context:
             if row >= 0 and self.lowered.own[row]:
                 self.graph[self.gids[row]].attrs["subkind"] = subkind
         for element, key, targets, is_href in self._late:
-            found = [self.unit.target_id(self.lowered, t, is_href) for t in targets]
+            there = targets if is_href else dangling.existing(self, element, key, targets)
+            found = [self.unit.target_id(self.lowered, t, is_href) for t in there]
             ids = tuple(id for id in found if id is not None)
             if ids:
                 element.attrs[key] = ids if len(ids) > 1 or key in v.LISTS else ids[0]

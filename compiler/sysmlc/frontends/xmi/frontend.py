@@ -10,6 +10,7 @@ from sysmlc.frontends.xmi import (
     account,
     applications,
     behaviour,
+    dangling,
     detect,
     drawings,
     enterprise_architect,
@@ -100,6 +101,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         behaviour.finish(context)
     unit.flush()
     for context in contexts:
+        dangling.report(context)
         account.account(context, sink, coverage)
 
 

@@ -77,6 +77,31 @@ MANY_ATTRIBUTES = rule(
     wrong="<packagedElement a1='' a2='' a3='' ... (ten thousand of them)/>",
     right="<packagedElement name='Gate'/>",
 )
+DANGLING_OPPOSITE = rule(
+    "SM116",
+    "dangling-opposite",
+    Severity.WARNING,
+    "'{feature}' of '{element}' names '{target}'{others} not exist",
+    why="The feature says again what the other end of a relation says, or what ownership says, "
+    "so nothing of the graph depends on it. But the file names something that is not there: "
+    "most likely it was deleted by hand or lost in a merge.",
+    help="look whether something is missing; else save the model again in the modelling tool",
+    wrong="<node xmi:type='uml:MergeNode' xmi:id='m' incoming='deleted'/>",
+    right="<node xmi:type='uml:MergeNode' xmi:id='m' incoming='a'/>\n"
+    "<edge xmi:type='uml:ControlFlow' xmi:id='a' source='i' target='m'/>",
+)
+DANGLING_FEATURE = rule(
+    "SM120",
+    "dangling-feature",
+    Severity.ERROR,
+    "'{feature}' of '{element}' names '{target}'{others} not exist",
+    why="Nothing else in the file says what the feature says, so that part of the meaning of the "
+    "element is lost.",
+    help="restore what it names in the modelling tool, or remove the reference",
+    wrong="<node xmi:type='uml:ExpansionNode' xmi:id='n' regionAsInput='deleted'/>",
+    right="<node xmi:type='uml:ExpansionNode' xmi:id='n' regionAsInput='r'/>\n"
+    "<node xmi:type='uml:ExpansionRegion' xmi:id='r' inputElement='n'/>",
+)
 BASELESS = rule(
     "SM113",
     "stereotype-without-element",

@@ -6,12 +6,15 @@ texts the plan of their shape says all there is to do; rows of other shapes go t
 """
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from sysmlc.frontends.xmi import details, metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.ir import Edge, Kind
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.sources import DEFAULT_LIMITS
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.xmi.context import Context
 
 Shape = tuple[str, ...]
 """Feature, type, and names of the attributes in order."""
@@ -67,7 +70,7 @@ def plan_of(
         subkind,
         type_name,
         metaclasses.OWNERS.get(kind),
-        details.OF.get(kind),
+        _detail(kind, tuple(name for name in names if _says_nothing(kind, name))),
         kind is Kind.PROPERTY,
         kind in _DONE,
         tuple(_steps(kind, names)),
@@ -117,6 +120,23 @@ def _steps(kind: Kind, names: list[str]) -> Iterator[Step]:
 def _says_nothing(kind: Kind, name: str) -> bool:
     is_other = name in v.REFERENCES or name in v.CONDITIONS or (kind, name) in v.REVERSED
     return name in v.REDUNDANT and not is_other
+
+
+def _detail(kind: Kind, unread: tuple[str, ...]) -> details.Detail | None:
+    """What completes elements of the kind; of ``unread`` counts only whether they lead anywhere."""
+    known = details.OF.get(kind)
+    if not unread:
+        return known
+
+    def look(context: "Context", element: Element, row: int, type_name: str, feature: str) -> None:
+        values, ids = context.document.attributes[row], context.document.ids
+        for name in unread:
+            if values[name] not in ids:
+                context.look(row, name, values[name])
+        if known is not None:
+            known(context, element, row, type_name, feature)
+
+    return look
 
 
 def _step(kind: Kind, name: str) -> Step:

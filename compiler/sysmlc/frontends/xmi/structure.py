@@ -3,9 +3,10 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi import metaclasses, naming
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.parts import is_part
 from sysmlc.frontends.xmi.shapes import may_be_value
 from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
@@ -88,6 +89,8 @@ def reference(context: Context, row: int, feature: str) -> int:
         edge = v.FOLDED_REFERENCES.get(feature)
         if edge is not None:
             context.link(edge, owner.id, href or document.idref(row), row, feature, bool(href))
+        elif not href:
+            context.look(parent, feature, document.idref(row))
     else:
         _refer(context, owner, row, feature, href)
     return end
@@ -103,7 +106,10 @@ def _refer(context: Context, owner: Element, row: int, feature: str, href: str) 
         context.link(backwards, owner.id, target, row, feature, bool(href), is_reversed=True)
     elif feature in v.CONDITIONS:
         context.conditions([target], feature)
-    elif feature not in v.REDUNDANT and feature not in ("partWithPort", "guard", "event"):
+    elif feature in v.REDUNDANT:
+        if not href:
+            context.look(context.document.parents[row], feature, target)
+    elif feature not in ("partWithPort", "guard", "event"):
         _keep(context, owner, row, feature, href)
 
 
@@ -116,6 +122,10 @@ def _keep(context: Context, owner: Element, row: int, feature: str, href: str) -
         context.keep_ids(owner, key, context.document.targets(parent, feature))
 
 
+_SAID_BY_OWNER = naming.NAMING - v.FOLDED_REFERENCES.keys()
+"""Features of what is an edge of its owner: they lead back to it, or to what both are in."""
+
+
 # -- edges of the owner ------------------------------------------------------------------------
 
 
@@ -124,14 +134,18 @@ def _edge(context: Context, row: int) -> None:
     owner = context.owner(row)
     if owner is None:
         return
+    values = context.document.attributes[row]
     for feature, edge in v.FOLDED_REFERENCES.items():
-        for target in context.document.tokens(context.document.attributes[row].get(feature, "")):
+        for target in context.document.tokens(values.get(feature, "")):
             context.link(edge, owner.id, target, row, feature)
+    for feature in filter(_SAID_BY_OWNER.__contains__, values):
+        context.look(row, feature, values[feature])
 
 
 def _extension(context: Context, row: int) -> None:
     """The ends of an extension say what the property ``base_...`` of the stereotype says."""
     context.subtree(row, Verdict.MAPPED)
+    look_inside(context, row)
 
 
 def _property(context: Context, row: int) -> None:
@@ -147,6 +161,7 @@ def _property(context: Context, row: int) -> None:
 def _metaclass(context: Context, row: int, owner: Element) -> None:
     document = context.document
     context.subtree(row, Verdict.MAPPED)
+    look_inside(context, row)
     for target in document.targets(row, "type"):
         context.link(Edge.EXTENDS, owner.id, target, row, "type")
     for child in document.children(row, "type"):
@@ -165,6 +180,8 @@ def _image(context: Context, row: int) -> None:
 def value_in(context: Context, row: int) -> ValueText:
     """The value in a row; it and its content are mapped."""
     context.subtree(row, Verdict.MAPPED)
+    if not context.document.types[row].startswith("Literal"):
+        look_inside(context, row, ("instance", "element", "observation"))
     return value_of(context.document, row)
 
 
