@@ -1,10 +1,9 @@
 """What CAEX says in other words than the graph, and what it cannot say."""
 
 import pytest
-from writing_aml import at, read, refined, root, round_trip, saved
+from writing_aml import refined, saved
 
 from sysmlc.backends.aml import rules
-from sysmlc.sources import Source
 
 RULES = (
     rules.UNSAID_KIND,

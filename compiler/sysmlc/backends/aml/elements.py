@@ -213,7 +213,7 @@ def _refer(book: Book, unit: Unit) -> None:
 
 def _slot(book: Book, unit: Unit, slot: Element) -> None:
     feature = book.graph.target(slot, Edge.INSTANCE_OF)
-    if feature is None:
+    if feature is None or not (feature.kind is Kind.PORT or attributes.is_attribute(book, feature)):
         return
     book.say(Edge.INSTANCE_OF, slot, feature)
     path = _path(book, slot)

@@ -1,0 +1,272 @@
+"""What is saved as CAEX is read back as the same graph."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from structure_of import structure
+from writing_aml import IGNORED, at, read, refined, root, round_trip, saved
+
+from examples.compiling import EXAMPLES, compile_example
+from sysmlc.ir.diff import diff
+from sysmlc.sources import Source
+
+PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">
+<Description>A gate</Description>
+<SuperiorStandardVersion>AutomationML 2.10</SuperiorStandardVersion>
+<SourceDocumentInformation OriginName="us" OriginID="u" OriginVersion="1"
+ LastWritingDateTime="2024-01-01T00:00:00Z"/>
+<InstanceHierarchy Name="Plant"><Version>3</Version>
+  <InternalElement Name="line" ID="line" RefBaseSystemUnitPath="Lib/Line">
+    <Attribute Name="size"><Attribute Name="w"><Value>3</Value></Attribute></Attribute>
+    <ExternalInterface Name="in" ID="line-in" RefBaseClassPath="Ports/Port"/>
+    <InternalElement Name="belt" ID="belt" RefBaseSystemUnitPath="Lib/Belt">
+      <Attribute Name="speed"><Description>measured</Description><Value>2.5</Value></Attribute>
+      <ExternalInterface Name="out" ID="belt-out" RefBaseClassPath="Ports/Port"/>
+    </InternalElement>
+    <InternalElement Name="own" ID="own">
+      <Attribute Name="mode" AttributeDataType="xs:string"><Value>auto</Value></Attribute>
+      <ExternalInterface Name="p" ID="own-p" RefBaseClassPath="Ports/Port">
+        <Attribute Name="Direction"><Value>Out</Value></Attribute>
+        <Attribute Name="Cardinality"><Attribute Name="MinOccur"><Value>0</Value></Attribute>
+          <Attribute Name="MaxOccur"><Value>2</Value></Attribute></Attribute>
+        <Attribute Name="colour"><Value>red</Value></Attribute>
+        <ExternalInterface Name="inner" ID="own-p-inner" RefBaseClassPath="Ports/Port"/>
+      </ExternalInterface>
+      <RoleRequirements RefBaseRoleClassPath="Roles/Mover">
+        <MappingObject><AttributeNameMapping SystemUnitAttributeName="mode"
+          RoleAttributeName="operation"/></MappingObject>
+      </RoleRequirements>
+    </InternalElement>
+    <InternalElement Name="again" ID="again" RefBaseSystemUnitPath="belt"/>
+    <InternalElement Name="view" ID="view">
+      <ExternalInterface Name="in" ID="view-in" RefBaseClassPath="line-in"/>
+      <RoleRequirements RefBaseRoleClassPath="%s/Facet"/>
+    </InternalElement>
+    <InternalElement Name="all" ID="all">
+      <Attribute Name="AssociatedFacet"><Value>view</Value></Attribute>
+      <InternalElement Name="belt" ID="all-belt" RefBaseSystemUnitPath="belt"/>
+      <RoleRequirements RefBaseRoleClassPath="%s/Group"/>
+    </InternalElement>
+    <InternalLink Name="l" RefPartnerSideA="line-in" RefPartnerSideB="belt-out"/>
+    <InternalLink Name="m" RefPartnerSideA="own-p-inner" RefPartnerSideB="belt-out"/>
+    <InternalLink Name="open" RefPartnerSideA="line-in" RefPartnerSideB=""/>
+    <InternalLink Name="free" RefPartnerSideA="line-in" RefPartnerSideB="connection A0"/>
+  </InternalElement>
+  <InternalElement Name="lost" ID="lost" RefBaseSystemUnitPath="Lib/Gone"/>
+</InstanceHierarchy>
+<InterfaceClassLib Name="Ports"><InterfaceClass Name="Port"/></InterfaceClassLib>
+<RoleClassLib Name="Roles"><RoleClass Name="Mover"><Attribute Name="operation"/></RoleClass>
+</RoleClassLib>
+<SystemUnitClassLib Name="Lib">
+  <SystemUnitClass Name="A/B"><Attribute Name="x"/></SystemUnitClass>
+  <SystemUnitClass Name="Belt" RefBaseClassPath="[Lib]/[A/B]">
+    <Attribute Name="speed" AttributeDataType="xs:double" Unit="m/s" RefAttributeType="Types/Speed">
+      <DefaultValue>1.0</DefaultValue><RefSemantic CorrespondingAttributePath="IRDI:speed"/>
+      <Constraint Name="bounds"><OrdinalScaledType><RequiredMaxValue>5</RequiredMaxValue>
+        <RequiredMinValue>0.5</RequiredMinValue></OrdinalScaledType></Constraint>
+      <Constraint Name="free"><UnknownType><Requirements>not too fast</Requirements></UnknownType>
+      </Constraint>
+    </Attribute>
+    <ExternalInterface Name="out" ID="b-out" RefBaseClassPath="Ports/Port"/>
+  </SystemUnitClass>
+  <SystemUnitClass Name="Line">
+    <Description>Moves</Description><Copyright>us</Copyright>
+    <Revision><RevisionDate>2024-01-01T00:00:00Z</RevisionDate><AuthorName>A</AuthorName></Revision>
+    <AdditionalInformation Tool="x"><Inner Key="k">text</Inner></AdditionalInformation>
+    <SourceObjectInformation OriginID="u" SourceObjID="7"/>
+    <Attribute Name="size"><Attribute Name="w" AttributeDataType="xs:double"><Value>1</Value>
+    </Attribute></Attribute>
+    <ExternalInterface Name="in" ID="l-in" RefBaseClassPath="Ports/Port"/>
+    <InternalElement Name="belt" ID="l-belt" RefBaseSystemUnitPath="Lib/Belt">
+      <ExternalInterface Name="out" ID="l-belt-out" RefBaseClassPath="Ports/Port"/>
+    </InternalElement>
+    <SupportedRoleClass RefRoleClassPath="Roles/Mover"/>
+    <InternalLink Name="inside" RefPartnerSideA="l-in" RefPartnerSideB="l-belt-out"/>
+    <SystemUnitClass Name="Nested" RefBaseClassPath="Line"/>
+  </SystemUnitClass>
+</SystemUnitClassLib>
+<AttributeTypeLib Name="Types">
+  <AttributeType Name="Speed" AttributeDataType="xs:double" Unit="m/s"/>
+  <AttributeType Name="Mode" AttributeDataType="xs:string"><Constraint Name="c"><NominalScaledType>
+    <RequiredValue>auto</RequiredValue><RequiredValue>hand</RequiredValue></NominalScaledType>
+  </Constraint></AttributeType>
+</AttributeTypeLib>
+</CAEXFile>""" % (("AutomationMLBaseRoleClassLib/AutomationMLBaseRole",) * 2)
+
+
+@pytest.fixture(scope="module")
+def plant():
+    return read(Source("plant.aml", PLANT.encode()))
+
+
+def test_everything_that_the_graph_keeps_of_a_plant_comes_back(plant):
+    assert len(plant) > 70
+    texts, _, changes = round_trip(plant)
+    assert list(texts) == ["aml/plant.aml"]
+    assert changes == []
+
+
+def test_a_plant_loses_nothing_and_says_so(plant):
+    assert saved(plant)[1] == []
+
+
+def test_saving_twice_gives_the_same_bytes(plant):
+    texts, back, _ = round_trip(plant)
+    assert saved(back)[0] == texts
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('Name="speed"', 'Name="pace"'),
+        ('RefPartnerSideB="belt-out"', 'RefPartnerSideB="own-p"'),
+        ("<Value>2.5</Value>", "<Value>2.6</Value>"),
+        ('RefAttributeType="Types/Speed"', ""),
+        ("<Value>Out</Value>", "<Value>In</Value>"),
+        (">not too fast<", ">fast<"),
+    ],
+)
+def test_the_comparison_sees_a_difference(plant, old, new):
+    (text,) = saved(plant)[0].values()
+    assert old in text
+    back = read(Source("plant.aml", text.replace(old, new).encode()))
+    assert diff(plant, back, IGNORED) != []
+
+
+def test_ids_are_kept_as_they_are(plant):
+    texts, _ = saved(plant)
+    given = set(root({"": PLANT}).xpath("//@ID")) - {"view-in", "all-belt"}
+    assert given <= set(root(texts).xpath("//@ID"))
+    assert at(texts, "//InternalLink[@Name='m']") == {
+        "Name": "m",
+        "RefPartnerSideA": "own-p-inner",
+        "RefPartnerSideB": "belt-out",
+    }
+
+
+def test_paths_have_brackets_only_where_a_name_needs_them(plant):
+    texts, _ = saved(plant)
+    assert at(texts, "//SystemUnitClass[@Name='Belt']")["RefBaseClassPath"] == "[Lib]/[A/B]"
+    element = at(texts, "//InternalElement[@ID='belt']")
+    assert element["RefBaseSystemUnitPath"] == "Lib/Belt"
+
+
+def test_what_leads_nowhere_is_written_as_it_was(plant):
+    texts, _ = saved(plant)
+    assert at(texts, "//InternalElement[@Name='lost']")["RefBaseSystemUnitPath"] == "Lib/Gone"
+    assert at(texts, "//InternalLink[@Name='free']")["RefPartnerSideB"] == "connection A0"
+
+
+def test_aliases_lead_to_the_files_that_are_written():
+    plant = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="p.aml">
+    <ExternalReference Path="libs/r.xml" Alias="R"/>
+    <SystemUnitClassLib Name="L"><SystemUnitClass Name="C">
+    <SupportedRoleClass RefRoleClassPath="R@Roles/Mover"/></SystemUnitClass></SystemUnitClassLib>
+    </CAEXFile>"""
+    roles = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="r.xml">
+    <RoleClassLib Name="Roles"><RoleClass Name="Mover"/></RoleClassLib></CAEXFile>"""
+    graph = read(Source("p.aml", plant.encode()), Source("libs/r.xml", roles.encode()))
+    texts, back, _ = round_trip(graph)
+    assert list(texts) == ["aml/libs/r.aml", "aml/p.aml"]
+    assert 'Path="libs/r.aml" Alias="R"' in texts["aml/p.aml"]
+    assert 'RefRoleClassPath="R@Roles/Mover"' in texts["aml/p.aml"]
+    assert [e for e in back if "unresolved" in e.attrs] == []
+
+
+# -- models of other languages -----------------------------------------------------------------
+
+LOST = {"baygate-behaviour": [("b_palletId", ("palletId", "rf.lastId"))]}
+"""Links of an example between values, not interfaces: a binding."""
+
+
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+def test_the_structure_of_an_example_comes_back(model):
+    graph = compile_example(model, "aml").graph
+    _, back, _ = round_trip(graph)
+    before, after = structure(graph), structure(back)
+    assert sum(map(sum, (found.values() for found in before.values()))) > 20
+    lost = LOST.get(model.parent.name, [])
+    assert list((before["links"] - after["links"]).elements()) == lost
+    for subject in before.keys() - {"links"}:
+        assert before[subject] == after[subject], subject
+
+
+BLOCKS = """
+Package p "Plant"
+  Class passage "Passage" role="interface block"
+  Class belt "Belt" role="block"
+    Port belt.out "out" direction="out" multiplicity="2"
+      -> typed-by passage
+    Property belt.v "speed" role="value" default=1.5
+      -> typed-by real
+  Class fast "Fast" role="block"
+    -> specializes belt
+  Class moves "Moves" role="block"
+  Class line "Line" role="block"
+    -> realizes moves
+    Port line.in "in" direction="in"
+      -> typed-by passage
+    Property line.b "belt" role="part" aggregation="composite"
+      -> typed-by fast
+    Connector line.c "wire"
+      -> end line.c.1
+      -> end line.c.2
+      ConnectorEnd line.c.1 ""
+        -> role line.in
+      ConnectorEnd line.c.2 ""
+        -> role belt.out
+        -> path line.b
+  Instance one "Line 1"
+    -> instance-of line
+DataType real "Real" subkind="primitive" external=true
+"""
+
+
+def test_blocks_become_classes_and_parts_internal_elements():
+    texts, told = saved(refined(BLOCKS))
+    assert told == []
+    assert at(texts, "//SystemUnitClass[@Name='Fast']")["RefBaseClassPath"] == "Plant/Belt"
+    assert at(texts, "//InterfaceClass") == {"Name": "Passage"}
+    assert at(texts, "//RoleClassLib/RoleClass") == {"Name": "Moves"}
+    assert at(texts, "//SystemUnitClass/SupportedRoleClass") == {"RefRoleClassPath": "Plant/Moves"}
+    element = at(texts, "//SystemUnitClass/InternalElement")
+    assert (element["Name"], element["RefBaseSystemUnitPath"]) == ("belt", "Plant/Fast")
+    assert at(texts, "//InstanceHierarchy/InternalElement")["RefBaseSystemUnitPath"] == "Plant/Line"
+    speed = at(texts, "//Attribute[@Name='speed']")
+    assert speed == {"Name": "speed", "AttributeDataType": "xs:double"}
+    (port,) = root(texts).xpath("//SystemUnitClass[@Name='Belt']/ExternalInterface")
+    assert port.xpath("Attribute[@Name='Direction']/Value/text()") == ["Out"]
+    assert port.xpath("Attribute[@Name='Cardinality']//Value/text()") == ["2", "2"]
+
+
+def test_a_connector_ends_at_the_interface_of_the_part():
+    texts, _ = saved(refined(BLOCKS))
+    link = at(texts, "//InternalLink")
+    inside = at(texts, "//InternalElement[@Name='belt']/ExternalInterface")
+    frame = at(texts, "//SystemUnitClass[@Name='Line']/ExternalInterface")
+    assert (link["RefPartnerSideA"], link["RefPartnerSideB"]) == (frame["ID"], inside["ID"])
+
+
+def test_ids_of_other_languages_are_computed_and_each_is_there_once():
+    texts, _ = saved(refined(BLOCKS))
+    ids = root(texts).xpath("//@ID")
+    assert len(ids) == len(set(ids)) == 5
+    assert all(len(id) == 36 for id in ids)
+    assert saved(refined(BLOCKS))[0] == texts
+
+
+def test_an_empty_graph_is_an_empty_file():
+    (text,) = saved(refined(""))[0].values()
+    assert [one.tag for one in root({"": text})] == ["SourceDocumentInformation"]
+
+
+def test_order_of_hashes_is_not_in_the_file(tmp_path):
+    command = [sys.executable, "-m", "sysmlc", "build", str(EXAMPLES[0]), "--emit", "aml"]
+    for seed in ("0", "7"):
+        environment = os.environ | {"PYTHONHASHSEED": seed}
+        arguments = [*command, "--no-cache", "-o", str(tmp_path / seed)]
+        subprocess.run(arguments, env=environment, capture_output=True, check=False)
+    made = [next((tmp_path / seed).rglob("*.aml")).read_bytes() for seed in ("0", "7")]
+    assert made[0] == made[1]
