@@ -7,13 +7,15 @@ block has, under the action's name; ``calls`` of the overlay says it where that 
 from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import generals, type_of
+from sysmlc.ir.query import generals, parameters, type_of
 from sysmlc.overlay import BlockEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.behaviors import behaviors_of, block_of
 from sysmlc.passes.overlay.finder import OPERATION, Finder
 from sysmlc.suggest import did_you_mean
 
+_IN = ("in", "inout")
+_OUT = ("out", "inout", "return")
 _Scope = dict[str, list[Element]]
 """Operations by the names under which a behaviour of the block can call them."""
 
@@ -80,6 +82,7 @@ def _resolve_as_told(
     if operation is not None:
         for action in actions:
             finder.graph.replace_targets(Edge.CALLS, action, [operation])
+            _type_pins(finder, action, operation)
 
 
 def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Element) -> None:
@@ -87,6 +90,7 @@ def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Elem
     found = list(dict.fromkeys(scope.get(action.name, ())))
     if len(found) == 1:
         graph.connect(Edge.CALLS, action, found[0])
+        _type_pins(finder, action, found[0])
         return
     listed = ", ".join(f"'{graph.qualified_name(one)}'" for one in found)
     rule = rules.CALL_OF_SEVERAL if found else rules.CALL_OF_NONE
@@ -95,6 +99,18 @@ def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Elem
     subject = graph.subject(action)
     finder.sink.report(rule, subject, action=action.name, block=name, listed=listed, advice=advice)
     _mark_unresolved(finder, action)
+
+
+def _type_pins(finder: Finder, action: Element, operation: Element) -> None:
+    """Pins without a type have that of their parameter (UML 2.5.1 clause 16.3.3)."""
+    graph = finder.graph
+    pins = [one for one in graph.owned(action) if one.kind is Kind.PIN]
+    for subkind, directions in (("argument", _IN), ("result", _OUT)):
+        own = [one for one in pins if one.subkind == subkind]
+        for pin, parameter in zip(own, parameters(graph, operation, *directions), strict=False):
+            type_ = graph.target(parameter, Edge.TYPED_BY)
+            if type_ is not None and graph.target(pin, Edge.TYPED_BY) is None:
+                graph.connect(Edge.TYPED_BY, pin, type_)
 
 
 def _mark_unresolved(finder: Finder, action: Element) -> None:
