@@ -1,0 +1,163 @@
+"""Metadata of an element: stereotypes with their tags, ids of AutomationML, what UML alone says."""
+
+from collections.abc import Mapping
+
+from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import reference, visible
+from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.stereotypes import is_standard
+from sysmlc.backends.sysml.words import quoted, string
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias"})
+_SUBKINDS = (
+    Kind.CLASS,
+    Kind.COMPONENT,
+    Kind.PROPERTY,
+    Kind.PACKAGE,
+    Kind.ASSOCIATION,
+    Kind.INSTANCE,
+    Kind.STATE_MACHINE,
+    Kind.OBJECT_NODE,
+    Kind.STRUCTURED,
+    Kind.CONSTRAINT,
+)
+"""Kinds whose subkind no keyword of SysML v2 says."""
+_PLAIN_TYPES = frozenset(
+    {"xs:double", "xs:string", "xs:boolean", "xs:integer", "xs:int", "xs:float", "xs:decimal", ""}
+)
+_AML = {
+    "data_type": "dataType",
+    "category": "category",
+    "semantics": "semantics",
+    "version": "version",
+    "change_mode": "changeMode",
+    "copyright": "copyright",
+    "ppr": "ppr",
+    "associated_facet": "associatedFacet",
+}
+
+
+def of(book: Book, entry: Entry) -> list[Line]:
+    """All metadata of an element."""
+    element = entry.element
+    if element is None:
+        return []
+    return [
+        *_aml(book, entry, element),
+        *_interfaces(book, entry, element),
+        *_kind(book, entry, element),
+        *_outside(book, entry, element),
+        *_applications(book, entry, element),
+    ]
+
+
+def ours(book: Book, entry: Entry, name: str, facts: Mapping[str, AttrValue]) -> Line:
+    """An annotation by a metadata definition of our library; absent values are left out."""
+    body = [
+        Line(f"{key} = {_value(value)}") for key, value in facts.items() if value not in (None, "")
+    ]
+    return Line(f"@{book.ours(entry, name)}", body, is_short=True)
+
+
+def _value(value: AttrValue) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(_value(one) for one in value)})"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, int | float) else string(str(value))
+
+
+def _aml(book: Book, entry: Entry, element: Element) -> list[Line]:
+    facts: dict[str, AttrValue] = {}
+    if element.source in book.caex:
+        local = element.id.rpartition("#")[2]
+        is_own = "/" not in local and local not in ("", element.name) and "#" not in element.id[:0]
+        facts["id"] = local if is_own else None
+    for key, name in _AML.items():
+        given = element.attrs.get(key)
+        if given is not None and (key != "data_type" or given not in _PLAIN_TYPES):
+            facts[name] = _flat(given)
+    if facts and _is_told(element):
+        facts["kind"] = element.subkind
+    kept = {key: value for key, value in facts.items() if value not in (None, "", ())}
+    return [ours(book, entry, "AutomationML", kept)] if kept else []
+
+
+def _flat(value: AttrValue) -> AttrValue:
+    """Pairs as one text each: attributes of metadata hold no lists of lists."""
+    if isinstance(value, tuple):
+        return tuple("=".join(map(str, one)) if isinstance(one, tuple) else one for one in value)
+    return value
+
+
+def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
+    if not _is_told(element) or element.source in book.caex:
+        return []
+    return [ours(book, entry, "Kind", {"name": element.subkind})]
+
+
+def _is_told(element: Element) -> bool:
+    subkind = element.subkind
+    return bool(subkind) and element.kind in _SUBKINDS and subkind not in _STRUCTURAL
+
+
+def _interfaces(book: Book, entry: Entry, element: Element) -> list[Line]:
+    """Ids that the interfaces of an InternalElement have besides those of its class."""
+    given = element.attrs.get("interface_ids")
+    lines = []
+    for pair in given if isinstance(given, tuple) else ():
+        port, id = pair if isinstance(pair, tuple) else ("", "")
+        target = book.graph.get(str(port))
+        name = None if target is None else book.redefined(entry, target)
+        if name is not None:
+            note = ours(book, entry, "AutomationML", {"id": id})
+            lines.append(Line(f"port :>> {name}", [note]))
+    return lines
+
+
+def _outside(book: Book, entry: Entry, element: Element) -> list[Line]:
+    href = element.attrs.get("href")
+    if element.attrs.get("external") and href:
+        return [ours(book, entry, "External", {"href": href})]
+    return []
+
+
+def _applications(book: Book, entry: Entry, element: Element) -> list[Line]:
+    lines = []
+    for one in book.graph.sources(element, Edge.SUBJECT):
+        if one.kind is not Kind.APPLICATION or one.id in book.said:
+            continue
+        book.said.add(one.id)
+        if is_standard(one):
+            continue
+        definition = book.plan.applied.get(one.id)
+        if definition is not None:
+            lines.append(_application(book, entry, one, definition))
+    return lines
+
+
+def _application(book: Book, entry: Entry, one: Element, definition: Entry) -> Line:
+    name = reference(book.plan, entry, definition)
+    body = []
+    for key, value in one.attrs.items():
+        tag = key.removeprefix("tag.")
+        if not key.startswith("tag."):
+            continue
+        if tag not in visible(book.plan, definition):
+            book.losses.note(UNSAID_ATTRIBUTE, one, attribute=key, kind=one.name or "Application")
+            continue
+        body.append(Line(f"{quoted(tag)} = {_tagged(book, value)}"))
+    return Line(f"@{name}", body, is_short=True)
+
+
+def _tagged(book: Book, value: AttrValue) -> str:
+    """A tagged value; elements are named by their qualified names."""
+    if isinstance(value, tuple):
+        return f"({', '.join(_tagged(book, one) for one in value)})"
+    if isinstance(value, str):
+        found = book.graph.get(value)
+        return string(value if found is None else book.graph.qualified_name(found))
+    return _value(value)

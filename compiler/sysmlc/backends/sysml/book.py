@@ -1,0 +1,89 @@
+"""What all writers share: the plan, the losses, and what of the graph has been said."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from sysmlc.backends.sysml.plan import Entry, Plan
+from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import library_name, named, redefined_name
+from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
+from sysmlc.ir import Edge, Element, Graph
+
+Writer = Callable[["Book", Entry], list[Line]]
+"""Writes a member of a namespace, with what belongs beside it."""
+
+
+@dataclass(slots=True)
+class Book:
+    """The text as far as it is written."""
+
+    graph: Graph
+    plan: Plan
+    losses: Losses
+    writers: dict[str, Writer] = field(default_factory=dict)
+    """Writer by kind of element."""
+    said: set[str] = field(default_factory=set)
+    """Ids of elements that the text says."""
+    extra: dict[int, list[Line]] = field(default_factory=dict)
+    """Members that something else in the model adds to a namespace, by the entry's identity."""
+    objectives: dict[int, list[Line]] = field(default_factory=dict)
+    """What verification cases verify, by the entry's identity."""
+    prepared: dict[int, list[Line]] = field(default_factory=dict)
+    """What is written before its turn, by the entry's identity."""
+    caex: frozenset[str] = frozenset()
+    """Files that are AutomationML: their elements keep their ids."""
+    uses_library: bool = False
+
+    def name(self, scope: Entry | None, holder: Element, edge: Edge, target: Element) -> str | None:
+        """The name of what an edge leads to; a loss when nothing names it."""
+        found = named(self.plan, scope, target)
+        if found is None:
+            self.lost(holder, str(edge.value))
+        return found
+
+    def names(self, scope: Entry | None, holder: Element, edge: Edge) -> list[str]:
+        """Names of all that the edges of a kind lead to."""
+        targets = self.graph.targets(holder, edge)
+        found = (self.name(scope, holder, edge, target) for target in targets)
+        return [one for one in found if one is not None]
+
+    def lost(self, holder: Element, what: str) -> None:
+        """A reference to something without a name."""
+        self.losses.note(UNREACHABLE, holder, edge=what, kind=str(holder.kind))
+
+    def approximated(self, element: Element, said: str, written: str) -> None:
+        """Something that is said in other words."""
+        self.losses.note(APPROXIMATED, element, said=said, written=written)
+
+    def library(self, scope: Entry | None, name: str) -> str:
+        """A name of the standard library, or of ours."""
+        self.uses_library = self.uses_library or name.startswith("SysMLC::")
+        return library_name(self.plan, scope, name)
+
+    def ours(self, scope: Entry | None, name: str) -> str:
+        """A name of our own library, which is then written beside the text."""
+        return self.library(scope, f"SysMLC::{name}")
+
+    def redefined(self, scope: Entry | None, target: Element) -> str | None:
+        """The name of a feature that is redefined in a namespace."""
+        entry = self.plan.entry(target)
+        return None if entry is None else redefined_name(self.plan, scope, entry)
+
+    def beside(self, entry: Entry, head: str) -> None:
+        """Add a member to a namespace, after those of the model."""
+        self.extra.setdefault(id(entry), []).append(Line(head))
+
+    def members(self, entry: Entry) -> list[Line]:
+        """The members of a namespace, those of the model first."""
+        lines = [line for one in entry.members for line in self.member(one)]
+        return lines + self.extra.pop(id(entry), [])
+
+    def member(self, entry: Entry) -> list[Line]:
+        """One member."""
+        if entry.element is None:
+            return self.writers[""](self, entry)
+        write = self.writers.get(str(entry.element.kind))
+        if write is None:
+            return []
+        self.said.add(entry.element.id)
+        return write(self, entry)

@@ -1,0 +1,206 @@
+"""Declarations: prefixes, keyword, name, types, specialisations, multiplicity, value."""
+
+from dataclasses import dataclass
+
+from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.expressions import expression
+from sysmlc.backends.sysml.library import scalar_of
+from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.words import quoted
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import bounds
+
+_VISIBILITIES = ("private", "protected")
+_REFERENTIAL = frozenset({"port", "attribute", "metadata"})
+"""Keywords of what holds no composite features but ports and attributes."""
+
+
+@dataclass(slots=True)
+class Head:
+    """What a declaration consists of; empty parts are left out."""
+
+    prefixes: list[str]
+    keyword: str
+    name: str = ""
+    types: list[str] | None = None
+    multiplicity: str = ""
+    subsets: list[str] | None = None
+    redefines: list[str] | None = None
+    value: str = ""
+
+    def text(self) -> str:
+        """The declaration."""
+        words = [*self.prefixes, self.keyword, self.name]
+        text = " ".join(word for word in words if word)
+        if self.types:
+            text += f" : {', '.join(self.types)}"
+        text += self.multiplicity
+        for mark, names in ((":>", self.subsets), (":>>", self.redefines)):
+            if names:
+                text += f" {mark} {', '.join(names)}"
+        return text + self.value
+
+
+def visibility(element: Element) -> list[str]:
+    """The prefix for a visibility that is not public."""
+    found = element.attrs.get("visibility")
+    return [str(found)] if found in _VISIBILITIES else []
+
+
+def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head:
+    """Declaration of a definition, or of a usage that stands for one, with its generals.
+
+    Those of a quantity are left to its writer.
+    """
+    element = _element(entry)
+    prefixes = visibility(element)
+    if element.attrs.get("abstract"):
+        prefixes.append("abstract")
+    head = Head(prefixes, entry.shape.keyword, quoted(entry.name) if entry.name else "")
+    head.subsets = [] if is_quantity else _generals(book, entry)
+    return head
+
+
+def _generals(book: Book, entry: Entry) -> list[str]:
+    element = _element(entry)
+    found = []
+    for general in book.graph.targets(element, Edge.SPECIALIZES):
+        other = book.plan.entry(general)
+        if scalar_of(general) is not None:
+            found.append(book.library(entry.parent, str(scalar_of(general))))
+        elif other is not None and other.shape.plain != entry.shape.plain and _is_odd(other, entry):
+            book.approximated(element, f"generalization of {entry.shape.keyword}", "dependency")
+            name = book.name(entry, element, Edge.SPECIALIZES, general)
+            if name is not None:
+                mark = book.ours(entry, "generalization")
+                book.beside(entry, f"#{mark} dependency from {quoted(entry.name)} to {name}")
+        else:
+            name = book.name(entry.parent, element, Edge.SPECIALIZES, general)
+            found += [] if name is None else [name]
+    return found
+
+
+def _is_odd(general: Entry, specific: Entry) -> bool:
+    """Whether one kind of definition cannot specialise the other."""
+    pair = (specific.shape.plain, general.shape.plain)
+    return pair not in _CONFORMING and general.shape.is_definition == specific.shape.is_definition
+
+
+_CONFORMING = frozenset(
+    {
+        ("part", "item"),
+        ("part", "occurrence"),
+        ("item", "occurrence"),
+        ("port", "occurrence"),
+        ("action", "occurrence"),
+        ("state", "action"),
+        ("verification", "action"),
+        ("enum", "attribute"),
+        ("connection", "part"),
+        ("interface", "connection"),
+        ("interface", "part"),
+        ("connection", "occurrence"),
+    }
+)
+
+
+def feature_head(book: Book, entry: Entry) -> Head:
+    """Declaration of a feature, without its value."""
+    element = _element(entry)
+    keyword = entry.shape.keyword
+    head = Head(feature_prefixes(entry, keyword), keyword if keyword != "ref" else "")
+    head.types, head.subsets = typing(book, entry, element)
+    head.multiplicity = multiplicity(book, entry.parent, element)
+    _redefine(book, entry, head)
+    return head
+
+
+def feature_prefixes(entry: Entry, keyword: str) -> list[str]:
+    """Visibility, direction, and the other words before the keyword of a feature."""
+    element, attrs = _element(entry), _element(entry).attrs
+    prefixes = visibility(element)
+    direction = attrs.get("direction")
+    if direction in ("in", "out", "inout", "return"):
+        prefixes.append("out" if direction == "return" else str(direction))
+    prefixes += [word for word in ("derived", "abstract") if attrs.get(word)]
+    if attrs.get("readonly"):
+        prefixes.append("constant")
+    is_part = attrs.get("aggregation") == "composite" or element.role == "part"
+    if keyword == "ref" and direction is None:
+        prefixes.append("ref")
+    elif direction is None and keyword not in ("attribute", "port") and not is_part:
+        is_property = element.kind in (Kind.PROPERTY, Kind.FLOW_PROPERTY)
+        prefixes += ["ref"] if is_property or _is_referential(entry) else []
+    elif direction is None and keyword not in ("attribute", "port") and _is_referential(entry):
+        prefixes.append("ref")
+    return prefixes
+
+
+def _is_referential(entry: Entry) -> bool:
+    return entry.parent is not None and entry.parent.shape.plain in _REFERENTIAL
+
+
+def typing(book: Book, entry: Entry, element: Element) -> tuple[list[str], list[str]]:
+    """Types of a feature, and features that it subsets because they stand for its type."""
+    types, subsets = [], []
+    for type_ in book.graph.targets(element, Edge.TYPED_BY):
+        name = type_name(book, entry.parent, element, type_)
+        other = book.plan.entry(type_)
+        if name is None:
+            continue
+        if other is not None and not other.shape.is_definition:
+            subsets.append(name)
+        else:
+            types.append(f"~{name}" if element.attrs.get("conjugated") else name)
+    for feature in book.graph.targets(element, Edge.SUBSETS):
+        name = book.name(entry.parent, element, Edge.SUBSETS, feature)
+        subsets += [] if name is None else [name]
+    return types, subsets
+
+
+def type_name(book: Book, scope: Entry | None, holder: Element, type_: Element) -> str | None:
+    """The name of a type; scalar types are those of the standard library."""
+    scalar = scalar_of(type_)
+    if scalar is not None:
+        return book.library(scope, scalar)
+    return book.name(scope, holder, Edge.TYPED_BY, type_)
+
+
+def multiplicity(book: Book, scope: Entry | None, element: Element) -> str:
+    """Multiplicity in brackets, with ``ordered`` and ``nonunique``; exactly one says nothing."""
+    given = element.attrs.get("multiplicity")
+    text = "" if given is None else _bounds(book, scope, element, str(given))
+    text += " ordered" if element.attrs.get("ordered") else ""
+    return text + (" nonunique" if element.attrs.get("unique") is False else "")
+
+
+def _bounds(book: Book, scope: Entry | None, element: Element, given: str) -> str:
+    if bounds(given) is not None:
+        return f"[{given}]"
+    parts = [expression(book, scope, part) for part in given.split("..")]
+    if all(parts):
+        return f"[{'..'.join(str(part) for part in parts)}]"
+    facts = {"attribute": "multiplicity", "kind": str(element.kind)}
+    book.losses.note(UNSAID_ATTRIBUTE, element, **facts)
+    return ""
+
+
+def _redefine(book: Book, entry: Entry, head: Head) -> None:
+    element = _element(entry)
+    head.redefines = []
+    is_same = False
+    for feature in book.graph.targets(element, Edge.REDEFINES):
+        other = book.plan.entry(feature)
+        name = book.redefined(entry.parent, feature)
+        if name is None or other is None:
+            book.lost(element, "redefines")
+            continue
+        is_same = is_same or other.name == entry.name
+        head.redefines.append(name)
+    head.name = "" if is_same else quoted(entry.name)
+
+
+def _element(entry: Entry) -> Element:
+    assert entry.element is not None
+    return entry.element

@@ -1,0 +1,83 @@
+"""The whole text: the plan, then every member, then what was not said."""
+
+from sysmlc.backends.sysml import (
+    automation,
+    connections,
+    constraints,
+    imports,
+    instances,
+    relations,
+    structure,
+    texts,
+)
+from sysmlc.backends.sysml.account import account
+from sysmlc.backends.sysml.book import Book, Writer
+from sysmlc.backends.sysml.plan import Entry, make_plan, name_all
+from sysmlc.backends.sysml.printing import Line, printed
+from sysmlc.backends.sysml.profiles import define
+from sysmlc.backends.sysml.rules import Losses
+from sysmlc.backends.sysml.words import quoted
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph, Kind
+
+
+def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
+    """The text, and whether it uses our library; what it cannot say is reported."""
+    losses = Losses(graph)
+    plan = make_plan(graph, losses)
+    plan.applied = define(plan)
+    name_all(plan)
+    caex = (one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
+    book = Book(graph, plan, losses, WRITERS, caex=frozenset(caex))
+    relations.prepare(book)
+    lines = [line for top in plan.tops for line in book.member(top)]
+    account(book)
+    losses.report(sink)
+    return printed(lines), book.uses_library
+
+
+def _added(book: Book, entry: Entry) -> list[Line]:
+    """A member that no element stands for."""
+    if entry.shape.keyword == "package":
+        return structure.package(book, entry)
+    type_ = book.plan.added.get(id(entry), "")
+    head = f"{entry.shape.keyword} {quoted(entry.name)}{' : ' if type_ else ''}{type_}"
+    return [Line(head, book.members(entry))]
+
+
+WRITERS: dict[str, Writer] = {
+    "": _added,
+    Kind.PACKAGE: structure.package,
+    Kind.PROFILE: structure.package,
+    Kind.CLASS: relations.class_,
+    Kind.COMPONENT: structure.classifier,
+    Kind.ACTOR: structure.classifier,
+    Kind.INTERFACE: structure.classifier,
+    Kind.DATA_TYPE: structure.value_type,
+    Kind.ENUMERATION: structure.enumeration,
+    Kind.ENUMERATION_LITERAL: structure.enumerated,
+    Kind.SIGNAL: structure.classifier,
+    Kind.ITEM: structure.classifier,
+    Kind.STEREOTYPE: structure.classifier,
+    Kind.PROPERTY: structure.property_,
+    Kind.FLOW_PROPERTY: structure.feature,
+    Kind.PORT: structure.port,
+    Kind.OPERATION: structure.operation,
+    Kind.RECEPTION: structure.reception,
+    Kind.PARAMETER: structure.parameter,
+    Kind.ASSOCIATION: structure.association,
+    Kind.CONNECTOR: connections.connector,
+    Kind.ITEM_FLOW: connections.item_flow,
+    Kind.INSTANCE: instances.instance,
+    Kind.CONSTRAINT: constraints.constraint,
+    Kind.COMMENT: texts.comment,
+    Kind.DEPENDENCY: relations.dependency,
+    Kind.REQUIREMENT: relations.requirement,
+    Kind.IMPORT: imports.import_,
+    Kind.DOCUMENT: automation.facts,
+    Kind.METADATA: automation.facts,
+    Kind.ALIAS: automation.facts,
+    Kind.FACET: automation.group,
+    Kind.GROUP: automation.group,
+}
+"""Writer by kind of element; the empty kind is for members that the text adds itself."""
