@@ -173,6 +173,48 @@ def test_bounds(value, multiplicity):
     assert read(papyrus(model)).graph["x"].attrs.get("multiplicity") == multiplicity
 
 
+BOUND = '<{}Value xmi:type="uml:{}" value="{}"/>'
+EXPRESSION = '<upperValue xmi:type="uml:OpaqueExpression"><body>size</body></upperValue>'
+
+
+@pytest.mark.parametrize(
+    ("value", "multiplicity"),
+    [
+        (BOUND.format("upper", "LiteralString", "many"), "1..many"),
+        (BOUND.format("upper", "LiteralUnlimitedNatural", "many"), "1..many"),
+        (BOUND.format("upper", "LiteralReal", "2.5"), "1..2.5"),
+        (BOUND.format("lower", "LiteralInteger", "-3"), "-3..1"),
+        (BOUND.format("lower", "LiteralUnlimitedNatural", "*"), "*..1"),
+        (BOUND.format("upper", "LiteralInteger", "٣"), "1..٣"),
+        ("<lower>0</lower><upper>many</upper>", "0..many"),
+    ],
+)
+def test_a_bound_that_is_no_number_is_told_at_its_element(value, multiplicity):
+    reading = read(
+        papyrus(CLASS % f'<ownedAttribute xmi:id="x" name="motors">{value}</ownedAttribute>')
+    )
+    (found,) = reading.sink
+    assert (found.rule.code, found.subject.id) == ("SM117", "x")
+    assert found.message.startswith(f"multiplicity {multiplicity} of 'M::")
+    assert reading.graph["x"].attrs["multiplicity"] == multiplicity
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        BOUND.format("upper", "LiteralString", "3"),
+        BOUND.format("upper", "LiteralString", "*"),
+        BOUND.format("lower", "LiteralInteger", "0"),
+        BOUND.format("lower", "LiteralUnlimitedNatural", "*")
+        + BOUND.format("upper", "LiteralUnlimitedNatural", "*"),
+        EXPRESSION,
+    ],
+)
+def test_a_bound_is_a_number_or_an_expression(value):
+    model = CLASS % f'<ownedAttribute xmi:id="x" name="motors">{value}</ownedAttribute>'
+    assert read(papyrus(model)).findings == []
+
+
 @pytest.mark.parametrize(("lower", "upper"), [("0", "*"), ("0", "-1")])
 def test_bounds_as_attributes(lower, upper):
     model = CLASS % f'<ownedAttribute xmi:id="x" lower="{lower}" upper="{upper}"/>'

@@ -5,7 +5,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
-from sysmlc.frontends.xmi import dangling, details, metaclasses, naming, rules
+from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.dangling import Loose
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
@@ -62,7 +62,9 @@ class Context:
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
         self.flow_targets: frozenset[str] | None = None
-        self._bounds: dict[str, list[AttrValue]] = {}
+        self.computed: set[str] = set()
+        """Elements with a bound that is an expression."""
+        self.bounds: dict[str, list[AttrValue]] = {}
         self._positions: dict[tuple[str, str], int] = {}
         self._conditions: list[tuple[str, str]] = []
         self._late: list[tuple[Element, str, list[str], bool]] = []
@@ -311,16 +313,13 @@ class Context:
         """Lower (0) or upper (1) bound of the element above the row."""
         gid = self.gids[row]
         if gid:
-            self._bounds.setdefault(gid, [1, 1])[index] = value
+            self.bounds.setdefault(gid, [1, 1])[index] = value
 
     # -- at the end ----------------------------------------------------------------------------
 
     def finish(self) -> None:
         """What could only be said when every row of every document was read."""
-        for gid, (lower, upper) in self._bounds.items():
-            text = multiplicity(lower, upper)
-            if text:
-                self.graph[gid].attrs["multiplicity"] = text
+        bounds.write(self)
         for target, subkind in self._conditions:
             row = self.document.ids.get(target, -1)
             if row >= 0 and self.lowered.own[row]:
@@ -331,13 +330,6 @@ class Context:
             ids = tuple(id for id in found if id is not None)
             if ids:
                 element.attrs[key] = ids if len(ids) > 1 or key in v.LISTS else ids[0]
-
-
-def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
-    """UML notation of two bounds; the empty string for exactly 1."""
-    if lower == upper:
-        return "" if lower == 1 else str(lower)
-    return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
 
 
 _BOUNDS = ("lower", "upper")

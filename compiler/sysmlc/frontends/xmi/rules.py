@@ -77,6 +77,17 @@ MANY_ATTRIBUTES = rule(
     wrong="<packagedElement a1='' a2='' a3='' ... (ten thousand of them)/>",
     right="<packagedElement name='Gate'/>",
 )
+BAD_BOUND = rule(
+    "SM117",
+    "bad-bound",
+    Severity.ERROR,
+    "multiplicity {multiplicity} of '{element}' has a bound that is no natural number",
+    why="A bound is a number from 0 on, * for the upper one, or an expression that gives such a "
+    "number (UML 2.5.1 clause 7.5.3). What is written here says nothing of how many there are.",
+    help="write a number, or * as upper bound",
+    wrong="<upperValue xmi:type='uml:LiteralString' value='many'/>",
+    right="<upperValue xmi:type='uml:LiteralUnlimitedNatural' value='*'/>",
+)
 DANGLING_OPPOSITE = rule(
     "SM116",
     "dangling-opposite",

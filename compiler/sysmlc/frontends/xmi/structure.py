@@ -215,7 +215,10 @@ def _bound(context: Context, row: int) -> AttrValue:
     if known is not None and context.document.types[row] in _WHOLE:
         context.subtree(row, Verdict.MAPPED)
         return known
-    return lone_value_in(context, row).value
+    value = lone_value_in(context, row)
+    if not value.is_literal:
+        context.computed.add(context.gids[row])
+    return value.value
 
 
 def _written(index: int) -> _Reader:

@@ -120,6 +120,13 @@ def bound(text: str) -> AttrValue:
     return int(text) if text.isascii() and text.isdigit() else text
 
 
+def is_natural(value: AttrValue) -> bool:
+    """Whether a bound is a number, as a literal of any type may say it."""
+    if isinstance(value, str):
+        return value.isascii() and value.isdigit()
+    return value.__class__ is int and value >= 0
+
+
 def name_of_instance(document: Document, row: int) -> str:
     """Name of a row of the same document."""
     return document.attributes[row].get("name", "")
