@@ -5,14 +5,8 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache, lru_cache
-from typing import TYPE_CHECKING, TypeVar
-
-from sysmlc import resources
-
-if TYPE_CHECKING:
-    from lark import Lark, Token, Tree
-    from lark.exceptions import UnexpectedInput
+from functools import lru_cache
+from typing import TypeVar
 
 _T = TypeVar("_T")
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
@@ -27,12 +21,21 @@ class ExpressionError(ValueError):
         self.offset = offset
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Literal:
-    """A Boolean, an integer, a real number, or a string."""
+    """A Boolean, an integer, a real number, or a string; 1 is neither ``true`` nor 1.0."""
 
     value: bool | int | float | str
-    offset: int = field(default=0, compare=False)
+    offset: int = 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Literal) and self._typed() == other._typed()
+
+    def __hash__(self) -> int:
+        return hash(self.value)
+
+    def _typed(self) -> tuple[type, bool | int | float | str]:
+        return type(self.value), self.value
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,61 +141,33 @@ _REMEMBERED = 4096
 @lru_cache(_REMEMBERED)
 def parse_expression(text: str) -> Expression:
     """The expression that the text is. Raises ExpressionError."""
-    from sysmlc.logic._expression_tree import to_expression
+    from sysmlc.logic._expression_reader import read_expression
 
-    return _read(text, "expression", to_expression)
+    return _read(text, read_expression)
 
 
 def parse_effect(text: str) -> tuple[Statement, ...]:
     """The statements of an effect, separated by semicolons. Raises ExpressionError."""
-    from sysmlc.logic._expression_tree import to_statements
+    from sysmlc.logic._expression_reader import read_effect
 
-    return _read(text, "effect", to_statements)
+    return _read(text, read_effect)
 
 
-def _read(text: str, start: str, build: "Callable[[Tree[Token]], _T]") -> _T:
-    from lark.exceptions import UnexpectedInput
-
+def _read(text: str, read: Callable[[str], _T]) -> _T:
     try:
-        return build(_parser(start).parse(text))
-    except UnexpectedInput as error:
-        offset = _place(error, text)
-        raise ExpressionError(_complaint(text, offset), offset) from None
+        return read(text)
     except RecursionError:
         raise ExpressionError("the expression is nested too deeply", 0) from None
 
 
-def _place(error: "UnexpectedInput", text: str) -> int:
-    token = getattr(error, "token", None)
-    at_end = token is not None and token.type == "$END"
-    return len(text) if at_end or error.pos_in_stream is None else error.pos_in_stream
-
-
-def _complaint(text: str, offset: int) -> str:
-    rest = text[offset:].split()
-    return f"'{rest[0][:20]}' is not expected here" if rest else "the text ends too early"
-
-
-@cache
-def _parser(start: str) -> "Lark":
-    from lark import Lark
-
-    return Lark(
-        resources.text("grammars", "expression.lark"),
-        parser="lalr",
-        start=start,
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
-
-
 # -- printing ----------------------------------------------------------------------------------
 
-_STRENGTH = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
+STRENGTH: dict[str, int] = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
     **dict.fromkeys(("<", "<=", ">", ">="), 7),
     **dict.fromkeys("+-", 8),
     **dict.fromkeys("*/%", 9),
 }
+"""How strongly operators bind."""
 _UNARY, _POSTFIX = 10, 11
 
 
@@ -258,7 +233,7 @@ def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one 
 
 
 def _print_binary(expression: Binary) -> tuple[str, int]:
-    own = _STRENGTH[expression.op]
+    own = STRENGTH[expression.op]
     to_the_right = expression.op == "implies"
     left = _print(expression.left, own + to_the_right)
     right = _print(expression.right, own + (not to_the_right))

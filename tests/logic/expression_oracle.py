@@ -1,11 +1,14 @@
-"""From Lark's tree to expressions; imported only when something is read."""
+"""Lark's reader of grammars/expression.lark: slow to get ready, and right by construction."""
 
 import re
 from collections.abc import Callable
-from typing import cast
+from functools import cache
+from typing import TypeVar, cast
 
-from lark import Token, Tree
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
 
+from sysmlc import resources
 from sysmlc.logic.expression import (
     Assignment,
     Binary,
@@ -24,18 +27,49 @@ from sysmlc.logic.expression import (
 )
 
 _Node = Tree[Token]
+_T = TypeVar("_T")
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _ESCAPE = {"n": "\n"}
 
 
-def to_expression(tree: _Node) -> Expression:
-    """The expression of a tree of the rule ``expression``."""
-    return _expression(_nodes(tree)[0])
+def oracle_expression(text: str) -> Expression:
+    """What ``parse_expression`` should give. Raises ExpressionError at the same place."""
+    return _read(text, "expression", lambda tree: _expression(_nodes(tree)[0]))
 
 
-def to_statements(tree: _Node) -> tuple[Statement, ...]:
-    """The statements of a tree of the rule ``effect``."""
-    return tuple(_statement(node) for node in _nodes(tree))
+def oracle_effect(text: str) -> tuple[Statement, ...]:
+    """What ``parse_effect`` should give. Raises ExpressionError at the same place."""
+    return _read(text, "effect", lambda tree: tuple(_statement(node) for node in _nodes(tree)))
+
+
+def _read(text: str, start: str, build: Callable[[_Node], _T]) -> _T:
+    try:
+        return build(_parser(start).parse(text))
+    except UnexpectedInput as error:
+        offset = _place(error, text)
+        raise ExpressionError(_complaint(text, offset), offset) from None
+
+
+def _place(error: UnexpectedInput, text: str) -> int:
+    token = getattr(error, "token", None)
+    at_end = token is not None and token.type == "$END"
+    return len(text) if at_end or error.pos_in_stream is None else error.pos_in_stream
+
+
+def _complaint(text: str, offset: int) -> str:
+    rest = text[offset:].split()
+    return f"'{rest[0][:20]}' is not expected here" if rest else "the text ends too early"
+
+
+@cache
+def _parser(start: str) -> Lark:
+    return Lark(
+        resources.text("grammars", "expression.lark"),
+        parser="lalr",
+        start=start,
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
 
 
 def _nodes(tree: _Node) -> list[_Node]:
