@@ -41,6 +41,11 @@ class Context:
         self.mirrors: list[tuple[Document, Node]] = []
         self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
+        self.references: dict[str, bool] = {}
+        """Whether texts in the place of class paths are ids."""
+        self.shown: dict[Type, Kind | None] = {}
+        """Facet or Group for the roles that mean one."""
+        self._found: dict[tuple[Document, Family, str], Type] = {}
         self._shared: set[tuple[str, str]] = set()
         self._know_roots()
 
@@ -65,28 +70,44 @@ class Context:
         given: dict[str, AttrValue] = {
             key: value for key, value in attrs.items() if value not in (None, "", ())
         }
-        name = node.attributes.get("Name", "")
-        id = id or self.id_of(node, document, owner)
-        element = Element(id, kind, name, owner, node.ordinal, document.name, given)
+        element = self.add_at(kind, document, node.row, owner, id)
+        if given:
+            element.attrs.update(given)
+        return element
+
+    def add_at(
+        self, kind: Kind, document: Document, row: int, owner: str | None, id: str = ""
+    ) -> Element:
+        """Add the element of a row, without attributes."""
+        id = id or self.id_at(document, row, owner)
+        name, ordinal = document.attributes[row].get("Name", ""), document.ordinals[row]
+        source = document.name
         if document.is_built_in:
-            element.source, element.ordinal = "", -1
-            element.attrs.update(external=True, library=True)
-        self.graph.add(element)
-        node.element = id
-        node.verdict = Verdict.MAPPED
+            source, ordinal = "", -1
+        element = self.graph.new(id, kind, name, owner, ordinal, source)
+        if element is None:
+            id = self.free(id, document.node(row))
+            element = self.graph.add(Element(id, kind, name, owner, ordinal, source))
+        if document.is_built_in:
+            element.attrs = {"external": True, "library": True}
+        document.elements[row] = id
+        document.verdicts[row] = Verdict.MAPPED
         return element
 
     def id_of(self, node: Node, document: Document, owner: str | None) -> str:
         """The node's own id, or one made of its owner's and its name."""
-        id = node.attributes.get("ID")
-        if id and not self.ids.is_repeated(id):
-            return id if id not in self.graph else self.free(id, node)
+        return self.free(self.id_at(document, node.row, owner), node)
+
+    def id_at(self, document: Document, row: int, owner: str | None) -> str:
+        """The same for a row; the graph may have it already."""
+        values = document.attributes[row]
+        id, name = values.get("ID"), values.get("Name", "")
         if id:
-            return self.free(f"{document.name}#{id}", node)
+            return f"{document.name}#{id}" if self.ids.is_repeated(id) else id
         if owner:
-            return self.free(f"{owner}/{node.name or node.tag}", node)
-        is_shared = (node.tag, node.name) in self._shared
-        return self.free(f"{document.name if is_shared else node.tag}#{node.name}", node)
+            return f"{owner}/{name or document.tags[row]}"
+        tag = document.tags[row]
+        return f"{document.name if (tag, name) in self._shared else tag}#{name}"
 
     def free(self, id: str, node: Node) -> str:
         """The id, made different when the graph has it."""
@@ -105,6 +126,10 @@ class Context:
 
     # -- classes -------------------------------------------------------------------------------
 
+    def known(self, text: str, family: Family, document: Document) -> Type | None:
+        """The class that a path was found to mean before."""
+        return self._found.get((document, family, text))
+
     def type(self, text: str, family: Family, document: Document, node: Node) -> Type | None:
         """The class that a path means; what leads nowhere is kept for one report."""
         found = self.look_up(text, family, document)
@@ -115,11 +140,16 @@ class Context:
 
     def look_up(self, text: str, family: Family, document: Document) -> Type | Missing:
         """The class that a path means, in the unit or else in a standard library."""
+        known = self._found.get((document, family, text))
+        if known is not None:
+            return known
         found = self.types.find(text, family, document)
         if isinstance(found, Missing) and found.what in ("library", "file"):
             library = split(text).names[0]
             if self._provide(self, family, library):
-                return self.types.find(text, family, document)
+                found = self.types.find(text, family, document)
+        if isinstance(found, Type):
+            self._found[document, family, text] = found
         return found
 
     # -- findings ------------------------------------------------------------------------------

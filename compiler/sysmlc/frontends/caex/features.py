@@ -58,7 +58,9 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
     structure = _structure(context, owner, node, document, element, declared)
     measures.type_value(context, element, node, document, structure or declared)
     constraints.lower(context, element, node, document)
-    owner.members["Attribute", node.name] = Member(element.id, structure or declared, node)
+    owner.members["Attribute", node.name] = Member(
+        element.id, structure or declared, document, node.row
+    )
     return structure
 
 
@@ -103,7 +105,7 @@ def _structure(
         return None
     type = Element(f"{element.id}#type", Kind.DATA_TYPE, node.name, owner.id)
     type.attrs.update(role="value type", subkind="attribute")
-    return _own_type(context, type, Type(type.id, node, document, Family.ATTRIBUTE), declared)
+    return _own_type(context, type, Type(type.id, document, node.row, Family.ATTRIBUTE), declared)
 
 
 def _own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
@@ -149,7 +151,7 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     type = own or declared
     if type is not None:
         context.graph.connect(Edge.TYPED_BY, element.id, type.id)
-    owner.members["ExternalInterface", node.name] = Member(element.id, type, node)
+    owner.members["ExternalInterface", node.name] = Member(element.id, type, document, node.row)
     meaning = special.meaning(declared)
     if meaning:
         context.special[element.id] = meaning
@@ -182,7 +184,7 @@ def _own_interface(
         return None
     block = Element(f"{element.id}#type", Kind.CLASS, node.name, owner.id)
     block.attrs.update(role="interface block", subkind="external-interface")
-    return _own_type(context, block, Type(block.id, node, document, Family.INTERFACE), declared)
+    return _own_type(context, block, Type(block.id, document, node.row, Family.INTERFACE), declared)
 
 
 def port_attributes(node: Node) -> dict[str, AttrValue]:

@@ -75,8 +75,7 @@ def _lower(context: Context) -> None:
     for type in libraries.in_order_of_parts(context, held):
         sites.lower_class(type)
     for document in context.documents:
-        for node in document.root.of("InstanceHierarchy"):
-            sites.lower_hierarchy(node, document)
+        sites.lower_hierarchies(document)
     sites.finish()
     mirrors.finish(context)
     roles.lower(context, sites)
@@ -90,13 +89,18 @@ def _lower(context: Context) -> None:
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Hold the cyclic garbage collector: nothing that is made here dies before the end."""
+    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
+
+    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
+    over a large graph again and again costs more than many passes.
+    """
     was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if was_enabled:
+            gc.freeze()
             gc.enable()
 
 

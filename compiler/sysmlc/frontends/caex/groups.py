@@ -18,16 +18,20 @@ _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
 def kind_of(context: Context, site: Site) -> Kind | None:
     """Facet or Group when the element plays that role, by inheritance and never by name."""
     for role in roles_of(context, site):
-        for name, kind in _KINDS.items():
-            if role.conforms(*BASE_ROLE, name):
-                return kind
+        if role not in context.shown:
+            kinds = (kind for name, kind in _KINDS.items() if role.conforms(*BASE_ROLE, name))
+            context.shown[role] = next(kinds, None)
+        kind = context.shown[role]
+        if kind is not None:
+            return kind
     return None
 
 
 def roles_of(context: Context, site: Site) -> Iterator[Type]:
     """The role classes that an internal element names and that are known."""
-    for node in site.node.of(*ROLE_REFERENCES):
-        path = node.attributes.get(ROLE_REFERENCES[node.tag], "").strip()
+    document = site.document
+    for row in site.roles:
+        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
         found = context.look_up(path, Family.ROLE, site.document) if path else None
         if isinstance(found, Type):
             yield found

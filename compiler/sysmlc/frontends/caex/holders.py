@@ -4,7 +4,7 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 
 def own(context: Context, site: Site) -> Type:
@@ -12,46 +12,60 @@ def own(context: Context, site: Site) -> Type:
     if site.own is not None:
         return site.own
     above = site.parent
-    graph = context.graph
+    graph, document = context.graph, site.document
     owner = own(context, above).id if above is not None else graph[site.instance].owner
-    base = site.node.attributes.get("ID") or f"{owner}/{site.node.name}"
-    id = context.free(f"{base}#class", site.node)
-    made = Element(id, Kind.CLASS, site.node.name, owner, site.node.ordinal, site.document.name)
-    made.attrs.update(role="block", subkind="internal-element")
-    graph.add(made)
-    site.own = Type(id, site.node, site.document, Family.SYSTEM_UNIT)
+    base = document.attributes[site.row].get("ID") or f"{owner}/{site.name}"
+    made = _add(context, site, f"{base}#class", Kind.CLASS, owner, subkind="internal-element")
+    made.attrs["role"] = "block"
+    site.own = Type(made.id, document, site.row, Family.SYSTEM_UNIT)
     site.own.base = site.declared
     _retype(site, site.own)
     if site.declared is not None:
-        graph.connect(Edge.SPECIALIZES, id, site.declared.id)
+        graph.connect(Edge.SPECIALIZES, made, site.declared.id)
     if site.is_known and above is not None:
-        _redefine_part(context, site, above, id)
+        _redefine_part(context, site, above, made)
     return site.own
 
 
-def _redefine_part(context: Context, site: Site, above: Site, type_: str) -> None:
+def _add(
+    context: Context, site: Site, id: str, kind: Kind, owner: str | None, **attrs: AttrValue
+) -> Element:
+    """An element that stands for an internal element beside the one that has its ID."""
+    document = site.document
+    ordinal = document.ordinals[site.row]
+    made = context.graph.new(id, kind, site.name, owner, ordinal, document.name)
+    if made is None:
+        id = context.free(id, site.node)
+        made = Element(id, kind, site.name, owner, ordinal, document.name)
+        context.graph.add(made)
+    made.attrs = attrs
+    return made
+
+
+def _redefine_part(context: Context, site: Site, above: Site, type_: Element) -> None:
     """A part of the class whose instance has more in it: redefined, with the other type."""
     graph, owner = context.graph, own(context, above)
-    id = context.free(f"{type_}#part", site.node)
-    made = Element(
-        id, Kind.PROPERTY, site.node.name, owner.id, site.node.ordinal, site.document.name
-    )
-    made.attrs.update(role="part", aggregation="composite")
-    graph.add(made)
-    graph.connect(Edge.TYPED_BY, id, type_)
-    graph.connect(Edge.REDEFINES, id, site.part)
-    owner.members["InternalElement", site.node.name] = Member(id, site.own, site.node)
+    part = f"{type_.id}#part"
+    made = _add(context, site, part, Kind.PROPERTY, owner.id, aggregation="composite")
+    made.attrs["role"] = "part"
+    graph.connect(Edge.TYPED_BY, made, type_)
+    graph.connect(Edge.REDEFINES, made, site.part)
+    member = Member(made.id, site.own, site.document, site.row)
+    owner.members["InternalElement", site.name] = member
     if site.instance:
-        graph.replace_targets(Edge.REPRESENTS, graph[site.instance], [graph[id]])
-    site.part = id
+        graph.replace_targets(Edge.REPRESENTS, graph[site.instance], [made])
+    site.part = made.id
 
 
 def _retype(site: Site, own: Type) -> None:
     """Let the class above know that its part has another type."""
     above = site.parent.own if site.parent is not None else None
-    known = above.members.get(("InternalElement", site.node.name)) if above is not None else None
-    if above is not None and known is not None and known.node is site.node:
-        above.members["InternalElement", site.node.name] = known._replace(type=own)
+    if above is None:
+        return
+    key = ("InternalElement", site.name)
+    known = above.members.get(key)
+    if known is not None and known.row == site.row and known.document is site.document:
+        above.members[key] = known._replace(type=own)
 
 
 def instance(context: Context, site: Site) -> str:
@@ -69,13 +83,10 @@ def instance(context: Context, site: Site) -> str:
 def _add_instance(context: Context, site: Site) -> None:
     above = site.parent
     owner = None if above is None else above.instance or own(context, above).id
-    graph = context.graph
-    id = context.id_of(site.node, site.document, owner) if site.is_known else ""
-    id = id or context.free(f"{site.part}#values", site.node)
-    made = Element(id, Kind.INSTANCE, site.node.name, owner, site.node.ordinal, site.document.name)
-    made.attrs["subkind"] = "part"
-    graph.add(made)
-    graph.connect(Edge.REPRESENTS, id, site.part)
-    site.instance = id
+    document = site.document
+    id = context.id_at(document, site.row, owner) if site.is_known else f"{site.part}#values"
+    made = _add(context, site, id, Kind.INSTANCE, owner, subkind="part")
+    context.graph.connect(Edge.REPRESENTS, made, site.part)
+    site.instance = made.id
     if site.is_known:
-        site.node.element = id
+        document.elements[site.row] = made.id

@@ -21,6 +21,7 @@ class Identifiers:
         self._numbers: dict[str, int] = {}
         self._repeated: dict[str, list[int]] = {}
         self._plain: dict[str, int] | None = None
+        self._paths: bool | None = None
         self._know([v.get("ID") or "" for one in documents for v in one.attributes])
 
     def _know(self, written: list[str]) -> None:
@@ -59,12 +60,20 @@ class Identifiers:
 
     def find_plain(self, id: str) -> Place | None:
         """The node whose ID differs at most in braces and case."""
+        if "/" in id and not self._has_paths():
+            return None
         if self._plain is None:
             self._plain = {}
             for known, number in self._numbers.items():
                 self._plain.setdefault(plain(known), number)
         found = self._plain.get(plain(id))
         return None if found is None else self._place(found)
+
+    def _has_paths(self) -> bool:
+        """Whether some ID looks like the path of a class: next to never."""
+        if self._paths is None:
+            self._paths = any("/" in id for id in self._numbers)
+        return self._paths
 
     def row(self, id: str) -> int | None:
         """The row that has the ID, where the unit is one file and no other row has it."""

@@ -50,7 +50,7 @@ def _class(context: Context, document: Document, node: Node, above: Node, family
         subkind="role-class" if is_role else None,
         abstract=True if is_role else None,
     )
-    type = Type(element.id, node, document, family, (*_path(above), node.name))
+    type = Type(element.id, document, node.row, family, (*_path(above), node.name))
     context.types.add(type)
     return type
 

@@ -22,12 +22,17 @@ _Path = tuple[str, ...]
 def lower(context: Context, site: Site) -> None:
     """The members of an internal element: values for what its class has, features for the rest."""
     for child in site.node.children:
-        if child.tag == "Attribute":
-            _attribute(context, site, child)
-        elif child.tag == "ExternalInterface":
-            _interface(context, site, child)
-        elif child.tag == "RoleRequirements" and child.children:
-            _required(context, site, child)
+        lower_one(context, site, child)
+
+
+def lower_one(context: Context, site: Site, child: Node) -> None:
+    """One member of an internal element, or what its role requires of it."""
+    if child.tag == "Attribute":
+        _attribute(context, site, child)
+    elif child.tag == "ExternalInterface":
+        _interface(context, site, child)
+    elif child.tag == "RoleRequirements" and child.children:
+        _required(context, site, child)
 
 
 def _required(context: Context, site: Site, requirements: Node) -> None:

@@ -21,8 +21,16 @@ def master_id(node: Node) -> str:
 
 def is_mirror(context: Context, node: Node) -> bool:
     """Whether the node names another element and no class."""
-    id = master_id(node)
-    return bool(id) and (context.find(id) is not None or _looks_like_id(id))
+    return is_reference(context, master_id(node))
+
+
+def is_reference(context: Context, id: str) -> bool:
+    """Whether a text in the place of a class path is an id."""
+    known = context.references.get(id)
+    if known is None:
+        known = bool(id) and (context.find(id) is not None or _looks_like_id(id))
+        context.references[id] = known
+    return known
 
 
 def master(context: Context, document: Document, node: Node) -> Node | None:

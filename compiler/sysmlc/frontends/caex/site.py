@@ -2,6 +2,7 @@
 
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES
 from sysmlc.ir import AttrValue
 
 
@@ -11,29 +12,33 @@ class Site:
     ``declared`` is the class that it refers to; ``own`` the class made for what that one has
     not (for a class at the top: itself). ``part`` is the property that stands for it in the
     class above, ``instance`` the Instance that holds its values (empty while there are none).
-    ``ppr`` is product, process, resource or empty.
+    ``ppr`` is product, process, resource or empty. ``inner`` are the rows of the internal
+    elements in it, ``roles`` those that name a role, ``members`` all others.
     """
 
     __slots__ = (
+        "_root",
         "declared",
         "document",
+        "inner",
         "instance",
         "interface_ids",
         "is_known",
         "is_mirror",
-        "node",
+        "members",
         "own",
         "parent",
         "part",
         "ppr",
-        "root",
+        "roles",
+        "row",
     )
 
-    def __init__(self, node: Node, document: Document, parent: "Site | None") -> None:
-        self.node = node
+    def __init__(self, document: Document, row: int, parent: "Site | None") -> None:
         self.document = document
+        self.row = row
         self.parent = parent
-        self.root: Site = self if parent is None else parent.root
+        self._root: Site | None = None if parent is None else parent.root
         self.declared: Type | None = None
         self.own: Type | None = None
         self.part = ""
@@ -42,6 +47,41 @@ class Site:
         self.is_known = False
         self.is_mirror = False
         self.interface_ids: list[tuple[AttrValue, ...]] = []
+        self._sort()
+
+    def _sort(self) -> None:
+        """One look at the rows below it for all who ask for them."""
+        tags, ends = self.document.tags, self.document.ends
+        self.inner: list[int] = []
+        self.roles: list[int] = []
+        self.members: list[int] = []
+        row, end = self.row + 1, ends[self.row]
+        while row < end:
+            tag = tags[row]
+            if tag == "InternalElement":
+                self.inner.append(row)
+            elif tag in ROLE_REFERENCES:
+                self.roles.append(row)
+                if ends[row] > row + 1:
+                    self.members.append(row)
+            else:
+                self.members.append(row)
+            row = ends[row]
+
+    @property
+    def node(self) -> Node:
+        """What the file says of it."""
+        return self.document.node(self.row)
+
+    @property
+    def name(self) -> str:
+        """The attribute ``Name``."""
+        return self.document.attributes[self.row].get("Name", "")
+
+    @property
+    def root(self) -> "Site":
+        """The element at the top of its hierarchy, or the class."""
+        return self if self._root is None else self._root
 
     @property
     def type(self) -> Type | None:

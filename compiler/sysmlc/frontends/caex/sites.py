@@ -8,6 +8,7 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.swift import Swift
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
@@ -20,26 +21,40 @@ class Sites:
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self._of: dict[Node, Site] = {}
+        self._all: list[Site] = []
+        self._rows: dict[Document, dict[int, Site]] = {}
         self._mirrors: list[Site] = []
         self._showing: list[Site] = []
+        self._swift: Swift | None = None
 
     def __iter__(self) -> Iterator[Site]:
-        return iter(self._of.values())
+        return iter(self._all)
 
     def of(self, node: Node) -> Site | None:
         """The site of an internal element or class."""
-        return self._of.get(node)
+        return self.rows(node.document).get(node.row)
+
+    def rows(self, document: Document) -> dict[int, Site]:
+        """The sites of a file by their rows."""
+        return self._rows.setdefault(document, {})
 
     # -- reading -------------------------------------------------------------------------------
 
     def lower_class(self, type: Type) -> None:
         """The internal elements of a class."""
-        top = self._site(type.node, type.document, None)
+        top = self._site(type.document, type.row, None)
         top.own, top.declared = type, type.base
         self._lower_below(top)
 
-    def lower_hierarchy(self, node: Node, document: Document) -> None:
+    def lower_hierarchies(self, document: Document) -> None:
+        """All hierarchies of a file."""
+        self._swift = Swift(self._context, document)
+        for node in document.root.of("InstanceHierarchy"):
+            self._lower_hierarchy(node, document)
+        self._swift.finish()
+        self._swift = None
+
+    def _lower_hierarchy(self, node: Node, document: Document) -> None:
         """A hierarchy: a package with an instance for each internal element at its top."""
         package = self._context.add(
             Kind.PACKAGE,
@@ -53,21 +68,28 @@ class Sites:
             self._lower_top(child, document, package)
 
     def _lower_top(self, node: Node, document: Document, package: Element) -> None:
-        site = self._site(node, document, None)
+        site = self._site(document, node.row, None)
         site.instance = package.id
-        kind = groups.kind_of(self._context, site)
-        if kind is not None:
-            groups.lower(self._context, site, kind)
-            self._showing.append(site)
+        if self._shows(site):
             return
         site.declared = self._declared(site)
         site.instance = self._context.add(Kind.INSTANCE, node, document, package.id).id
         self._type(site)
         self._lower_below(site)
 
-    def _site(self, node: Node, document: Document, parent: Site | None) -> Site:
-        site = self._of[node] = Site(node, document, parent)
+    def _site(self, document: Document, row: int, parent: Site | None) -> Site:
+        site = self.rows(document)[row] = Site(document, row, parent)
+        self._all.append(site)
         return site
+
+    def _shows(self, site: Site) -> bool:
+        """Whether the element is a facet or a group: it is no part, and shows others."""
+        kind = groups.kind_of(self._context, site) if site.roles else None
+        if kind is None:
+            return False
+        groups.lower(self._context, site, kind)
+        self._showing.append(site)
+        return True
 
     def _type(self, site: Site) -> None:
         """Give it a class of its own when it has none, and lower its members."""
@@ -76,26 +98,25 @@ class Sites:
             return
         if site.type is None:
             own(self._context, site)
-        members.lower(self._context, site)
+        if self._swift is None:
+            members.lower(self._context, site)
+        else:
+            self._swift.lower(site)
 
     def _lower_below(self, top: Site) -> None:
         waiting = [top]
         while waiting:
             site = waiting.pop()
-            if not site.is_mirror:
-                nodes = site.node.of("InternalElement")
-                placed = (self._place(node, site) for node in nodes)
+            if site.inner and not site.is_mirror:
+                placed = (self._place(row, site) for row in site.inner)
                 waiting.extend(reversed([one for one in placed if one is not None]))
 
-    def _place(self, node: Node, parent: Site) -> Site | None:
-        site = self._site(node, parent.document, parent)
-        kind = groups.kind_of(self._context, site)
-        if kind is not None:
-            groups.lower(self._context, site, kind)
-            self._showing.append(site)
+    def _place(self, row: int, parent: Site) -> Site | None:
+        site = self._site(parent.document, row, parent)
+        if self._shows(site):
             return None
         site.declared = self._declared(site)
-        known = None if site.is_mirror else self._known(node, parent)
+        known = None if site.is_mirror else self._known(site, parent)
         if known is None:
             self._add_part(site, parent)
         else:
@@ -104,45 +125,43 @@ class Sites:
         return site
 
     def _declared(self, site: Site) -> Type | None:
-        path = site.node.attributes.get("RefBaseSystemUnitPath", "").strip()
+        path = site.document.attributes[site.row].get("RefBaseSystemUnitPath", "").strip()
         if not path:
             return None
-        site.is_mirror = mirrors.is_mirror(self._context, site.node)
+        context, document = self._context, site.document
+        site.is_mirror = mirrors.is_reference(context, path)
         if site.is_mirror:
             return None
-        return self._context.type(path, Family.SYSTEM_UNIT, site.document, site.node)
+        found = context.known(path, Family.SYSTEM_UNIT, document)
+        return found or context.type(path, Family.SYSTEM_UNIT, document, site.node)
 
-    def _known(self, node: Node, parent: Site) -> Member | None:
+    def _known(self, site: Site, parent: Site) -> Member | None:
         """The part of the class above that the element stands for, where it is an instance."""
-        is_class = parent.own is not None and parent.node is parent.own.node
+        is_class = parent.own is not None and parent.row == parent.own.row
         if parent.parent is None and is_class and not parent.instance:
             return None
-        return parent.declared.find("InternalElement", node.name) if parent.declared else None
+        return parent.declared.find("InternalElement", site.name) if parent.declared else None
 
     def _match(self, site: Site, known: Member) -> None:
         site.is_known = True
         site.part = known.id
-        if known.type is not None and not _specialises(site.declared, known.type):
-            site.declared = known.type
-        site.node.verdict = Verdict.MAPPED
+        type = known.type
+        if type is not None and type is not site.declared and not _specialises(site, type):
+            site.declared = type
+        site.document.verdicts[site.row] = Verdict.MAPPED
         if site.root.instance:
             instance(self._context, site)
 
     def _add_part(self, site: Site, parent: Site) -> None:
         owner = own(self._context, parent)
-        element = self._context.add(
-            Kind.PROPERTY,
-            site.node,
-            site.document,
-            owner.id,
-            role="reference" if site.is_mirror else "part",
-            aggregation=None if site.is_mirror else "composite",
-        )
-        owner.members["InternalElement", site.node.name] = Member(
-            element.id, site.declared, site.node
-        )
+        element = self._context.add_at(Kind.PROPERTY, site.document, site.row, owner.id)
+        element.attrs["role"] = "reference" if site.is_mirror else "part"
+        if not site.is_mirror:
+            element.attrs["aggregation"] = "composite"
+        key = ("InternalElement", site.name)
+        inherited = owner.base.find(*key) if owner.base else None
+        owner.members[key] = Member(element.id, site.declared, site.document, site.row)
         site.part = element.id
-        inherited = owner.base.find("InternalElement", site.node.name) if owner.base else None
         if inherited is not None:
             self._context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
 
@@ -154,16 +173,19 @@ class Sites:
             self._mirror(site)
         for site in self._showing:
             groups.show(self._context, site)
+        self._tie(Edge.TYPED_BY, {s: s.part for s in self if s.part and not s.is_known})
+        self._tie(Edge.INSTANCE_OF, {s: s.instance for s in self if s.instance})
         for site in self:
-            type = site.type
-            if site.part and not site.is_known and type is not None:
-                self._context.graph.connect(Edge.TYPED_BY, site.part, type.id)
-            if site.instance and type is not None:
-                self._context.graph.connect(Edge.INSTANCE_OF, site.instance, type.id)
             holder = site.instance or (site.part if not site.is_known else "")
             if site.interface_ids and holder:
-                ids = tuple(site.interface_ids)
-                self._context.graph.set(self._context.graph[holder], interface_ids=ids)
+                element = self._context.graph[holder]
+                element.attrs["interface_ids"] = tuple(site.interface_ids)
+
+    def _tie(self, edge: Edge, ids: dict[Site, str]) -> None:
+        """Tie each element to the type of its site."""
+        graph = self._context.graph
+        types = [graph.get(type.id) if (type := site.type) else None for site in ids]
+        graph.connect_all([edge] * len(ids), ids.values(), types)
 
     def _mirror(self, site: Site) -> None:
         element = self._context.graph[site.instance or site.part]
@@ -176,5 +198,6 @@ class Sites:
             members.lower(self._context, site)
 
 
-def _specialises(type: Type | None, general: Type) -> bool:
+def _specialises(site: Site, general: Type) -> bool:
+    type = site.declared
     return type is not None and any(one is general for one in type.chain())

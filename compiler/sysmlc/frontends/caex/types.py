@@ -9,11 +9,17 @@ from sysmlc.frontends.caex.vocabulary import BASE, CLASS_TAGS, LIBRARIES, Family
 
 
 class Member(NamedTuple):
-    """A feature of a class: the id of its element, and its type when that is a class."""
+    """A feature of a class: the id of its element, its type when that is a class, its place."""
 
     id: str
     type: "Type | None"
-    node: Node
+    document: Document
+    row: int
+
+    @property
+    def node(self) -> Node:
+        """What says it in the file."""
+        return self.document.node(self.row)
 
 
 class Type:
@@ -22,18 +28,23 @@ class Type:
     ``members`` holds its own features by tag of CAEX and name; ``base`` is what it specialises.
     """
 
-    __slots__ = ("base", "document", "family", "id", "members", "node", "path")
+    __slots__ = ("base", "document", "family", "id", "members", "path", "row")
 
     def __init__(
-        self, id: str, node: Node, document: Document, family: Family, path: tuple[str, ...] = ()
+        self, id: str, document: Document, row: int, family: Family, path: tuple[str, ...] = ()
     ) -> None:
         self.id = id
-        self.node = node
         self.document = document
+        self.row = row
         self.family = family
         self.path = path
         self.base: Type | None = None
         self.members: dict[tuple[str, str], Member] = {}
+
+    @property
+    def node(self) -> Node:
+        """What says it in the file."""
+        return self.document.node(self.row)
 
     def chain(self) -> Iterator["Type"]:
         """The class and those that it specialises, the nearest first."""

@@ -1,5 +1,6 @@
 """Tables: tags of CAEX and what they become (docs/automationml.md)."""
 
+from collections.abc import Callable
 from enum import StrEnum
 
 from sysmlc.ir import AttrValue
@@ -124,18 +125,32 @@ DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
 
 def value_of(text: str, data_type: str) -> AttrValue:
     """The value that a text means in an XML Schema data type; the text where it means none."""
-    primitive = PRIMITIVES.get(data_type.rpartition(":")[2])
-    plain = text.strip()
+    read = reader_of(data_type)
+    return text if read is None else read(text)
+
+
+def reader_of(data_type: str) -> Callable[[str], AttrValue] | None:
+    """How values of an XML Schema data type are read; None for texts."""
+    return _READERS.get(PRIMITIVES.get(data_type.rpartition(":")[2], ""))
+
+
+def _real(text: str) -> AttrValue:
     try:
-        if primitive == "Real":
-            return float(plain)
-        if primitive == "Integer":
-            return int(plain)
+        return float(text)
     except ValueError:
         return text
-    if primitive == "Boolean" and plain.lower() in _TRUTH:
-        return _TRUTH[plain.lower()]
-    return text
+
+
+def _integer(text: str) -> AttrValue:
+    try:
+        return int(text)
+    except ValueError:
+        return text
+
+
+def _boolean(text: str) -> AttrValue:
+    return _TRUTH.get(text.strip().lower(), text)
 
 
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_READERS = {"Real": _real, "Integer": _integer, "Boolean": _boolean}
