@@ -1,4 +1,4 @@
-"""The other commands: explain, show, diff, watch, and how the command line starts."""
+"""The other commands: explain, show, watch, and how the command line starts."""
 
 import json
 import os
@@ -71,33 +71,6 @@ def test_show_asks_which_one_when_there_are_several(here):
     assert done.exit_code == 2
     assert "A::X (Class, id x)" in done.stderr
     assert "B::X (Class, id y)" in done.stderr
-
-
-def test_diff_is_0_when_equal_and_1_when_not(here):
-    here.write("new.ir", here.read("plant.ir") + 'Package more "More"\n')
-    equal = here.sysmlc("diff", "plant.ir", "plant.ir")
-    assert (equal.exit_code, equal.stdout) == (0, "no differences\n")
-    done = here.sysmlc("diff", "plant.ir", "new.ir", "--ignore", "source")
-    assert (done.exit_code, done.stdout) == (
-        1,
-        "+ More: added Package\n1 added, 0 removed, 0 changed\n",
-    )
-
-
-def test_diff_for_reviews_and_for_programs(here):
-    here.write("new.ir", here.read("plant.ir").replace('"Gate"', '"Lift"'))
-    args = ["diff", "plant.ir", "new.ir", "--ignore", "source", "--format"]
-    assert here.sysmlc(*args, "markdown").stdout == (
-        "**0 added, 0 removed, 1 changed**\n\n"
-        "- `Plant::Gate`\n  - attribute name: 'Gate' -> 'Lift'\n"
-    )
-    changes = json.loads(here.sysmlc(*args, "json").stdout)["changes"]
-    assert [change["element"] for change in changes] == ["Plant::Gate"]
-
-
-def test_diff_with_a_file_that_cannot_be_read_is_2(here):
-    here.write("bad.ir", "Klass x\n")
-    assert here.sysmlc("diff", "plant.ir", "bad.ir").exit_code == 2
 
 
 # -- watch ---------------------------------------------------------------------------------------

@@ -1,8 +1,6 @@
 """``sysmlc diff``: what changed between two models."""
 
-import json
-from collections.abc import Callable, Sequence
-from itertools import groupby
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +9,12 @@ import click
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
-    from sysmlc.ir.diff import Change
+    from collections.abc import Iterable, Mapping
+
+    from sysmlc.cli.session import Settings
+    from sysmlc.diagnostics import Place
+    from sysmlc.driver import Compilation
+    from sysmlc.ir.compare import Change
 
 
 @click.command(
@@ -19,9 +22,9 @@ if TYPE_CHECKING:
     short_help="Compare two models element by element.",
     epilog="""\b
 Examples:
-  sysmlc diff old/plant.uml plant.uml
-  sysmlc diff papyrus.uml cameo.mdzip --ignore id,source,trace
-  sysmlc diff old.uml new.uml --format markdown   for a review""",
+  sysmlc diff old/plant.aml plant.aml
+  sysmlc diff old.uml new.uml --format markdown   for a review
+  sysmlc diff old.uml new.uml --ignore id         when the ids were given anew""",
 )
 @click.argument("old", type=click.Path(path_type=Path), metavar="OLD")
 @click.argument("new", type=click.Path(path_type=Path), metavar="NEW")
@@ -29,7 +32,7 @@ Examples:
     "--ignore",
     callback=options.names,
     metavar="A,B",
-    help="What makes no difference: id, source, trace, or names of attributes.",
+    help="What makes no difference: names of attributes; with 'id' equal ids mean nothing.",
 )
 @click.option("--format", "form", type=click.Choice(("text", "markdown", "json")), default="text")
 @options.reading
@@ -43,63 +46,49 @@ def command(
     form: str,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Compare the refined graphs of OLD and NEW (files or folders).
+    """Compare OLD and NEW (files or folders, of any format) as they are written.
 
+    Places in files, ids that were given anew and the order of elements make no difference.
     Exit code 0 when they are equal, 1 when they differ, 2 when one cannot be read.
     """
     from sysmlc.cli import session
-    from sysmlc.ir.diff import diff
+    from sysmlc.ir.compare import compare
 
     settings = session.Settings(**given)
-    made = [
-        session.compile_unit((path,), session.load_config([path], settings.config), settings)
-        for path in (old, new)
-    ]
-    unread = [compilation for compilation in made if not compilation.is_complete]
+    made = [_read(path, settings) for path in (old, new)]
+    unread = [one for one in made if not one.is_complete]
     if unread:
         session.show([found for one in unread for found in session.findings(one)], settings)
         ctx.exit(2)
-    changes = diff(made[0].graph, made[1].graph, ignore)
-    click.echo(_FORMS[form](changes), nl=False)
+    changes = compare(made[0].graph, made[1].graph, ignore)
+    click.echo(_text(changes, form, made), nl=False, color=True)
     ctx.exit(1 if changes else 0)
 
 
-_SIGNS = {"added": "+", "removed": "-"}
+def _read(path: Path, settings: "Settings") -> "Compilation":
+    from sysmlc.cli import session
+
+    return session.read_unit((path,), session.load_config([path], settings.config), settings)
 
 
-def _text(changes: "Sequence[Change]") -> str:
-    lines = [
-        f"{_SIGNS.get(change.what, '~')} {change.element}: {_phrase(change)}" for change in changes
-    ]
-    return "".join(f"{line}\n" for line in [*lines, _counts(changes)])
+def _text(changes: "list[Change]", form: str, made: "list[Compilation]") -> str:
+    from sysmlc.cli import diff_forms
+    from sysmlc.cli.session import has_color
+
+    if form == "json":
+        return diff_forms.json_text(changes, *(_places(changes, made, i) for i in (0, 1)))
+    if form == "markdown":
+        return diff_forms.markdown(changes)
+    return diff_forms.text(changes, color=has_color(sys.stdout))
 
 
-def _markdown(changes: "Sequence[Change]") -> str:
-    lines = [f"**{_counts(changes)}**", ""]
-    for element, group in groupby(changes, key=lambda change: change.element):
-        lines += [f"- `{element}`", *(f"  - {_phrase(change)}" for change in group)]
-    return "\n".join(lines).rstrip("\n") + "\n"
+def _places(
+    changes: "Iterable[Change]", made: "list[Compilation]", side: int
+) -> "Mapping[Place, Place]":
+    """Lines and columns of what changed, in the old model or in the new one."""
+    from sysmlc.diagnostics import Place
+    from sysmlc.driver.places import Locator
 
-
-def _json(changes: "Sequence[Change]") -> str:
-    rows = [{"element": c.element, "what": c.what, "detail": c.detail} for c in changes]
-    return json.dumps({"changes": rows}, ensure_ascii=False, indent=1) + "\n"
-
-
-def _phrase(change: "Change") -> str:
-    return f"{change.what} {change.detail}".strip()
-
-
-def _counts(changes: "Sequence[Change]") -> str:
-    if not changes:
-        return "no differences"
-    numbers = {sign: sum(c.what == sign for c in changes) for sign in ("added", "removed")}
-    other = len(changes) - sum(numbers.values())
-    return f"{numbers['added']} added, {numbers['removed']} removed, {other} changed"
-
-
-_FORMS: "dict[str, Callable[[Sequence[Change]], str]]" = {
-    "text": _text,
-    "markdown": _markdown,
-    "json": _json,
-}
+    refs = (change.new if side else change.old for change in changes)
+    places = {Place(ref.file, ref.ordinal) for ref in refs if ref is not None and ref.file}
+    return Locator(made[side].sources)(places)

@@ -1,0 +1,216 @@
+"""The differences of two models: pairs first, then what the two of each pair say."""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
+
+from sysmlc.ir.compare.alike import by_likeness, by_move
+from sysmlc.ir.compare.change import Change, Ref, What
+from sysmlc.ir.compare.colours import by_choice, by_surroundings
+from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
+from sysmlc.ir.compare.facts import Fact
+from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
+from sysmlc.ir.compare.side import Side
+from sysmlc.ir.compare.titles import exactly, title, whole, word
+from sysmlc.ir.element import Element
+from sysmlc.ir.graph import Graph
+from sysmlc.ir.kinds import Edge, Kind
+
+_Said = list[tuple[tuple[Token, Token], Fact]]
+
+
+def compare(old: Graph, new: Graph, ignore: Collection[str] = ()) -> list[Change]:
+    """All differences, sorted by owner and name.
+
+    The graphs are as written, with references resolved and no pass behind that. ``ignore`` may
+    hold ``id`` (equal ids do not make a pair) and names of attributes.
+    """
+    pairs = paired(Side(old), Side(new), has_ids="id" not in ignore)
+    changes = [
+        *_only(pairs, pairs.old, What.REMOVED),
+        *_only(pairs, pairs.new, What.ADDED),
+        *(change for pair in _pairs(pairs) for change in _between(pairs, *pair, ignore)),
+    ]
+    return sorted(changes, key=_by_owner)
+
+
+def paired(old: Side, new: Side, *, has_ids: bool = True) -> Pairs:
+    """Who is who: by id, by name, then by the surest step that still finds something."""
+    pairs = Pairs(old, new)
+    if has_ids:
+        by_id(pairs)
+    by_name(pairs)
+    while any(_finds(pairs, step) for step in _STEPS):
+        by_name(pairs)
+    return pairs
+
+
+_STEPS = (by_surroundings, by_choice, by_likeness, by_move)
+
+
+def _finds(pairs: Pairs, step: Callable[[Pairs], None]) -> bool:
+    known = len(pairs.new_of)
+    step(pairs)
+    return len(pairs.new_of) > known
+
+
+def _by_owner(change: Change) -> tuple[str, ...]:
+    return (change.owner, change.name, change.kind, change.what, change.aspect, change.before)
+
+
+def _pairs(pairs: Pairs) -> Iterator[tuple[Element, Element]]:
+    for id, new in pairs.new_of.items():
+        old = pairs.old.graph[id]
+        if not (is_external(old) or is_external(new)):
+            yield old, new
+
+
+# -- what is on one side only ------------------------------------------------------------------
+
+
+def _only(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
+    known = pairs.new_of if side is pairs.old else pairs.old_of
+    for owner, children in side.things.items():
+        if owner is not None and owner not in known:
+            continue
+        for child in children:
+            if (
+                child.id not in known
+                and not is_external(child)
+                and not _follows(side, child, known)
+            ):
+                yield _alone(side, child, what, known)
+
+
+def _follows(side: Side, element: Element, known: Collection[str]) -> bool:
+    """Whether it is there only because of something else that is told.
+
+    The values of a part come and go with the part, what a message does at its ends with the
+    message.
+    """
+    if element.kind is Kind.INSTANCE and element.subkind == "part":
+        parts = side.out.get(element.id, {}).get(Edge.REPRESENTS, [])
+        return any(part.id not in known for part in parts)
+    if element.kind is Kind.OCCURRENCE:
+        into = side.into.get(element.id, ())
+        return any(one.kind is Kind.MESSAGE and one.id not in known for _, one in into)
+    return False
+
+
+def _alone(side: Side, element: Element, what: What, known: Collection[str]) -> Change:
+    contents = sum(one.id not in known for one in side.below(element)) - 1
+    ref = _ref(side, element)
+    is_old = what is What.REMOVED
+    return Change(
+        what=what,
+        owner=_owner(side, element),
+        name=title(side, element),
+        kind=word(side, element),
+        contents=contents,
+        old=ref if is_old else None,
+        new=None if is_old else ref,
+    )
+
+
+def _ref(side: Side, element: Element) -> Ref:
+    return Ref(element.id, whole(side, element), element.source, element.ordinal)
+
+
+def _owner(side: Side, element: Element) -> str:
+    owner = side.graph.owner(element)
+    return "" if owner is None else whole(side, owner)
+
+
+# -- what the two of a pair say ----------------------------------------------------------------
+
+
+def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) -> Iterator[Change]:
+    if old.name != new.name:
+        yield _change(pairs, old, new, What.RENAMED, "name", old.name, new.name)
+    if old.kind is not new.kind:
+        yield _change(pairs, old, new, What.RETYPED, "kind", str(old.kind), str(new.kind))
+    if _is_moved(pairs, old, new):
+        there, here = _owner(pairs.old, old), _owner(pairs.new, new)
+        yield _change(pairs, old, new, What.MOVED, "owner", there, here)
+    yield from _reordered(pairs, old, new)
+    said = [found for found in _differing(pairs, old, new) if not found[0] & set(ignore)]
+    telling = [found for found in said if not found[0] & IMPLIED]
+    for _, what, label, before, after in telling or said:
+        yield _change(pairs, old, new, what, label, before, after)
+
+
+def _is_moved(pairs: Pairs, old: Element, new: Element) -> bool:
+    there, here = pairs.old.graph.owner(old), pairs.new.graph.owner(new)
+    if there is None or here is None:
+        return there is not here
+    return pairs.old_token(there) != pairs.new_token(here)
+
+
+def _reordered(pairs: Pairs, old: Element, new: Element) -> Iterator[Change]:
+    kinds = IN_ORDER.get(new.kind)
+    if kinds is None:
+        return
+    left = [one for one in pairs.old.children(old) if one.kind in kinds]
+    right = [one for one in pairs.new.children(new) if one.kind in kinds]
+    both = {one.id for one in right if one.id in pairs.old_of}
+    left = [one for one in left if one.id in pairs.new_of and pairs.new_of[one.id].id in both]
+    right = [one for one in right if one.id in both]
+    if [pairs.new_of[one.id].id for one in left] != [one.id for one in right]:
+        before = ", ".join(title(pairs.old, one) for one in left)
+        after = ", ".join(title(pairs.new, one) for one in right)
+        yield _change(pairs, old, new, What.REORDERED, "order", before, after)
+
+
+_Differing = tuple[frozenset[str], What, str, str, str]
+"""Names of the attribute concerned, what happened, label, texts before and after."""
+
+
+def _differing(pairs: Pairs, old: Element, new: Element) -> list[_Differing]:
+    before, after = pairs.old_facts(old), pairs.new_facts(new)
+    if [both for both, _ in before] == [both for both, _ in after]:
+        return []
+    gone = _minus(before, after)
+    come = _minus(after, before)
+    keys = dict.fromkeys(key for (key, _), _ in (*gone, *come))
+    found = [_of_key(pairs, key, gone, come) for key in keys]
+    texts = {(before, after) for _, _, label, before, after in found if label != "constraint"}
+    return [one for one in found if one[2] != "constraint" or one[3:] not in texts]
+
+
+def _minus(said: _Said, other: _Said) -> _Said:
+    left = Counter(both for both, _ in other)
+    kept = []
+    for both, fact in said:
+        if left[both]:
+            left[both] -= 1
+        else:
+            kept.append((both, fact))
+    return kept
+
+
+def _of_key(pairs: Pairs, key: Token, gone: _Said, come: _Said) -> _Differing:
+    olds = [fact for (k, _), fact in gone if k == key]
+    news = [fact for (k, _), fact in come if k == key]
+    fact = (news or olds)[0]
+    names = frozenset(part for part in fact.key if isinstance(part, str))
+    before = ", ".join(one.text(pairs.old) for one in olds)
+    after = ", ".join(one.text(pairs.new) for one in news)
+    if before == after:
+        before = ", ".join(exactly(pairs.old, one.value) for one in olds)
+        after = ", ".join(exactly(pairs.new, one.value) for one in news)
+    return (names, fact.what, fact.label, before, after)
+
+
+def _change(
+    pairs: Pairs, old: Element, new: Element, what: What, aspect: str, before: str, after: str
+) -> Change:
+    return Change(
+        what=what,
+        owner=_owner(pairs.new, new),
+        name=title(pairs.new, new),
+        kind=word(pairs.new, new),
+        aspect=aspect,
+        before=before,
+        after=after,
+        old=_ref(pairs.old, old),
+        new=_ref(pairs.new, new),
+    )

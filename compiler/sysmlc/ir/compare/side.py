@@ -1,0 +1,82 @@
+"""One of the two models that are compared, with what the comparison asks of it often."""
+
+from collections.abc import Iterator
+from functools import cached_property
+
+from sysmlc.ir.compare.content import PASSED_OVER, is_detail, is_header
+from sysmlc.ir.element import Element
+from sysmlc.ir.graph import Graph
+from sysmlc.ir.kinds import Edge
+
+_COMPARED = tuple(edge for edge in Edge if edge not in PASSED_OVER)
+
+
+class Side:
+    """A graph, read once: elements below their owners, details apart, and edges by their source.
+
+    ``None`` is the owner of what nothing owns.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+        self.things: dict[str | None, list[Element]] = {}
+        self.details: dict[str, list[Element]] = {}
+        self.hidden: set[str] = set()
+        """Ids of details, headers, and everything below them."""
+        for root in graph.roots():
+            self._enter(root)
+        self.out = self._edges()
+
+    def _enter(self, root: Element) -> None:
+        for element in self.graph.subtree(root):
+            owner = self.graph.owner(element)
+            if element.owner in self.hidden or is_header(element):
+                self.hidden.add(element.id)
+            elif is_detail(element, owner):
+                self.hidden.add(element.id)
+                self._tell(element, owner)
+            else:
+                self.things.setdefault(element.owner, []).append(element)
+
+    def _tell(self, detail: Element, owner: Element | None) -> None:
+        told = owner if owner is not None else self.graph.target(detail, Edge.SUBJECT)
+        if told is not None:
+            self.details.setdefault(told.id, []).append(detail)
+
+    def _edges(self) -> dict[str, dict[Edge, list[Element]]]:
+        found: dict[str, dict[Edge, list[Element]]] = {}
+        for edge in _COMPARED:
+            for _, source, target in self.graph.edges(edge):
+                found.setdefault(source, {}).setdefault(edge, []).append(self.graph[target])
+        return found
+
+    @cached_property
+    def into(self) -> dict[str, list[tuple[Edge, Element]]]:
+        """Edges by their target; those of details belong to the owner of the detail."""
+        found: dict[str, list[tuple[Edge, Element]]] = {}
+        for source, edges in self.out.items():
+            origin = self.visible(self.graph[source])
+            for edge, targets in edges.items():
+                for target in targets:
+                    if origin is not None and origin is not target:
+                        found.setdefault(target.id, []).append((edge, origin))
+        return found
+
+    def visible(self, element: Element) -> Element | None:
+        """The element, or the nearest owner that is told for itself."""
+        found: Element | None = element
+        while found is not None and found.id in self.hidden:
+            found = self.graph.owner(found)
+        return found
+
+    def children(self, owner: Element | None) -> list[Element]:
+        """What the element owns and is told for itself, in order."""
+        return self.things.get(None if owner is None else owner.id, [])
+
+    def below(self, element: Element) -> Iterator[Element]:
+        """The element and all that is below it and is told for itself."""
+        stack = [element]
+        while stack:
+            top = stack.pop()
+            yield top
+            stack.extend(reversed(self.children(top)))

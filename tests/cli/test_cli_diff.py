@@ -1,0 +1,158 @@
+"""``sysmlc diff``: forms, exit codes, and models of several formats."""
+
+import json
+from random import Random
+
+import jsonschema
+import pytest
+
+from dialects.random_models import random_model
+from sysmlc import resources
+from sysmlc.driver import registry
+
+SCHEMA = json.loads(resources.text("metamodels", "sysmlc-diff.schema.json"))
+
+OLD = """\
+<CAEXFile SchemaVersion="2.15" FileName="plant.aml">
+  <InstanceHierarchy Name="Plant">
+    <InternalElement Name="Gate" ID="gate" RefBaseSystemUnitPath="Lib/Gate"/>
+  </InstanceHierarchy>
+  <InterfaceClassLib Name="Interfaces"><InterfaceClass Name="Port"/></InterfaceClassLib>
+  <SystemUnitClassLib Name="Lib">
+    <SystemUnitClass Name="Stopper">
+      <Attribute Name="speed" AttributeDataType="xs:double"><Value>1.5</Value></Attribute>
+    </SystemUnitClass>
+    <SystemUnitClass Name="Gate">
+      <ExternalInterface Name="in" ID="e1" RefBaseClassPath="Interfaces/Port"/>
+      <ExternalInterface Name="out" ID="e2" RefBaseClassPath="Interfaces/Port"/>
+      <InternalElement Name="st" ID="st" RefBaseSystemUnitPath="Lib/Stopper"/>
+    </SystemUnitClass>
+  </SystemUnitClassLib>
+</CAEXFile>
+"""
+NEW = (
+    OLD.replace('Name="out" ID="e2"', 'Name="outfeed" ID="e2"')
+    .replace("<Value>1.5</Value>", "<Value>2</Value>")
+    .replace('ID="st"', 'ID="st2"')
+    .replace("</SystemUnitClass>\n  </S", '<Attribute Name="a|b"/></SystemUnitClass>\n  </S')
+)
+
+
+REAL_PASSES = registry.passes
+
+
+@pytest.fixture
+def plants(here, monkeypatch):
+    monkeypatch.setattr(registry, "passes", REAL_PASSES)
+    here.write("old.aml", OLD)
+    here.write("new.aml", NEW)
+    return here
+
+
+def test_equal_models_are_0(plants):
+    done = plants.sysmlc("diff", "old.aml", "old.aml")
+    assert (done.exit_code, done.stdout, done.stderr) == (0, "no differences\n", "")
+
+
+def test_differences_are_1_and_stand_below_their_owners(plants):
+    done = plants.sysmlc("diff", "old.aml", "new.aml")
+    assert done.exit_code == 1
+    assert done.stdout == (
+        "Lib::Gate\n"
+        "  + value a|b: added\n"
+        "  ~ port outfeed: renamed, was out\n"
+        "\n"
+        "Lib::Stopper\n"
+        "  ~ value speed: default: 1.5 => 2.0\n"
+        "\n"
+        "1 added, 1 renamed, 1 changed\n"
+    )
+
+
+def test_markdown_is_a_table_for_each_owner(plants):
+    done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "markdown")
+    assert done.stdout == (
+        "**1 added, 1 renamed, 1 changed**\n"
+        "\n"
+        "#### `Lib::Gate`\n"
+        "\n"
+        "| | element | change | before | after |\n"
+        "|---|---|---|---|---|\n"
+        "| `+` | value `a\\|b` | added |  |  |\n"
+        "| `~` | port `outfeed` | renamed | `out` | `outfeed` |\n"
+        "\n"
+        "#### `Lib::Stopper`\n"
+        "\n"
+        "| | element | change | before | after |\n"
+        "|---|---|---|---|---|\n"
+        "| `~` | value `speed` | changed: default | `1.5` | `2.0` |\n"
+    )
+
+
+def test_json_has_a_schema_and_the_places_of_both(plants):
+    done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "json")
+    made = json.loads(done.stdout)
+    jsonschema.validate(made, SCHEMA)
+    assert made["summary"]["renamed"] == 1
+    renamed = next(c for o in made["owners"] for c in o["changes"] if c["what"] == "renamed")
+    assert renamed["new"] == {
+        "id": "e2",
+        "qualified_name": "Lib::Gate::outfeed",
+        "file": "new.aml",
+        "line": 12,
+        "column": 7,
+    }
+    assert (renamed["old"]["file"], renamed["old"]["qualified_name"]) == (
+        "old.aml",
+        "Lib::Gate::out",
+    )
+
+
+def test_json_of_equal_models_fits_the_schema_too(plants):
+    made = json.loads(plants.sysmlc("diff", "old.aml", "old.aml", "--format", "json").stdout)
+    jsonschema.validate(made, SCHEMA)
+    assert made["owners"] == []
+
+
+def test_a_model_that_cannot_be_read_is_2(here):
+    here.write("bad.ir", "Klass x\n")
+    done = here.sysmlc("diff", "plant.ir", "bad.ir")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "bad.ir" in done.stderr
+    assert here.sysmlc("diff", "plant.ir", "missing.ir").exit_code == 2
+
+
+def test_colours_on_a_terminal_only(plants, monkeypatch):
+    plain = plants.sysmlc("diff", "old.aml", "new.aml").stdout
+    monkeypatch.setattr("sysmlc.cli.session.has_color", lambda stream: True)
+    coloured = plants.sysmlc("diff", "old.aml", "new.aml").stdout
+    assert "\x1b[" not in plain
+    assert "\x1b[32m+ value a|b: added\x1b[0m" in coloured
+
+
+def test_long_texts_show_what_differs(here):
+    body = "x" * 300
+    here.write("a.ir", f'Class c "C" body="{body}y{body}"\n')
+    here.write("b.ir", f'Class c "C" body="{body}z{body}"\n')
+    line = here.sysmlc("diff", "a.ir", "b.ir").stdout.splitlines()[1]
+    cut = "..." + "x" * 40
+    assert line.startswith(f"  ~ class C: body: {cut}y")
+    assert f"=> {cut}z" in line
+
+
+def test_folders_and_other_formats_are_compared_too(plants):
+    model = random_model(Random(3)).decode()
+    plants.write("old/plant.uml", model)
+    plants.write("new/plant.uml", model.replace('name="Random plant"', 'name="Plant"'))
+    done = plants.sysmlc("diff", "old", "new")
+    assert (done.exit_code, done.stdout) == (
+        1,
+        "(model)\n  ~ package Plant: renamed, was Random plant\n\n1 renamed\n",
+    )
+
+
+def test_the_comparison_does_not_depend_on_what_else_is_refined(here, monkeypatch):
+    """Only what completes the model runs: the pass of these tests finds fault with the port."""
+    here.write("faulty.ir", here.read("plant.ir").replace('gate.in "in"', "gate.in"))
+    done = here.sysmlc("diff", "plant.ir", "faulty.ir")
+    assert (done.exit_code, done.stderr) == (1, "")
