@@ -68,7 +68,7 @@ class Graph:
 
     def owned(self, element: Element) -> list[Element]:
         """What the element owns, in order."""
-        return self.targets(element, Edge.OWNS)
+        return every(self._owned, element.id)
 
     def owner(self, element: Element) -> Element | None:
         """What owns the element, or None."""
@@ -108,11 +108,15 @@ class Graph:
 
     def subtree(self, element: Element) -> Iterator[Element]:
         """The element and everything below it, owner before owned."""
-        stack = [element]
+        owned, stack = self._owned, [element]
         while stack:
             top = stack.pop()
             yield top
-            stack.extend(reversed(self.owned(top)))
+            below = owned.get(top.id)
+            if isinstance(below, Element):
+                stack.append(below)
+            elif below is not None:
+                stack.extend(reversed(below))
 
     def ancestors(self, element: Element) -> Iterator[Element]:
         """The owners of the element, nearest first."""
@@ -158,22 +162,34 @@ class Graph:
         return element
 
     def new(
-        self, id: str, kind: Kind, name: str, owner: str | None, ordinal: int, source: str
+        self,
+        id: str,
+        kind: Kind,
+        name: str,
+        owner: str | None,
+        ordinal: int,
+        source: str,
+        attrs: dict[str, AttrValue] | None = None,
     ) -> Element | None:
         """Add a new element below an owner that is there; None when the id is empty or taken.
 
-        The way for front ends that make hundreds of thousands of elements.
+        The way for front ends that make hundreds of thousands of elements: ``attrs`` are copied.
         """
         if not id or id in self._elements:
             return None
-        made = self._elements[id] = Element(id, kind, name, owner, ordinal, source)
+        made = self._elements[id] = _bare(Element)
+        # What Element() does; its call would cost more than all of this.
+        made.id = id
+        made.kind = kind
+        made.name = name
+        made.owner = owner
+        made.ordinal = ordinal
+        made.source = source
+        if attrs:
+            made.attrs = attrs.copy()
         self._fresh.append(made)
         if owner is not None:
-            owned = self._owned
-            if owner in owned:
-                put_new(owned, owner, made)
-            else:
-                owned[owner] = made
+            put_new(self._owned, owner, made)
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
@@ -301,5 +317,7 @@ class Graph:
                 for source in self.sources(element, edge):
                     self._unlink(edge, source, element)
 
+
+_bare = object.__new__
 
 _DRAWN = tuple(edge for edge in Edge if edge is not Edge.OWNS)

@@ -4,6 +4,7 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 WIDTH = 36
 """Characters in one line of a name before it is broken."""
@@ -11,6 +12,8 @@ WIDTH = 36
 _LONGEST = 4_000
 """Characters of a text that a diagram shows; nobody reads more in a box."""
 
+_REMEMBERED = 1 << 12
+"""Texts whose spelling is kept: ports and values of many blocks read the same."""
 _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
 """PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
@@ -23,6 +26,7 @@ _HARMLESS = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.,:;()=+]|[ _-](?=[A-Za-z0-9.,:
 _JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
+@lru_cache(_REMEMBERED)
 def plain(text: str) -> str:
     """One line that PlantUML shows as written: markup, preprocessor and Unicode traps escaped."""
     if len(text) <= _LONGEST and _HARMLESS.fullmatch(text):
@@ -31,6 +35,7 @@ def plain(text: str) -> str:
     return "".join(_character(line, index) for index in range(len(line)))
 
 
+@lru_cache(_REMEMBERED)
 def lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
     """The text in escaped lines of at most ``width`` characters; its own line ends are kept."""
     if len(text) <= width and _HARMLESS.fullmatch(text):
@@ -75,6 +80,8 @@ def _shortened(text: str) -> str:
 
 
 def _visible(text: str) -> str:
+    if text.isprintable():
+        return text
     return "".join("\ufffd" if _is_invalid(char) else char for char in text)
 
 
