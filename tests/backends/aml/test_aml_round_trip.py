@@ -175,6 +175,26 @@ def test_aliases_lead_to_the_files_that_are_written():
     assert [e for e in back if "unresolved" in e.attrs] == []
 
 
+def test_an_element_says_again_what_its_class_says_of_attributes(plant):
+    texts, _ = saved(plant)
+    (speed,) = root(texts).xpath("//InternalElement[@ID='belt']/Attribute[@Name='speed']")
+    assert dict(speed.attrib) == {
+        "Name": "speed",
+        "AttributeDataType": "xs:double",
+        "Unit": "m/s",
+        "RefAttributeType": "Types/Speed",
+    }
+    assert [one.tag for one in speed] == [
+        "Description",
+        "DefaultValue",
+        "Value",
+        "RefSemantic",
+        "Constraint",
+        "Constraint",
+    ]
+    assert speed.xpath("Value/text()") == ["2.5"]
+
+
 # -- models of other languages -----------------------------------------------------------------
 
 LOST = {"baygate-behaviour": [("b_palletId", ("palletId", "rf.lastId"))]}
@@ -234,7 +254,7 @@ def test_blocks_become_classes_and_parts_internal_elements():
     element = at(texts, "//SystemUnitClass/InternalElement")
     assert (element["Name"], element["RefBaseSystemUnitPath"]) == ("belt", "Plant/Fast")
     assert at(texts, "//InstanceHierarchy/InternalElement")["RefBaseSystemUnitPath"] == "Plant/Line"
-    speed = at(texts, "//Attribute[@Name='speed']")
+    speed = at(texts, "//SystemUnitClass/Attribute[@Name='speed']")
     assert speed == {"Name": "speed", "AttributeDataType": "xs:double"}
     (port,) = root(texts).xpath("//SystemUnitClass[@Name='Belt']/ExternalInterface")
     assert port.xpath("Attribute[@Name='Direction']/Value/text()") == ["Out"]

@@ -50,6 +50,8 @@ class Book:
     """Id of the feature (or instance) that each inlined type belongs to, by the type's id."""
     said: set[str] = field(default_factory=set)
     relations: set[tuple[Edge, str, str]] = field(default_factory=set)
+    copies: list[tuple[Node, Element]] = field(default_factory=list)
+    """Internal elements with the class that they are copies of."""
     late: list[tuple[Node, str, Element]] = field(default_factory=list)
     """References to ids: the node, its attribute, the element that is meant."""
     first: dict[tuple[File | None, Family, tuple[str, ...]], str] = field(default_factory=dict)

@@ -1,6 +1,6 @@
 """The whole plant: places of classes, then what everything holds, then links, then the account."""
 
-from sysmlc.backends.aml import account, files, libraries, links
+from sysmlc.backends.aml import account, copies, files, libraries, links
 from sysmlc.backends.aml.book import Book
 from sysmlc.backends.aml.families import Families
 from sysmlc.backends.aml.identity import Identity
@@ -21,6 +21,7 @@ def documents(graph: Graph, unit: str, sink: Sink) -> dict[str, str]:
     libraries.hierarchies(book)
     links.write(book)
     links.tie(book)
+    copies.write(book)
     files.writers(book)
     account.account(book)
     texts = {}

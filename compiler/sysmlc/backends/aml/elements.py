@@ -72,7 +72,10 @@ def _fill(book: Book, top: Unit) -> None:
         players = [one for one in unit.players if one is not unit.part or unit.own is None]
         roles.write(book, unit.node, unit.file, *dict.fromkeys([*players, *unit.players]))
         if unit.instance is not None or unit.part is not None:
-            roles.inherited(book, unit.node, unit.file, _declared(book, unit))
+            declared = _declared(book, unit)
+            roles.inherited(book, unit.node, unit.file, declared)
+            if declared is not None:
+                book.copies.append((unit.node, declared))
         waiting += reversed(unit.inside)
 
 
@@ -247,7 +250,7 @@ def _attribute(book: Book, unit: Unit, path: list[Element]) -> Node:
     for feature in path:
         known = node.child("Attribute", feature.name)
         if known is None:
-            known = node.add(Node("Attribute", {"Name": feature.name}))
+            known = node.add(Node("Attribute", {"Name": feature.name}, is_copy=True))
             attributes.declare(book, feature, known, unit.file)
         node = known
     return node

@@ -125,7 +125,7 @@ def repeated(book: Book, port: Element, file: File, above: Node) -> Node:
     for one in [*reversed(_around(book, port)), port]:
         known = above.interfaces.get(one.id)
         if known is None:
-            known = above.add(Node("ExternalInterface", {"Name": one.name}))
+            known = above.add(Node("ExternalInterface", {"Name": one.name}, is_copy=True))
             above.interfaces[one.id] = known
             path = class_path(book, one, file)
             if path:

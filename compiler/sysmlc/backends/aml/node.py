@@ -55,14 +55,16 @@ _RANKS = {
 class Node:
     """One XML element.
 
-    ``parts`` and ``interfaces`` find internal elements and external interfaces below it by
-    the ids of the parts and ports that they stand for.
+    ``is_copy`` tells what only repeats a feature of the class. ``parts`` and ``interfaces`` find
+    internal elements and external interfaces below it by the ids of the parts and ports that
+    they stand for.
     """
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
     children: list["Node"] = field(default_factory=list)
     text: str = ""
+    is_copy: bool = False
     parts: dict[str, "Node"] = field(default_factory=dict)
     interfaces: dict[str, "Node"] = field(default_factory=dict)
 
