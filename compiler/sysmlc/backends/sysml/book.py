@@ -3,10 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from sysmlc.backends.sysml.order import in_order
 from sysmlc.backends.sysml.plan import Entry, Plan
 from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import library_name, named, redefined_name
+from sysmlc.backends.sysml.references import library_name, named, redefined_name, visible
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
+from sysmlc.backends.sysml.shapes import Shape
+from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Graph
 
 Writer = Callable[["Book", Entry], list[Line]]
@@ -73,9 +76,27 @@ class Book:
         """Add a member to a namespace, after those of the model."""
         self.extra.setdefault(id(entry), []).append(Line(head))
 
+    def declare(self, space: Entry, name: str, type_: str) -> str:
+        """An attribute that the text needs and no element stands for; its name as it is written.
+
+        One of the same name and type in the namespace serves again.
+        """
+        known = visible(self.plan, space)
+        for one in space.members:
+            if one.element is None and one.name == name:
+                return quoted(one.name)
+        free, number = name, 2
+        while free in known:
+            free, number = f"{name}_{number}", number + 1
+        made = self.plan.new(Shape("attribute"), space, free, None)
+        space.visible = None
+        self.beside(space, f"attribute {quoted(free)} : {self.library(space, type_)}")
+        self.plan.added[id(made)] = type_
+        return quoted(free)
+
     def members(self, entry: Entry) -> list[Line]:
-        """The members of a namespace, those of the model first."""
-        lines = [line for one in entry.members for line in self.member(one)]
+        """The members of a namespace, in the order of reading; those of the model first."""
+        lines = [line for one in in_order(self.graph, entry) for line in self.member(one)]
         return lines + self.extra.pop(id(entry), [])
 
     def member(self, entry: Entry) -> list[Line]:

@@ -33,13 +33,12 @@ class Head:
         """The declaration."""
         words = [*self.prefixes, self.keyword, self.name]
         text = " ".join(word for word in words if word)
-        if self.types:
-            text += f" : {', '.join(self.types)}"
-        text += self.multiplicity
-        for mark, names in ((":>", self.subsets), (":>>", self.redefines)):
-            if names:
-                text += f" {mark} {', '.join(names)}"
-        return text + self.value
+        typed = f" : {', '.join(self.types)}" if self.types else ""
+        redefined = f" :>> {', '.join(self.redefines)}" if self.redefines else ""
+        subset = f" :> {', '.join(self.subsets)}" if self.subsets else ""
+        if not self.name and redefined:
+            return f"{text}{redefined}{typed}{self.multiplicity}{subset}{self.value}".lstrip()
+        return f"{text}{typed}{self.multiplicity}{subset}{redefined}{self.value}".lstrip()
 
 
 def visibility(element: Element) -> list[str]:
@@ -190,7 +189,8 @@ def _redefine(book: Book, entry: Entry, head: Head) -> None:
     element = _element(entry)
     head.redefines = []
     is_same = False
-    for feature in book.graph.targets(element, Edge.REDEFINES):
+    redefined = book.graph.targets(element, Edge.REDEFINES)
+    for feature in redefined:
         other = book.plan.entry(feature)
         name = book.redefined(entry.parent, feature)
         if name is None or other is None:
@@ -199,6 +199,14 @@ def _redefine(book: Book, entry: Entry, head: Head) -> None:
         is_same = is_same or other.name == entry.name
         head.redefines.append(name)
     head.name = "" if is_same else quoted(entry.name)
+    if is_same and all(_has_type(book, one, element) for one in redefined):
+        head.types = []
+
+
+def _has_type(book: Book, redefined: Element, element: Element) -> bool:
+    """Whether what is redefined says the type already."""
+    types = book.graph.targets(element, Edge.TYPED_BY)
+    return book.graph.targets(redefined, Edge.TYPED_BY) == types
 
 
 def _element(entry: Entry) -> Element:

@@ -2,7 +2,7 @@
 
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.plan import Entry, Plan
-from sysmlc.backends.sysml.references import lookup, reference, visible
+from sysmlc.backends.sysml.references import lookup, meant, reference
 from sysmlc.backends.sysml.words import quoted, string
 from sysmlc.ir import Kind
 from sysmlc.logic.expression import (
@@ -103,19 +103,27 @@ class _Printer:
                 if isinstance(tree.base, Name | Member)
                 else (self.text(tree.base, _POSTFIX), None)
             )
-            found = None if entry is None else visible(self._plan, entry).get(tree.name)
+            found = None if entry is None else meant(self._plan, entry, tree.name)
             if found is None:
                 raise UnknownNameError(tree.name)
-            return f"{before}.{quoted(tree.name)}", found
+            return f"{before}.{quoted(found.name)}", found
         return self.text(tree, _POSTFIX), None
 
     def _head(self, path: tuple[str, ...]) -> Entry | None:
-        entry = lookup(self._plan, self._scope, path[0])
+        entry = self._first(path[0])
         for name in path[1:]:
-            entry = None if entry is None else visible(self._plan, entry).get(name)
+            entry = None if entry is None else meant(self._plan, entry, name)
         if entry is None:
             return self._by_suffix(path)
         return entry
+
+    def _first(self, name: str) -> Entry | None:
+        scope = self._scope
+        for space in () if scope is None else (scope, *scope.above):
+            found = meant(self._plan, space, name)
+            if found is not None and found.shape.keyword not in _NO_VALUES:
+                return found
+        return lookup(self._plan, None, name)
 
     def _by_suffix(self, path: tuple[str, ...]) -> Entry | None:
         """A literal that is named alone, or a name that starts in the middle of the path."""
@@ -131,6 +139,8 @@ class _Printer:
         return found[0] if len(found) == 1 else None
 
 
+_NO_VALUES = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
+"""Keywords of members that no expression means."""
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
 
 

@@ -19,6 +19,9 @@ def import_(book: Book, entry: Entry) -> list[Line]:
     lines = []
     for target in book.graph.targets(element, Edge.REFERENCES):
         name = _target(book, entry, target)
+        if name is None and target.attrs.get("library"):
+            book.approximated(element, f"the import of the library {target.name}", "nothing")
+            continue
         if name is None:
             book.lost(element, "references")
             continue

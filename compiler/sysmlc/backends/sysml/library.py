@@ -145,9 +145,11 @@ _SCALARS = "ScalarValue Boolean String NumericalValue Number Complex Real Ration
 IMPORTS = {
     "SysMLC": frozenset(_OURS.split()),
     "ScalarValues": frozenset([*_SCALARS.split(), "Positive"]),
+    "RequirementDerivation": frozenset({"derivation", "original", "derive"}),
+    "ModelingMetadata": frozenset({"refinement"}),
 }
 """Names that are written short, by the package that is then imported."""
-IMPORTED = IMPORTS["ScalarValues"] | IMPORTS["SysMLC"] | frozenset(_REST.split())
+IMPORTED = frozenset().union(*IMPORTS.values(), _REST.split())
 """All names that such imports may bring."""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.sysml.library import ROOTS, scalar_of
-from sysmlc.backends.sysml.rules import RENAMED, Losses
+from sysmlc.backends.sysml.rules import APPROXIMATED, RENAMED, Losses
 from sysmlc.backends.sysml.shapes import HOLDERS, Shape, shape_of
 from sysmlc.backends.sysml.used import used_outside
 from sysmlc.backends.sysml.words import writable
@@ -22,6 +22,8 @@ class Entry:
     members: list["Entry"] = field(default_factory=list)
     visible: "dict[str, Entry] | None" = None
     """Names of own and inherited members, once someone has asked."""
+    meant: "dict[str, Entry] | None" = None
+    """The same by the names that the model gives them."""
 
     @property
     def above(self) -> "Iterator[Entry]":
@@ -72,7 +74,24 @@ def make_plan(graph: Graph, losses: Losses) -> Plan:
     for root in graph.roots():
         if root.id in used:
             outside.place(root, used)
+    _move_flows(plan)
     return plan
+
+
+def _move_flows(plan: Plan) -> None:
+    """Item flows stand beside the connectors that realise them, where the ends can be named."""
+    for flow in plan.graph.of_kind(Kind.ITEM_FLOW):
+        entry = plan.entry(flow)
+        realizing = [plan.entry(one) for one in plan.graph.targets(flow, Edge.REALIZING)]
+        homes = [one.parent for one in realizing if one is not None]
+        if entry is None or not homes or homes[0] is None or homes[0] is entry.parent:
+            continue
+        if all(one is homes[0] for one in homes):
+            (plan.tops if entry.parent is None else entry.parent.members).remove(entry)
+            entry.parent = homes[0]
+            homes[0].members.append(entry)
+            facts = {"said": "the owner of an item flow", "written": "that of its connector"}
+            plan.losses.note(APPROXIMATED, flow, **facts)
 
 
 class Outside:
@@ -134,7 +153,12 @@ def _entry(plan: Plan, element: Element, parent: Entry | None) -> Entry | None:
     shape = shape_of(plan.graph, element)
     if shape is None:
         return parent
-    return plan.new(shape, parent, element.name, element)
+    name = "" if shape.keyword in _NAMELESS else element.name
+    return plan.new(shape, parent, name, element)
+
+
+_NAMELESS = frozenset({"start", "import"})
+"""Keywords of members that have no name in the text."""
 
 
 def _is_only_region(graph: Graph, element: Element) -> bool:

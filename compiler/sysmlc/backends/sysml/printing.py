@@ -18,13 +18,15 @@ class Line:
     body: list["Line"] = field(default_factory=list)
     text: list[str] = field(default_factory=list)
     depth: int = 0
+    tail: str = ""
+    """What of the declaration follows the members."""
     is_short: bool = False
     """Whether it is written in one line with its members, if they fit."""
 
     @property
     def inline(self) -> str | None:
         """The whole member in one line, or None when it is not meant to be, or too long."""
-        if self.text or "\n" in self.head:
+        if self.text or self.tail or "\n" in self.head:
             return None
         if not self.body:
             return f"{self.head};"
@@ -57,7 +59,7 @@ def printed(lines: Iterable[Line]) -> str:
         end = "" if top.text else (" {" if top.body else ";")
         out += _head(top, depth, end)
         if top.body:
-            stack.append(("}", depth))
+            stack.append((f"}} {top.tail};" if top.tail else "}", depth))
             _push(stack, top.body, depth + 1)
     out.append("")
     return "\n".join(out)

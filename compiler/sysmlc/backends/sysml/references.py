@@ -46,6 +46,29 @@ def visible(plan: Plan, space: Entry) -> dict[str, Entry]:
     return space.visible
 
 
+def meant(plan: Plan, space: Entry, name: str) -> Entry | None:
+    """What a text of the model means by a name in a namespace: features before behaviours."""
+    if space.meant is None:
+        found: dict[str, Entry] = {}
+        for one in (space, *_generals(plan, space)):
+            for member in sorted(one.members, key=_is_behaviour):
+                if member.element is not None and member.element.name:
+                    found.setdefault(member.element.name, member)
+        space.meant = found
+    return space.meant.get(name)
+
+
+def _is_behaviour(entry: Entry) -> bool:
+    return entry.shape.keyword in (
+        "action",
+        "state",
+        "occurrence",
+        "connection",
+        "flow",
+        "constraint",
+    )
+
+
 def _generals(plan: Plan, space: Entry) -> Iterator[Entry]:
     seen = {id(space)}
     level = [space]

@@ -125,9 +125,20 @@ def _satisfy(book: Book, entry: Entry) -> list[Line]:
     if client.shape.keyword in _SATISFYING:
         return _inside(book, entry, client, suppliers, "satisfy")
     if client.shape.is_usage and client.shape.keyword != "requirement":
-        by = f" by {reference(book.plan, entry.parent, client)}"
-        return _requirements(book, entry, entry.parent, suppliers, "satisfy", by)
+        home = _definition_of(client)
+        scope = entry.parent if home is None else home
+        by = f" by {reference(book.plan, scope, client)}"
+        lines = _requirements(book, entry, scope, suppliers, "satisfy", by)
+        if home is None:
+            return lines
+        book.extra.setdefault(id(home), []).extend(lines)
+        return []
     return _plain(book, entry)
+
+
+def _definition_of(usage: Entry) -> Entry | None:
+    """The definition that a usage is a feature of: only there it has a name by itself."""
+    return next((one for one in usage.above if one.shape.is_definition), None)
 
 
 _SATISFYING = frozenset({"part def", "item def", "action def", "state def", "occurrence def"})
@@ -160,7 +171,7 @@ def prepare(book: Book) -> None:
     """Write what stands inside other elements, so that it is there when these are written."""
     for element in book.graph.of_kind(Kind.DEPENDENCY):
         entry = book.plan.entry(element)
-        if entry is not None and element.role in ("satisfy", "verify"):
+        if entry is not None and element.role in ("satisfy", "verify", "allocate"):
             book.prepared[id(entry)] = _BY_ROLE[element.role](book, entry)
 
 
@@ -200,8 +211,14 @@ def _allocate(book: Book, entry: Entry) -> list[Line]:
     name = quoted(entry.name) if entry.name else ""
     if len(clients) == len(suppliers) == 1 and all(one.shape.is_usage for one in both):
         head = f"allocation {name} allocate" if name else "allocate"
-        ends = [_names(book, entry.parent, [one]) for one in both]
-        return [Line(f"{head} {ends[0]} to {ends[1]}", contents(book, entry))]
+        homes = [_definition_of(one) for one in both]
+        scope = homes[0] if homes[0] is homes[1] and homes[0] is not None else entry.parent
+        ends = [_names(book, scope, [one]) for one in both]
+        line = Line(f"{head} {ends[0]} to {ends[1]}", contents(book, entry))
+        if scope is entry.parent or scope is None:
+            return [line]
+        book.extra.setdefault(id(scope), []).append(line)
+        return []
     if len(clients) == len(suppliers) == 1 and all(one.shape.is_definition for one in both):
         pairs = zip(("allocated", "allocatedTo"), both, strict=True)
         lines = [Line(f"end {word} : {_names(book, entry, [one])}") for word, one in pairs]

@@ -30,7 +30,9 @@ class Shape:
         return self.keyword.removesuffix(" def")
 
 
-_NAMESPACES = frozenset({"package", "library package", "comment", "doc", "dependency", "import"})
+_NAMESPACES = frozenset(
+    {"package", "library package", "comment", "doc", "dependency", "import", "start"}
+)
 _DEFINITIONS = {
     Kind.PACKAGE: "package",
     Kind.PROFILE: "package",
@@ -64,10 +66,7 @@ _MEMBERS = {
     Kind.ACTION: Shape("action"),
     Kind.STRUCTURED: Shape("action"),
     Kind.STATE: Shape("state"),
-    Kind.PSEUDOSTATE: Shape("state"),
     Kind.REGION: Shape("state"),
-    Kind.OBJECT_NODE: Shape("item"),
-    Kind.DATA_STORE: Shape("item"),
     Kind.CONNECTOR: Shape("connection", is_named=False),
     Kind.ITEM_FLOW: Shape("flow", is_named=False),
     Kind.CONSTRAINT: Shape("constraint", is_named=False),
@@ -127,9 +126,29 @@ def _port(graph: Graph, element: Element) -> Shape:
     return Shape("part" if is_part_port(graph, element) else "port")
 
 
-def _control(_graph: Graph, element: Element) -> Shape | None:
+def _control(graph: Graph, element: Element) -> Shape | None:
+    """Control nodes; a final node is a member only where it ends other flows than its own."""
+    if element.subkind == "initial":
+        return Shape("start", is_named=False)
     keyword = _CONTROLS.get(element.subkind)
+    if keyword is None and element.subkind == "final" and _has_fork(graph, element):
+        return Shape("action")
     return Shape(keyword) if keyword else None
+
+
+def _has_fork(graph: Graph, element: Element) -> bool:
+    owner = graph.owner(element)
+    beside = [] if owner is None else graph.owned(owner)
+    return any(one.kind is Kind.CONTROL and one.subkind == "fork" for one in beside)
+
+
+def _pseudostate(_graph: Graph, element: Element) -> Shape | None:
+    return None if element.subkind == "initial" else Shape("state")
+
+
+def _object_node(graph: Graph, element: Element) -> Shape:
+    keyword = feature_keyword(graph, element)
+    return Shape(keyword if keyword in ("attribute", "item", "occurrence") else "item")
 
 
 def behaviour_shape(graph: Graph, element: Element) -> Shape:
@@ -201,4 +220,7 @@ _BY_KIND: dict[Kind, Callable[[Graph, Element], Shape | None]] = {
     Kind.ASSOCIATION: _association,
     Kind.INSTANCE: _instance,
     Kind.CONTROL: _control,
+    Kind.PSEUDOSTATE: _pseudostate,
+    Kind.OBJECT_NODE: _object_node,
+    Kind.DATA_STORE: _object_node,
 }

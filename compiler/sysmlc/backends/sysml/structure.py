@@ -20,7 +20,9 @@ def package(book: Book, entry: Entry) -> list[Line]:
     words = [] if entry.element is None else declarations.visibility(entry.element)
     head = " ".join([*words, entry.shape.keyword, quoted(entry.name)])
     body += book.members(entry)
-    imports = sorted(book.plan.imports.get(id(entry), ()))
+    heads = {line.head.partition(" ")[2] for line in body}
+    known = (one for one in book.plan.imports.get(id(entry), ()))
+    imports = sorted(one for one in known if f"import {one}::*" not in heads)
     return [Line(head, [*(Line(f"private import {one}::*") for one in imports), *body])]
 
 

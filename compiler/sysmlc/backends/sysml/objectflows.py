@@ -1,0 +1,75 @@
+"""Object flows: from one object to another, past the control nodes between them."""
+
+from collections.abc import Iterator
+
+from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.declarations import visibility
+from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.structure import contents
+from sysmlc.backends.sysml.successions import feature
+from sysmlc.backends.sysml.words import quoted
+from sysmlc.ir import Edge, Element, Kind
+
+
+def object_flow(book: Book, entry: Entry) -> list[Line]:
+    """The flows that begin with one object flow; those that begin at control nodes are said."""
+    element = entry.element
+    assert element is not None
+    source = book.graph.target(element, Edge.FLOW_SOURCE)
+    target = book.graph.target(element, Edge.FLOW_TARGET)
+    if source is None or target is None:
+        book.lost(element, "flow ends")
+        return []
+    if source.kind is Kind.CONTROL:
+        return []
+    is_direct = target.kind is not Kind.CONTROL
+    if is_direct and "guard" in element.attrs:
+        book.losses.note(UNSAID_ATTRIBUTE, element, attribute="guard", kind="ObjectFlow")
+    start, name, lines = feature(book, entry.parent, source), entry.name, []
+    for one in [target] if is_direct else _reached(book, target):
+        end = feature(book, entry.parent, one)
+        if start is None or end is None:
+            book.lost(element, "flow ends")
+            continue
+        lines.append(Line(_text(book, element, name, (source, start), (one, end))))
+        name = ""
+    if lines:
+        lines[0].body += contents(book, entry)
+    return lines
+
+
+def _text(
+    book: Book, flow: Element, name: str, source: tuple[Element, str], target: tuple[Element, str]
+) -> str:
+    words = visibility(flow)
+    if _is_bound(book, source[0], target[0]):
+        start = ["binding", quoted(name)] if name else []
+        return " ".join([*words, *start, "bind", target[1], "=", source[1]])
+    start = ["flow", quoted(name)] if name else ["flow"]
+    return " ".join([*words, *start, "from", source[1], "to", target[1]])
+
+
+def _is_bound(book: Book, source: Element, target: Element) -> bool:
+    """Whether a parameter of the activity and a pin are one value: nothing else flows there."""
+    for one, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
+        if one.kind is Kind.ACTIVITY_PARAMETER and len(book.graph.sources(one, edge)) == 1:
+            return True
+    return False
+
+
+def _reached(book: Book, control: Element) -> Iterator[Element]:
+    """Object nodes that objects reach from a control node without passing another one."""
+    seen, stack = {control.id}, [control]
+    while stack:
+        top = stack.pop()
+        for flow in reversed(book.graph.sources(top, Edge.FLOW_SOURCE)):
+            target = book.graph.target(flow, Edge.FLOW_TARGET)
+            if flow.kind is not Kind.OBJECT_FLOW or target is None or target.id in seen:
+                continue
+            seen.add(target.id)
+            if target.kind is Kind.CONTROL:
+                stack.append(target)
+            else:
+                yield target
