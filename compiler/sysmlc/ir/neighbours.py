@@ -37,9 +37,7 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
     known = index.get(id)
     if known is None:
         index[id] = neighbour
-    elif isinstance(known, dict):
-        known[neighbour] = None
-    elif isinstance(known, list) and len(known) < _MANY:
+    elif known.__class__ is list and len(known) < _MANY:
         known.append(neighbour)
     else:
         put(index, id, neighbour)

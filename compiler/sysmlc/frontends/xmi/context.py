@@ -112,13 +112,12 @@ class Context:
         element = Element(
             id, kind, values.get("name", ""), owner or None, document.ordinals[row], document.name
         )
-        if subkind:
-            element.attrs["subkind"] = subkind
+        element.attrs |= details.attributes(kind, subkind, type_name, feature)
         self.graph.add(element)
         self.gids[row] = id
         self.lowered.own[row] = 1
         self.verdicts[row] = Verdict.MAPPED
-        detail = details.OF.get(kind)
+        detail = details.of(kind, feature)
         if detail is not None:
             detail(self, element, row, type_name, feature)
         if len(values) > DEFAULT_LIMITS.attributes:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 if TYPE_CHECKING:
     from sysmlc.frontends.xmi.context import Context
@@ -14,34 +14,46 @@ Detail = Callable[["Context", Element, int, str, str], None]
 """Completes an element; takes its row, the name of its metaclass and its feature."""
 
 
-def _parameter(
-    _context: "Context", element: Element, _row: int, _type_name: str, _feature: str
-) -> None:
-    element.attrs["direction"] = "in"
+# -- the same for all elements of a feature and metaclass --------------------------------------
 
 
-def _pin(context: "Context", element: Element, _row: int, type_name: str, feature: str) -> None:
-    element.attrs["direction"] = v.PIN_DIRECTIONS[type_name]
-    element.attrs["subkind"] = metaclasses.hyphenated(feature)
-    owner = context.graph.owner(element) if feature == "returnInformation" else None
+def attributes(kind: Kind, subkind: str, type_name: str, feature: str) -> dict[str, AttrValue]:
+    """What elements of this kind, metaclass and feature say without an attribute of their own."""
+    said: dict[str, AttrValue] = {"subkind": subkind} if subkind else {}
+    if kind is Kind.PARAMETER:
+        said["direction"] = "in"
+    elif kind is Kind.PIN:
+        said["direction"] = v.PIN_DIRECTIONS[type_name]
+        said["subkind"] = metaclasses.hyphenated(feature)
+    elif kind is Kind.PSEUDOSTATE and type_name == "Pseudostate":
+        said["subkind"] = "initial"
+    elif kind is Kind.CONSTRAINT and feature in v.CONDITIONS:
+        said["subkind"] = v.CONDITIONS[feature]
+    elif kind is Kind.DEPENDENCY and feature == "roleBinding":
+        said["subkind"] = "role-binding"
+    return said
+
+
+def of(kind: Kind, feature: str) -> Detail | None:
+    """What else completes elements of this kind and feature."""
+    among = _FEATURES.get(kind)
+    return _OF.get(kind) if among is None or feature in among else None
+
+
+# -- what depends on the element ---------------------------------------------------------------
+
+
+def _pin(context: "Context", element: Element, _row: int, _type_name: str, _feature: str) -> None:
+    owner = context.graph.owner(element)
     if owner is not None and owner.subkind == "reply":
         # Where no type is written the default is that of an accepted call, an output pin.
         element.attrs["direction"] = "in"
 
 
-def _pseudostate(
-    _context: "Context", element: Element, _row: int, type_name: str, _feature: str
-) -> None:
-    if type_name == "Pseudostate":
-        element.attrs["subkind"] = "initial"
-
-
 def _constraint(
-    context: "Context", element: Element, row: int, _type_name: str, feature: str
+    context: "Context", element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
-    if feature in v.CONDITIONS:
-        element.attrs["subkind"] = v.CONDITIONS[feature]
-    owner = context.graph.owner(element) if feature in ("guard", "preCondition") else None
+    owner = context.graph.owner(element)
     if owner is not None:
         context.guards.append((owner, element.id, row))
 
@@ -57,9 +69,8 @@ def _behaviour(
     context: "Context", element: Element, _row: int, _type_name: str, feature: str
 ) -> None:
     owner = context.graph.owner(element)
-    edge = v.STATE_BEHAVIOURS.get(feature)
-    if edge is not None and owner is not None:
-        context.graph.connect(edge, owner, element)
+    if owner is not None:
+        context.graph.connect(v.STATE_BEHAVIOURS[feature], owner, element)
 
 
 def _trigger(context: "Context", element: Element, row: int, _type_name: str, feature: str) -> None:
@@ -69,13 +80,6 @@ def _trigger(context: "Context", element: Element, row: int, _type_name: str, fe
         element.attrs["deferred"] = True
     elif owner is not None:
         context.graph.connect(Edge.TRIGGER, owner, element)
-
-
-def _dependency(
-    _context: "Context", element: Element, _row: int, _type_name: str, feature: str
-) -> None:
-    if feature == "roleBinding":
-        element.attrs["subkind"] = "role-binding"
 
 
 def _connector_end(
@@ -93,18 +97,22 @@ def _activity_parameter(
     context.parameters.append((element, row))
 
 
-OF: dict[Kind, Detail] = {
-    Kind.PARAMETER: _parameter,
+_OF: dict[Kind, Detail] = {
     Kind.PIN: _pin,
-    Kind.PSEUDOSTATE: _pseudostate,
     Kind.CONSTRAINT: _constraint,
     Kind.TRANSITION: _transition,
     Kind.ACTIVITY: _behaviour,
     Kind.STATE_MACHINE: _behaviour,
     Kind.INTERACTION: _behaviour,
     Kind.TRIGGER: _trigger,
-    Kind.DEPENDENCY: _dependency,
     Kind.CONNECTOR_END: _connector_end,
     Kind.ACTIVITY_PARAMETER: _activity_parameter,
 }
-"""What completes the elements of a kind."""
+_FEATURES: dict[Kind, frozenset[str]] = {
+    Kind.PIN: frozenset({"returnInformation"}),
+    Kind.CONSTRAINT: frozenset({"guard", "preCondition"}),
+    Kind.ACTIVITY: frozenset(v.STATE_BEHAVIOURS),
+    Kind.STATE_MACHINE: frozenset(v.STATE_BEHAVIOURS),
+    Kind.INTERACTION: frozenset(v.STATE_BEHAVIOURS),
+}
+"""Kinds of which only the elements of some features have something special to them."""

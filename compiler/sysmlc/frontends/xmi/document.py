@@ -100,6 +100,11 @@ class Document:
         ids = self.tokens(written) if written else []
         return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
 
+    def retype(self, row: int, type_name: str) -> None:
+        """Give the row another type; what its shape said no longer counts."""
+        self.types[row] = type_name
+        self.shape_numbers[row] = -1
+
     def tokens(self, value: str) -> list[str]:
         """Ids in an attribute; Enterprise Architect's ids may hold spaces."""
         return [value] if value in self.ids else value.split()

@@ -6,36 +6,57 @@ texts the plan of their shape says all there is to do; rows of other shapes go t
 """
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from types import MappingProxyType
+from typing import NamedTuple, TypeVar
 
 from sysmlc.frontends.xmi import details, metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.frontends.xmi.document import Shape
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.sources import DEFAULT_LIMITS
 
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.context import Context
+_R = TypeVar("_R")
 
-Shape = tuple[str, ...]
-"""Feature, type, and names of the attributes in order."""
+
+class Key(NamedTuple):
+    """Where the graph keeps the text of an attribute, or what ``meanings`` say of it.
+
+    ``default`` is the text that is not kept.
+    """
+
+    name: str
+    default: str
+    meanings: Mapping[str, AttrValue] | None = None
+
+    def keep(self, element: Element, value: str) -> None:
+        """Give the element the attribute."""
+        if self.meanings is None:
+            element.attrs[self.name] = value
+        elif value in self.meanings:
+            element.attrs[self.name] = self.meanings[value]
 
 
 class Step(NamedTuple):
-    """One attribute: an edge to what it names, a text under ``key``, or neither (rarer cases)."""
+    """One attribute: the id of an element, a text, or one of the rarer cases.
+
+    An id is the target of ``edge``; without one something else says the same, and it only has
+    to lead to an element.
+    """
 
     name: str
+    is_id: bool = False
     edge: Edge | None = None
-    key: str = ""
-    default: str = ""
+    key: Key | None = None
 
 
 class Plan(NamedTuple):
     """What becomes of the rows of a shape."""
 
     kind: Kind
-    subkind: str
     type_name: str
     owners: frozenset[Kind] | None
+    attributes: dict[str, AttrValue]
+    """What all elements of the shape say."""
     detail: details.Detail | None
     may_be_metaclass: bool
     is_done: bool
@@ -54,7 +75,7 @@ def plan_of(
     ``keys`` are those of ``xmi:id`` and ``xmi:idref``; ``features`` and ``types`` have readers
     of their own.
     """
-    feature, written, *names = shape
+    feature, written, names = shape
     type_name = written or metaclasses.DEFAULT_TYPES.get(feature, "")
     has_reader = feature in features and may_be_value(feature, written) is not False
     if has_reader or feature in v.NOTATION_FEATURES or not _is_plain(names, keys):
@@ -67,14 +88,29 @@ def plan_of(
     kind, subkind = known
     return Plan(
         kind,
-        subkind,
         type_name,
         metaclasses.OWNERS.get(kind),
-        _detail(kind, tuple(name for name in names if _says_nothing(kind, name))),
+        details.attributes(kind, subkind, type_name, feature),
+        details.of(kind, feature),
         kind is Kind.PROPERTY,
         kind in _DONE,
         tuple(_steps(kind, names)),
     )
+
+
+def reader_of(
+    shape: Shape, keys: tuple[str, str], features: Mapping[str, _R], reference: _R
+) -> _R | None:
+    """What reads the rows of a shape that are no elements, with all that is in them.
+
+    None where more than the shape decides. ``reference`` is for rows that name another element.
+    """
+    feature, written, names = shape
+    if feature in v.NOTATION_FEATURES:
+        return None
+    if "href" in names or keys[1] in names:
+        return reference
+    return features.get(feature) if may_be_value(feature, written) else None
 
 
 _DONE = frozenset(
@@ -105,47 +141,34 @@ def may_be_value(feature: str, type_name: str) -> bool | None:
     return None if feature == "value" else feature not in metaclasses.DEFAULT_TYPES
 
 
-def _is_plain(names: list[str], keys: tuple[str, str]) -> bool:
+def _is_plain(names: tuple[str, ...], keys: tuple[str, str]) -> bool:
     id_key, idref_key = keys
     is_element = id_key in names and idref_key not in names and "href" not in names
     return is_element and len(names) <= DEFAULT_LIMITS.attributes
 
 
-def _steps(kind: Kind, names: list[str]) -> Iterator[Step]:
+def _steps(kind: Kind, names: tuple[str, ...]) -> Iterator[Step]:
     for name in names:
-        if name not in PASSED_OVER and "}" not in name and not _says_nothing(kind, name):
+        if name in v.REDUNDANT or (name not in PASSED_OVER and "}" not in name):
             yield _step(kind, name)
-
-
-def _says_nothing(kind: Kind, name: str) -> bool:
-    is_other = name in v.REFERENCES or name in v.CONDITIONS or (kind, name) in v.REVERSED
-    return name in v.REDUNDANT and not is_other
-
-
-def _detail(kind: Kind, unread: tuple[str, ...]) -> details.Detail | None:
-    """What completes elements of the kind; of ``unread`` counts only whether they lead anywhere."""
-    known = details.OF.get(kind)
-    if not unread:
-        return known
-
-    def look(context: "Context", element: Element, row: int, type_name: str, feature: str) -> None:
-        values, ids = context.document.attributes[row], context.document.ids
-        for name in unread:
-            if values[name] not in ids:
-                context.look(row, name, values[name])
-        if known is not None:
-            known(context, element, row, type_name, feature)
-
-    return look
 
 
 def _step(kind: Kind, name: str) -> Step:
     edge = v.REFERENCES.get(name)
     if edge is not None:
-        return Step(name, v.SPECIAL.get((kind, name), edge))
-    if name in v.TEXTS and name not in v.FLAGS:
-        return Step(name, None, *v.TEXTS[name])
-    return Step(name)
+        return Step(name, True, v.SPECIAL.get((kind, name), edge))
+    if name in v.FLAGS:
+        return Step(name, key=Key(v.FLAGS[name], "false", _FLAG))
+    if name in v.TEXTS:
+        return Step(name, key=Key(*v.TEXTS[name]))
+    if name in v.UNLESS_FALSE:
+        return Step(name, key=Key(v.UNLESS_FALSE[name], "true", _UNLESS_FALSE))
+    is_other = name in v.CONDITIONS or (kind, name) in v.REVERSED
+    return Step(name, name in v.REDUNDANT and not is_other)
+
+
+_FLAG: Mapping[str, AttrValue] = MappingProxyType(dict.fromkeys(v.TRUE, True))
+_UNLESS_FALSE: Mapping[str, AttrValue] = MappingProxyType({"false": False})
 
 
 _HANDLED = frozenset(

@@ -4,42 +4,32 @@ from collections.abc import Callable, Mapping
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.shapes import Plan, Shape, plan_of
-
-
-class _Plans(dict[Shape, Plan | None]):
-    """Plans of the shapes that were met so far."""
-
-    def __init__(
-        self, context: Context, features: Mapping[str, object], types: Mapping[str, object]
-    ) -> None:
-        super().__init__()
-        # The value of an ElementValue (MagicDraw) is the name of whatever element it names.
-        self._are_names_asked = "ElementValue" in context.document.types
-        self._keys = context.document.id_key, context.document.idref_key
-        self._features = features
-        self._types = types
-
-    def __missing__(self, shape: Shape) -> Plan | None:
-        made = plan_of(shape, self._keys, self._features, self._types)
-        if made is not None and self._are_names_asked:
-            made = made._replace(is_done=False)
-        self[shape] = made
-        return made
-
+from sysmlc.frontends.xmi.shapes import plan_of, reader_of
+from sysmlc.frontends.xmi.structure import reference
 
 Way = Callable[[Context, int], int]
 """Lowers one row, perhaps with its content; returns the first row after."""
 
+Reader = Callable[[Context, int], None]
+"""Reads a row that is no element, and its content."""
+
 
 class Swift:
-    """Lowers the rows of one document, those for which there is a plan at once."""
+    """Lowers the rows of one document, those whose shape says what to do at once."""
 
     def __init__(
-        self, context: Context, features: Mapping[str, object], types: Mapping[str, object]
+        self, context: Context, features: Mapping[str, Reader], types: Mapping[str, Reader]
     ) -> None:
         self._context = context
-        self._plans = _Plans(context, features, types)
+        document = context.document
+        keys = document.id_key, document.idref_key
+        shapes = document.shapes
+        # The last ones are those of rows without a shape.
+        self._plans = [*(plan_of(shape, keys, features, types) for shape in shapes), None]
+        self._readers = [*(reader_of(shape, keys, features, _refer) for shape in shapes), None]
+        if "ElementValue" in document.types:
+            # The value of an ElementValue (MagicDraw) is the name of whatever element it names.
+            self._plans = [plan and plan._replace(is_done=False) for plan in self._plans]
 
     def walk(self, row: int, root: Way, other: Way) -> None:
         """Lower all rows from this one on: roots by ``root``, rows without a plan by ``other``.
@@ -49,16 +39,15 @@ class Swift:
         itself: half of the budget of the whole front end.
         """
         context = self._context
-        document, lowered, graph, links = (
-            context.document,
-            context.lowered,
-            context.graph,
-            context.unit.links,
+        document, lowered, links = context.document, context.lowered, context.unit.links
+        shapes, attributes, features = (
+            document.shape_numbers,
+            document.attributes,
+            document.features,
         )
-        features, types, attributes = document.features, document.types, document.attributes
         parents, ordinals, ids = document.parents, document.ordinals, document.ids
         gids, own, verdicts = context.gids, lowered.own, context.verdicts
-        clashes, plans, new = context.unit.clashes, self._plans, graph.new
+        clashes, plans, new = context.unit.clashes, self._plans, context.graph.new
         file, id_key, mapped = document.name, document.id_key, Verdict.MAPPED
         links.begin(lowered)
         add_edge, add_target, add_row = (
@@ -66,47 +55,58 @@ class Swift:
             links.targets.append,
             links.rows.append,
         )
-        end, above_roots = len(features), row - 1
+        end, above_roots = len(shapes), row - 1
         while row < end:
-            above = parents[row]
-            if above == above_roots:
-                row = root(context, row)
+            above, plan = parents[row], plans[shapes[row]]
+            if plan is None or above == above_roots:
+                row = root(context, row) if above == above_roots else self._read(row, other)
                 continue
+            kind, type_name, owners, said, detail, may_be_metaclass, is_done, steps = plan
             values = attributes[row]
-            shape = (features[row], types[row], *values)
-            plan = plans[shape]
-            if plan is None:
-                row = other(context, row)
-                continue
-            kind, subkind, type_name, owners, detail, may_be_metaclass, is_done, steps = plan
             owner, id, name = gids[above], values[id_key], values.get("name", "")
-            is_special = may_be_metaclass and name.startswith("base_")
-            if is_special or id in clashes or (owners and not context.may_own(owner, kind)):
+            is_other = may_be_metaclass and name.startswith("base_")
+            if is_other or id in clashes or (owners and not context.may_own(owner, kind)):
                 row = other(context, row)
                 continue
-            made = new(id, kind, name, owner or None, ordinals[row], file)
+            made = new(id, kind, name, owner or None, ordinals[row], file, said)
             if made is None:
                 row = other(context, row)
                 continue
-            if subkind:
-                made.attrs = {"subkind": subkind}
             gids[row] = id
             own[row] = 1
             verdicts[row] = mapped
             if detail is not None:
-                detail(context, made, row, type_name, shape[0])
-            for step, edge, key, default in steps:
+                detail(context, made, row, type_name, features[row])
+            for step, is_id, edge, key in steps:
                 value = values[step]
-                if edge is not None and value in ids:
-                    add_edge(edge)
-                    add_target(value)
-                    add_row(row)
-                elif not key:
+                if is_id and value in ids:
+                    if edge is not None:
+                        add_edge(edge)
+                        add_target(value)
+                        add_row(row)
+                elif key is None:
                     context.attribute(made, row, step, value)
-                elif value != default:
-                    made.attrs[key] = value
-            attributes[row] = _TAKEN if is_done else values
+                elif value != key.default:
+                    key.keep(made, value)
+            if is_done:
+                attributes[row] = _TAKEN
             row += 1
+
+    def _read(self, row: int, other: Way) -> int:
+        """A row of a shape without a plan."""
+        context = self._context
+        document = context.document
+        reader = self._readers[document.shape_numbers[row]]
+        if reader is None:
+            return other(context, row)
+        context.gids[row] = context.gids[document.parents[row]]
+        context.verdicts[row] = Verdict.MAPPED
+        reader(context, row)
+        return document.ends[row]
+
+
+def _refer(context: Context, row: int) -> None:
+    reference(context, row, context.document.features[row])
 
 
 _TAKEN: dict[str, str] = {}

@@ -20,7 +20,8 @@ def _signature(context: Context, row: int) -> None:
     owner = context.owner(row)
     for child in document.children(row, "ownedParameter"):
         # Papyrus omits the type; the same feature of operations holds other elements.
-        document.types[child] = document.types[child] or "TemplateParameter"
+        if not document.types[child]:
+            document.retype(child, "TemplateParameter")
     targets = document.targets(row, "extendedSignature")
     if owner is not None:
         context.keep_ids(owner, "extended_signature", targets)
