@@ -57,13 +57,17 @@ def mutate(
     random: Random,
     more_changes: Sequence[Change] = (),
     more_damages: Sequence[Damage] = (),
+    changes: Sequence[Change] | None = None,
 ) -> tuple[str, bytes]:
-    """One to three changes of the document; what was done, and the result."""
+    """One to three changes of the document; what was done, and the result.
+
+    ``changes`` are all there are, for documents that are no XMI.
+    """
     done: list[str] = []
     root = etree.fromstring(document)
     _never_empty(root)
     for _ in range(random.randint(1, 3)):
-        change = random.choice((*_CHANGES, *more_changes))
+        change = random.choice(changes or (*_CHANGES, *more_changes))
         done.append(change.__name__.strip("_"))
         change(root, random)
         _never_empty(root)
@@ -227,6 +231,18 @@ _CHANGES: tuple[Change, ...] = (
     _same_id,
     _bury,
 )
+
+GENERIC: tuple[Change, ...] = (
+    _drop,
+    _duplicate,
+    _swap,
+    _move,
+    _rename_feature,
+    _drop_attribute,
+    _spoil_attribute,
+    _spoil_text,
+)
+"""Changes that know nothing of XMI."""
 
 
 # -- damage to the bytes -----------------------------------------------------------------------

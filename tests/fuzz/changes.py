@@ -234,6 +234,9 @@ def _dig(root: Element, random: Random) -> None:
         here.set(xmi_key(root, "id"), f"_dug{depth}")
 
 
+GENERIC: tuple[Change, ...] = (_into_itself, _many_drops, _rename_attribute, _move_to_root)
+"""Changes that know nothing of XMI."""
+
 CHANGES: tuple[Change, ...] = (
     _circle_of_generals,
     _circle_of_parts,

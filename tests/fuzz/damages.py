@@ -3,9 +3,10 @@
 import io
 import re
 import zipfile
+from collections.abc import Sequence
 from random import Random
 
-from dialects.mutate import Damage, damage, mutate
+from dialects.mutate import Change, Damage, damage, mutate
 from fuzz.changes import CHANGES
 
 _NAMESPACE = re.compile(rb"""xmlns:?\w*=["']([^"']+)["']""")
@@ -87,7 +88,9 @@ DAMAGES: tuple[Damage, ...] = (
 # -- archives ------------------------------------------------------------------------------------
 
 
-def mutate_archive(data: bytes, random: Random) -> tuple[str, bytes]:
+def mutate_archive(
+    data: bytes, random: Random, changes: Sequence[Change] | None = None
+) -> tuple[str, bytes]:
     """Change a model inside an archive, the archive's table, or its bytes."""
     if random.random() < 0.25:
         return damage(data, random, (_cut_at_border, _lie))
@@ -98,7 +101,7 @@ def mutate_archive(data: bytes, random: Random) -> tuple[str, bytes]:
     done = "entries"
     if models and random.random() < 0.8:
         name = random.choice(models)
-        done, entries[name] = mutate(entries[name], random, CHANGES, DAMAGES)
+        done, entries[name] = mutate(entries[name], random, CHANGES, DAMAGES, changes)
     else:
         names = list(entries)
         one, other = random.choice(names), random.choice(names)

@@ -17,8 +17,11 @@ from functools import cache
 from pathlib import Path
 from random import Random
 
+from lxml import etree
+
 from dialects.magicdraw import write_mdzip, write_xml
-from dialects.mutate import mutate
+from dialects.mutate import damage, mutate
+from fuzz.aml_changes import AML_CHANGES
 from fuzz.changes import CHANGES
 from fuzz.damages import DAMAGES, mutate_archive
 from fuzz.guard import MEGABYTE, Bounds, Ended, Guard
@@ -28,6 +31,7 @@ MEMORY = 1024 * MEGABYTE
 ARGS = ("-o", "out", "--emit", "+graph,+ecore,+ir", "--diagrams", "both", "--verify-each")
 _EVERY = 20
 """One mutant of so many is compiled again with another hash seed."""
+_AML = {".aml", ".amlx"}
 _EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*/*.uml"))
 
 
@@ -52,7 +56,7 @@ class Found:
 def models(corpus: Path | None, largest: int) -> list[Path]:
     """The examples, and the files of the corpus up to a size in bytes."""
     inside = corpus.rglob("*") if corpus else ()
-    wanted = {".uml", ".xml", ".mdxml", ".mdzip", ".xmi"}
+    wanted = {".uml", ".xml", ".mdxml", ".mdzip", ".xmi", *_AML}
     real = [p for p in inside if p.suffix in wanted and p.stat().st_size <= largest]
     return [*_EXAMPLES, *sorted(real)]
 
@@ -65,11 +69,23 @@ def mutant(seed: int, among: Sequence[Path]) -> Mutant:
     is_example = path in _EXAMPLES
     dialect = random.choice(["uml", "uml", "xml", "mdzip"]) if is_example else path.suffix[1:]
     whole = _document(path, dialect if is_example else "")
-    if dialect == "mdzip":
-        done, data = mutate_archive(whole, random)
+    changes = AML_CHANGES if path.suffix in _AML else None
+    if dialect in ("mdzip", "amlx"):
+        done, data = mutate_archive(whole, random, changes)
+    elif _is_well_formed(path):
+        done, data = mutate(whole, random, CHANGES, DAMAGES, changes)
     else:
-        done, data = mutate(whole, random, CHANGES, DAMAGES)
+        done, data = damage(whole, random, DAMAGES)
     return Mutant(seed, f"m{seed}.{dialect}", f"{path.name}: {done}", data)
+
+
+@cache
+def _is_well_formed(path: Path) -> bool:
+    try:
+        etree.parse(path)
+    except etree.XMLSyntaxError:
+        return False
+    return True
 
 
 @cache

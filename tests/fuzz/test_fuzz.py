@@ -11,6 +11,7 @@ from fuzz.hunt import Hunter, models, mutant
 BATCH = 20
 EXAMPLES = range(0, 60, BATCH)
 REAL = range(0, 140, BATCH)
+PLANTS = range(0, 200, BATCH)
 LARGEST = 150 * 1024
 
 
@@ -39,6 +40,21 @@ def test_spoilt_examples_are_answered_with_findings(hunter, first):
 def test_spoilt_real_models_are_answered_with_findings(hunter, corpus, first):
     among = models(corpus / "xmi", LARGEST)
     assert unanswered(hunter, range(first, first + BATCH), among) == []
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("first", PLANTS)
+def test_spoilt_plants_are_answered_with_findings(hunter, corpus, first):
+    among = [p for p in models(corpus / "aml", LARGEST) if p.suffix in (".aml", ".amlx")]
+    assert unanswered(hunter, range(first, first + BATCH), among) == []
+
+
+@pytest.mark.corpus
+def test_spoilt_plants_are_wrong_and_right(hunter, corpus):
+    among = [p for p in models(corpus / "aml", LARGEST) if p.suffix in (".aml", ".amlx")]
+    before = dict(hunter.codes)
+    assert unanswered(hunter, range(700, 720), among) == []
+    assert min(hunter.codes[code] - before.get(code, 0) for code in (0, 1)) > 5
 
 
 def test_mutants_are_wrong_and_right(hunter):
