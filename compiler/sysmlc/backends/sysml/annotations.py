@@ -49,6 +49,7 @@ def of(book: Book, entry: Entry) -> list[Line]:
         *_aml(book, entry, element),
         *_interfaces(book, entry, element),
         *_kind(book, entry, element),
+        *_partitions(book, entry, element),
         *_outside(book, entry, element),
         *_applications(book, entry, element),
     ]
@@ -97,6 +98,16 @@ def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
     if not _is_told(element) or element.source in book.caex:
         return []
     return [ours(book, entry, "Kind", {"name": element.subkind})]
+
+
+def _partitions(book: Book, entry: Entry, element: Element) -> list[Line]:
+    """The partitions and regions that an action stands in, as their names show them."""
+    names = []
+    for one in book.graph.targets(element, Edge.IN_PARTITION):
+        represented = book.graph.target(one, Edge.REPRESENTS)
+        names.append(one.name or ("" if represented is None else represented.name))
+    known = tuple(name for name in names if name)
+    return [ours(book, entry, "Partition", {"names": known})] if known else []
 
 
 def _is_told(element: Element) -> bool:

@@ -75,6 +75,7 @@ def make_plan(graph: Graph, losses: Losses) -> Plan:
         if root.id in used:
             outside.place(root, used)
     _move_flows(plan)
+    _move_messages(plan)
     return plan
 
 
@@ -92,6 +93,21 @@ def _move_flows(plan: Plan) -> None:
             homes[0].members.append(entry)
             facts = {"said": "the owner of an item flow", "written": "that of its connector"}
             plan.losses.note(APPROXIMATED, flow, **facts)
+
+
+def _move_messages(plan: Plan) -> None:
+    """Messages stand in the operand in which they are sent."""
+    for message in plan.graph.of_kind(Kind.MESSAGE):
+        entry = plan.entry(message)
+        event = plan.graph.target(message, Edge.SEND_EVENT)
+        if event is None or event.kind is not Kind.OCCURRENCE:
+            event = plan.graph.target(message, Edge.RECEIVE_EVENT)
+        home = None if event is None else plan.entry(plan.graph.owner(event))
+        if entry is None or entry.parent is None or home is None or home is entry.parent:
+            continue
+        entry.parent.members.remove(entry)
+        entry.parent = home
+        home.members.append(entry)
 
 
 class Outside:

@@ -122,15 +122,10 @@ def feature(book: Book, entry: Entry) -> list[Line]:
     if "default" in element.attrs:
         text = value(book, entry.parent, element, element, "default")
         head.value = f" default = {text}" if text else ""
-    return [Line(_marked(book, entry, head), contents(book, entry))]
-
-
-def _marked(book: Book, entry: Entry, head: Head) -> str:
-    """The declaration, with a keyword of ours for shared aggregation."""
-    element = entry.element
-    if element is not None and element.attrs.get("aggregation") == "shared":
-        head.prefixes.append(f"#{book.ours(entry.parent, 'shared')}")
-    return head.text()
+    body = contents(book, entry)
+    if element.attrs.get("aggregation") == "shared":
+        body.insert(0, Line(f"@{book.ours(entry, 'shared')}", is_short=True))
+    return [Line(head.text(), body)]
 
 
 def port(book: Book, entry: Entry) -> list[Line]:

@@ -1,0 +1,91 @@
+"""Interactions: lifelines as references to parts, messages between them, fragments around them."""
+
+from sysmlc.backends.sysml import annotations
+from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.conditions import condition
+from sysmlc.backends.sysml.declarations import type_name
+from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import named
+from sysmlc.backends.sysml.structure import contents
+from sysmlc.backends.sysml.words import quoted, string
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import type_of
+
+
+def lifeline(book: Book, entry: Entry) -> list[Line]:
+    """A lifeline: a reference to a part, or to something of its type."""
+    element = entry.element
+    assert element is not None
+    head = f"ref part {quoted(entry.name)}"
+    for one in book.graph.targets(element, Edge.REPRESENTS):
+        type_ = type_of(book.graph, one)
+        shape = book.plan.entry(type_)
+        is_part = shape is not None and shape.shape.keyword in ("part def", "item def")
+        name = None if type_ is None else type_name(book, entry.parent, element, type_)
+        if name is not None:
+            head = f"{head if is_part else head.replace('part ', '')} : {name}"
+        book.approximated(element, "what a lifeline represents", "a part of the same type")
+    return [Line(head, contents(book, entry))]
+
+
+def message(book: Book, entry: Entry) -> list[Line]:
+    """A message: a transfer from one lifeline to another."""
+    element = entry.element
+    assert element is not None
+    ends = [_end(book, entry, element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    head = f"message {quoted(entry.name)}"
+    for one in book.graph.targets(element, Edge.CALLS):
+        other = book.plan.entry(one)
+        if other is not None and other.shape.is_definition:
+            name = book.name(entry.parent, element, Edge.CALLS, one)
+            head += f" of {name}"
+        elif other is not None:
+            head += f" of {quoted(other.name)} : {book.ours(entry.parent, 'Call')}"
+        break
+    if None not in ends:
+        head += f" from {ends[0]} to {ends[1]}"
+    elif any(one is not None for one in ends):
+        book.approximated(element, "a message with one end", "a message without ends")
+    _say_ends(book, element)
+    return [Line(head, _facts(book, entry, element) + contents(book, entry))]
+
+
+def _end(book: Book, entry: Entry, element: Element, edge: Edge) -> str | None:
+    target = book.graph.target(element, edge)
+    return None if target is None else named(book.plan, entry.parent, target)
+
+
+def _say_ends(book: Book, element: Element) -> None:
+    for edge in (Edge.SEND_EVENT, Edge.RECEIVE_EVENT):
+        book.said.update(one.id for one in book.graph.targets(element, edge))
+
+
+def _facts(book: Book, entry: Entry, element: Element) -> list[Line]:
+    facts = {key: element.attrs.get(key) for key in ("message_kind",)}
+    given = element.attrs.get("arguments")
+    texts = given if isinstance(given, tuple) else ()
+    lines = [Line(f"attribute argument{n} = {string(str(one))}") for n, one in enumerate(texts, 1)]
+    name = element.subkind or facts["message_kind"]
+    return [annotations.ours(book, entry, "Kind", {"name": name}), *lines] if name else lines
+
+
+def fragment(book: Book, entry: Entry) -> list[Line]:
+    """A combined fragment or one of its operands: an occurrence of its kind."""
+    element = entry.element
+    assert element is not None
+    kind = element.subkind or str(element.kind).lower()
+    body = [annotations.ours(book, entry, "Kind", {"name": kind})]
+    guard = element.attrs.get("guard")
+    if guard is not None and str(guard) != "else":
+        book.approximated(element, "the guard of an operand", "a constraint in it")
+        text = condition(book, entry, element, str(guard))
+        body.append(Line("assert constraint", [Line("", text=[text])]))
+    for one in book.graph.targets(element, Edge.CALLS):
+        other = book.plan.entry(one)
+        name = book.name(entry, element, Edge.CALLS, one)
+        if name is not None and other is not None:
+            body.append(Line(f"ref {':' if other.shape.is_definition else ':>'} {name}"))
+    if element.kind is Kind.FRAGMENT:
+        book.approximated(element, "a fragment of an interaction", "an occurrence of its kind")
+    return [Line(f"occurrence {quoted(entry.name)}", body + contents(book, entry))]
