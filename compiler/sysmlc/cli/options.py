@@ -49,6 +49,12 @@ def reading(function: _F) -> _F:
             click.option(
                 "--strict-input", is_flag=True, help="Content that is not supported is an error."
             ),
+            click.option(
+                "--schema",
+                type=click.Path(path_type=Path),
+                metavar="DIR",
+                help="Validate the inputs against the XML Schemas (*.xsd) in a folder.",
+            ),
             click.option("--verify-each", is_flag=True, help="Check the graph after each pass."),
             click.option(
                 "--print-after",

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation, Opened, Outcome, Request
+    from sysmlc.sources.schema import Schemas
 
-_AS_WRITTEN = frozenset({"resolve", "overlay"})
-"""Passes that only complete what the authors wrote."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
@@ -27,6 +26,7 @@ class Settings:
 
     config: Path | None = None
     strict_input: bool = False
+    schema: Path | None = None
     verify_each: bool = False
     print_after: tuple[str, ...] = ()
     verbose: bool = False
@@ -41,6 +41,8 @@ class Settings:
     @property
     def is_plain(self) -> bool:
         """Whether nothing was asked for that only a compilation that really runs can show."""
+        if self.schema is not None:
+            return False
         return self.has_cache and not (self.verify_each or self.print_after or self.verbose)
 
 
@@ -146,7 +148,7 @@ def compile_unit(
 def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Compilation":
     """Read files as they are written: references resolved, nothing refined."""
     request = _request(files, config, settings)
-    passes = tuple(one for one in request.pipeline() if one.name in _AS_WRITTEN)
+    passes = tuple(one for one in request.pipeline() if one.name == "resolve")
     return _compile(replace(request, passes=passes), settings)
 
 
@@ -185,8 +187,21 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         diagrams=settings.diagrams or config.diagrams,
         overlays=settings.overlay,
         verify_each=settings.verify_each,
+        schemas=_schemas(settings),
         cache=cache.default() if settings.is_plain else None,
     )
+
+
+def _schemas(settings: Settings) -> "Schemas | None":
+    """The schemas that the user gives; ends with exit code 2 when they cannot be used."""
+    if settings.schema is None:
+        return None
+    from sysmlc.sources.schema import SchemaError, load_schemas
+
+    try:
+        return load_schemas(settings.schema)
+    except SchemaError as problem:
+        fail(str(problem))
 
 
 def _with_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request":

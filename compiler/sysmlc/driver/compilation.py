@@ -4,6 +4,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.cache import Cache
@@ -23,6 +24,9 @@ from sysmlc.overlay import Refinement
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
+
+if TYPE_CHECKING:
+    from sysmlc.sources.schema import Schemas
 
 
 class Observer:
@@ -57,6 +61,8 @@ class Request:
     verify_each: bool = False
     frontends: tuple[Frontend, ...] | None = None
     passes: tuple[Pass, ...] | None = None
+    schemas: "Schemas | None" = None
+    """Schemas that the inputs are validated against; None: they are not."""
     cache: Cache | None = None
     """Where front ends keep what they parsed; None: nowhere."""
 
@@ -150,6 +156,7 @@ class _Run:
         beside += [(drawing, "diagrams") for drawing in self._drawings]
         inputs += tuple(InputFile(one.name, one.sha256, what) for one, what in beside)
         broken = not self._read(reading)
+        self._validate(reading)
         said = [laid.refinement for laid in reading.overlays if laid.refinement is not None]
         self._graph.store(Refinement, said)
         broken = not all(self._refine(step) for step in self._passes) or broken
@@ -185,6 +192,13 @@ class _Run:
                 )
                 done &= self._request.diagrams == DERIVED or self._draw(frontend, sources)
         return self._settled("read") and done
+
+    def _validate(self, reading: Reading) -> None:
+        schemas = self._request.schemas
+        if schemas is not None:
+            from sysmlc.driver.validation import validate
+
+            self._guarded("schemas", lambda: validate(reading.recognised, schemas, self._sink))
 
     def _draw(self, frontend: Frontend, sources: list[Source]) -> bool:
         return not isinstance(frontend, DiagramReader) or self._guarded(
