@@ -95,7 +95,7 @@ def generals(graph: Graph, classifier: Element) -> list[Element]:
 
 def _above(graph: Graph, element: Element, edge: Edge) -> list[Element]:
     found: dict[str, Element] = {}
-    level = [element]
+    level = [element] if graph.target(element, edge) else []
     while level:
         ups = (up for one in level for up in graph.targets(one, edge))
         level = [up for up in dict.fromkeys(ups) if up.id not in found]

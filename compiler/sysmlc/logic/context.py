@@ -139,10 +139,12 @@ def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
 
 def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, int]) -> Feature:
     type_ = query.type_of(graph, element)
-    domain = _domain(graph, element, type_)
-    is_assumed = domain is None and _is_integer(graph, element, type_)
+    names = _names(graph, type_)
+    is_integer = bool(names & _INTEGER) or _untyped_default(element, type_, int)
+    domain = _domain(graph, element, type_, names, is_integer)
+    is_assumed = domain is None and is_integer
     if is_assumed:
-        domain = _assume(graph, element, type_, assumed)
+        domain = _assume(element, names, assumed)
     default = _default(graph, element, type_, domain)
     constant = element.attrs.get("readonly") is True and default is not None
     written = element.attrs.get("default")
@@ -151,16 +153,19 @@ def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, 
     return Feature(element, variable, domain, default, constant, is_assumed, refused)
 
 
-def _domain(graph: Graph, element: Element, type_: Element | None) -> Domain | None:
+def _domain(
+    graph: Graph, element: Element, type_: Element | None, names: set[str], is_integer: bool
+) -> Domain | None:
     if type_ is not None and type_.kind is Kind.ENUMERATION:
         literals = tuple(_enumeration(graph, type_).values())
         return EnumerationDomain(literals) if literals else None
-    if _names(graph, type_) & _BOOLEAN or _untyped_default(element, type_, bool):
+    if names & _BOOLEAN or _untyped_default(element, type_, bool):
         return BooleanDomain()
-    return _declared_range(graph, element, type_) if _is_integer(graph, element, type_) else None
+    return _declared_range(graph, element, type_) if is_integer else None
 
 
 def _names(graph: Graph, type_: Element | None) -> set[str]:
+    """What the type and those that it specialises are called, here or where they come from."""
     if type_ is None:
         return set()
     family = [type_, *query.generals(graph, type_)]
@@ -168,19 +173,13 @@ def _names(graph: Graph, type_: Element | None) -> set[str]:
     return {one.name.lower() for one in family} | {href.lower() for href in hrefs}
 
 
-def _is_integer(graph: Graph, element: Element, type_: Element | None) -> bool:
-    return bool(_names(graph, type_) & _INTEGER) or _untyped_default(element, type_, int)
-
-
 def _untyped_default(element: Element, type_: Element | None, kind: type) -> bool:
     return type_ is None and type(element.attrs.get("default")) is kind
 
 
-def _assume(
-    graph: Graph, element: Element, type_: Element | None, assumed: tuple[int, int]
-) -> Domain:
+def _assume(element: Element, names: set[str], assumed: tuple[int, int]) -> Domain:
     low, high = assumed
-    low = max(low, 0) if _names(graph, type_) & _UNSIGNED else low
+    low = max(low, 0) if names & _UNSIGNED else low
     default = element.attrs.get("default")
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
@@ -208,6 +207,8 @@ def _range(low: int, high: int) -> Domain | None:
 
 
 def _tagged_range(graph: Graph, element: Element) -> Domain | None:
+    if not query.applications(graph, element):
+        return None
     found = _RANGE.match(str(query.tag(graph, element, "range") or ""))
     if found:
         return _range(int(found[1]), int(found[2]))

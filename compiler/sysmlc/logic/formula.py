@@ -4,7 +4,6 @@ A formula is built by the small functions at the end (``var``, ``eq``, ``both``,
 never by calling the classes from outside: they keep operands flat and constants folded.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
@@ -13,8 +12,9 @@ from weakref import WeakValueDictionary
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""
-_REMEMBERED = 1 << 16
-"""Formulas whose variables are kept: the same ones are asked for again and again."""
+_REMEMBERED = 1 << 14
+"""Formulas that are kept with what they are made of, and with their variables: machines of one
+kind ask for the same again and again."""
 
 
 class Op(StrEnum):
@@ -141,23 +141,21 @@ def primed(formula: Formula) -> Formula:
 
 def negate(formula: Formula) -> Formula:
     """Not; a double negation falls away."""
-    match formula:
-        case Const(bool(value)):
-            return Const(not value)
-        case Apply(Op.NOT, (inner,)):
-            return inner
-        case _:
-            return Apply(Op.NOT, (formula,))
+    if isinstance(formula, Apply):
+        return formula.args[0] if formula.op is Op.NOT else Apply(Op.NOT, (formula,))
+    if isinstance(formula, Const) and isinstance(formula.value, bool):
+        return FALSE if formula.value else TRUE
+    return Apply(Op.NOT, (formula,))
 
 
 def both(*formulas: Formula) -> Formula:
     """Conjunction, flat, without true; true when there is nothing to join."""
-    return _flat(Op.AND, formulas, unit=TRUE, zero=FALSE)
+    return _flat(Op.AND, formulas, TRUE, FALSE)
 
 
 def either(*formulas: Formula) -> Formula:
     """Disjunction, flat, without false; false when there is nothing to join."""
-    return _flat(Op.OR, formulas, unit=FALSE, zero=TRUE)
+    return _flat(Op.OR, formulas, FALSE, TRUE)
 
 
 def implies(left: Formula, right: Formula) -> Formula:
@@ -206,13 +204,15 @@ def variables(formula: Formula) -> tuple[Var, ...]:
             return ()
 
 
-def _flat(op: Op, formulas: Iterable[Formula], unit: Const, zero: Const) -> Formula:
+@lru_cache(_REMEMBERED)
+def _flat(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) -> Formula:
     parts: dict[Formula, None] = {}
     for formula in formulas:
-        inner = formula.args if isinstance(formula, Apply) and formula.op is op else (formula,)
-        for part in inner:
-            if not isinstance(part, Const) or part != unit:
-                parts[part] = None
+        if isinstance(formula, Apply) and formula.op is op:
+            parts.update(dict.fromkeys(formula.args))
+        else:
+            parts[formula] = None
+    parts.pop(unit, None)
     if zero in parts:
         return zero
     if len(parts) <= 1:

@@ -1,12 +1,18 @@
 """Identifiers for formulas out of the modeller's names."""
 
 import re
+from functools import lru_cache
 
 _RESERVED = frozenset(
     ["G", "F", "X", "U", "R", "W", "V", "true", "false", "TRUE", "FALSE", "mod", "M", "xor"]
 )
 
 
+_REMEMBERED = 1 << 12
+"""Names that are kept: those of actions and states come again and again."""
+
+
+@lru_cache(_REMEMBERED)
 def identifier(name: str, fallback: str = "x") -> str:
     """The name as an identifier that every target reads: letters, digits, underscores."""
     text = re.sub(r"[^0-9A-Za-z_]+", "_", name.strip()).strip("_")[:40].rstrip("_") or fallback

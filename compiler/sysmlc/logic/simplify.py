@@ -1,6 +1,6 @@
 """Substitution into formulas, constant folding, and satisfiability over small domains."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 
 from sysmlc.logic import domains
@@ -62,19 +62,65 @@ def is_satisfiable(formula: Formula, known: Mapping[str, Domain], limit: int = _
     """
     if isinstance(formula, Const):
         return bool(formula.value)
-    found = tuple((v.name, v.primed, known[v.name]) for v in f.variables(formula))
-    return _is_satisfiable(formula, found, limit)
+    domains_of = {v: known[v.name] for v in f.variables(formula)}
+    if _count(domains_of.values(), limit) > limit:
+        return True
+    return _is_satisfiable(formula, tuple(domains_of.items()))
+
+
+def _count(found: Iterable[Domain], limit: int) -> int:
+    """Number of valuations, or of those of some variables if that is more than the limit."""
+    number = 1
+    for domain in found:
+        number *= domains.size(domain)
+        if number > limit:
+            break
+    return number
 
 
 @lru_cache(_REMEMBERED)
-def _is_satisfiable(
-    formula: Formula, variables: tuple[tuple[str, bool, Domain], ...], limit: int
-) -> bool:
-    found = {(name, primed): domain for name, primed, domain in variables}
-    now = {name: domain for (name, primed), domain in found.items() if not primed}
-    then = {name: domain for (name, primed), domain in found.items() if primed}
-    if domains.count(now) * domains.count(then) > limit:
-        return True
+def _is_satisfiable(formula: Formula, variables: tuple[tuple[Var, Domain], ...]) -> bool:
+    """Parts of a disjunction are tried one by one, parts of a conjunction that have nothing to
+    do with one another too: that is much less than all values of all variables."""
+    match formula:
+        case Const(value):
+            return bool(value)
+        case Apply(Op.OR, args):
+            return any(_is_possible(arg, variables) for arg in args)
+        case Apply(Op.IMPLIES, (left, right)):
+            return _is_possible(f.negate(left), variables) or _is_possible(right, variables)
+        case Apply(Op.NOT, (Apply(Op.AND, args),)):
+            return any(_is_possible(f.negate(arg), variables) for arg in args)
+        case Apply(Op.AND, args) if len(groups := _apart(args)) > 1:
+            return all(_is_possible(f.both(*group), variables) for group in groups)
+        case Apply(Op.NOT, (Apply(Op.OR, args),)) if len(groups := _apart(args)) > 1:
+            return all(_is_possible(f.negate(f.either(*group)), variables) for group in groups)
+        case _:
+            return _has_model(formula, dict(variables))
+
+
+def _is_possible(formula: Formula, around: tuple[tuple[Var, Domain], ...]) -> bool:
+    used = frozenset(f.variables(formula))
+    return _is_satisfiable(formula, tuple(pair for pair in around if pair[0] in used))
+
+
+def _apart(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
+    """The formulas in groups that share no variable."""
+    groups: list[tuple[set[Var], list[Formula]]] = []
+    for formula in formulas:
+        variables, members = set(f.variables(formula)), [formula]
+        for group in [one for one in groups if not one[0].isdisjoint(variables)]:
+            groups.remove(group)
+            variables |= group[0]
+            members = [*group[1], *members]
+        groups.append((variables, members))
+    return [members for _, members in groups]
+
+
+def _has_model(formula: Formula, found: Mapping[Var, Domain]) -> bool:
+    """Whether some of all values make the formula true."""
+    now = {one.name: domain for one, domain in found.items() if not one.primed}
+    then = {one.name: domain for one, domain in found.items() if one.primed}
     truth = evaluation(formula)
     return any(
         truth(before, after)
