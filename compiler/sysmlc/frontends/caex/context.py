@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Rule, Sink, Subject, Verdict
 from sysmlc.frontends.caex import rules
@@ -11,6 +12,9 @@ from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.caex.plain import Plain
 
 Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
@@ -39,6 +43,8 @@ class Context:
         self.ids = Identifiers(documents)
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
+        self.plain: dict[Document, Plain] = {}
+        """What adds plain features of the files."""
         self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
         self.references: dict[str, bool] = {}
@@ -169,6 +175,12 @@ class Context:
         kept = known if isinstance(known, tuple) else ()
         if path not in kept:
             self.graph.set(element, unresolved_paths=(*kept, path))
+
+    def forget(self) -> None:
+        """Let go what knows each other: nothing of it outlives the reading."""
+        self.plain.clear()
+        for document in self.documents:
+            document.forget()
 
     def report_ids(self) -> None:
         """Ids that several elements of one file have, and elements that have none."""

@@ -6,7 +6,7 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE, DIRECTIONS, Family, value_of
+from sysmlc.frontends.caex.vocabulary import DIRECTIONS, Family, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _CARDINALITY = ("MinOccur", "MaxOccur")
@@ -29,12 +29,16 @@ def lower_own(context: Context, type: Type) -> None:
 
 def attribute(context: Context, owner: Type, top: Node, document: Document) -> None:
     """Add an attribute of a class, with those below it as features of a type of its own."""
-    waiting = [(owner, top)]
+    plain = context.plain.get(document)
+    waiting = [(owner, top.row)]
     while waiting:
-        holder, node = waiting.pop()
-        structure = _attribute(context, holder, node, document)
+        holder, row = waiting.pop()
+        if plain is not None and plain.attribute(holder, row):
+            continue
+        structure = _attribute(context, holder, document.node(row), document)
         if structure is not None:
-            waiting += [(structure, child) for child in reversed(list(node.of("Attribute")))]
+            inside = document.children(row)
+            waiting += [(structure, r) for r in reversed(inside) if document.tags[r] == "Attribute"]
 
 
 def _attribute(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
@@ -53,7 +57,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         semantics=_semantics(node),
     )
     declared = _attribute_type(context, node, document)
-    _multiply(element, declared)
+    measures.multiply(element.attrs, declared)
     _redefine(context, owner, node, element)
     structure = _structure(context, owner, node, document, element, declared)
     measures.type_value(context, element, node, document, structure or declared)
@@ -72,17 +76,6 @@ def _attribute_type(context: Context, node: Node, document: Document) -> Type | 
         context.mirrors.append((document, node))
         return None
     return context.type(path, Family.ATTRIBUTE, document, node)
-
-
-def _multiply(element: Element, declared: Type | None) -> None:
-    """A list has any number of values; CAEX 2.15 tells it by its semantics (IEC 62714-1)."""
-    semantics = element.attrs.get("semantics")
-    told = semantics if isinstance(semantics, tuple) else ()
-    for name in ("ListType", "OrderedListType"):
-        if name in told or (declared is not None and declared.conforms(*BASE_ATTRIBUTE, name)):
-            element.attrs["multiplicity"] = "*"
-            if name == "OrderedListType":
-                element.attrs["ordered"] = True
 
 
 def _redefine(context: Context, owner: Type, node: Node, element: Element) -> None:
@@ -132,9 +125,12 @@ def _semantics(node: Node) -> tuple[str, ...]:
 
 def interface(context: Context, owner: Type, top: Node, document: Document) -> None:
     """Add an external interface of a class; nested ones are ports of a class of its own."""
+    plain = context.plain.get(document)
     waiting = [(owner, top)]
     while waiting:
         holder, node = waiting.pop()
+        if plain is not None and plain.interface(holder, node.row):
+            continue
         made = _interface(context, holder, node, document)
         waiting += [(made, child) for child in node.of("ExternalInterface") if made is not None]
 

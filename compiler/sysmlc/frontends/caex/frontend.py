@@ -20,6 +20,7 @@ from sysmlc.frontends.caex import (
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, read
 from sysmlc.frontends.caex.links import Links
+from sysmlc.frontends.caex.plain import Plain
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.standard import Standard
 from sysmlc.frontends.caex.vocabulary import Family
@@ -53,16 +54,18 @@ class CaexFrontend:
         ordered = sorted(sources, key=lambda source: source.name)
         with _no_collection():
             documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-            context = Context(documents, graph, sink, Standard().provide)
+            standard = Standard()
+            context = Context(documents, graph, sink, standard.provide)
             _lower(context)
             account.account(context, coverage, ordered)
-            for document in documents:
-                document.forget()
+            context.forget()
+            standard.forget()
 
 
 def _lower(context: Context) -> None:
     types = []
     for document in context.documents:
+        context.plain[document] = Plain(context, document)
         libraries.header(context, document)
     libraries.tie_aliases(context)
     for document in context.documents:
@@ -77,6 +80,8 @@ def _lower(context: Context) -> None:
     for document in context.documents:
         sites.lower_hierarchies(document)
     sites.finish()
+    for plain in context.plain.values():
+        plain.finish()
     mirrors.finish(context)
     roles.lower(context, sites)
     mappings.lower(context, sites)

@@ -40,7 +40,7 @@ def roles_of(context: Context, site: Site) -> Iterator[Type]:
 def lower(context: Context, site: Site, kind: Kind) -> None:
     """Add the Facet or Group; what it shows is known when everything is placed."""
     above = site.parent
-    owner = own(context, above).id if above else context.graph[site.instance].owner
+    owner = own(context, above).id if above else site.instance
     element = context.add(kind, site.node, site.document, owner)
     site.part = element.id
     mark(site.node)

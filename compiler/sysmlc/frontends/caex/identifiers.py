@@ -75,9 +75,15 @@ class Identifiers:
             self._paths = any("/" in id for id in self._numbers)
         return self._paths
 
-    def row(self, id: str) -> int | None:
-        """The row that has the ID, where the unit is one file and no other row has it."""
-        return None if id in self._repeated else self._numbers.get(id)
+    def spot(self, id: str) -> tuple[Document, int] | None:
+        """The row that has the ID literally, when it is the only one."""
+        number = self._numbers.get(id)
+        if number is None or id in self._repeated:
+            return None
+        if number < self._starts[1]:
+            return self._documents[0], number
+        index = bisect_right(self._starts, number) - 1
+        return self._documents[index], number - self._starts[index]
 
     def _place(self, number: int) -> Place:
         index = bisect_right(self._starts, number) - 1

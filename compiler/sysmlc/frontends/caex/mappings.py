@@ -33,6 +33,8 @@ _MAPPINGS = {
 
 def lower(context: Context, sites: Sites) -> None:
     """Let each mapped feature redefine that of the role."""
+    if not any("MappingObject" in document.tags for document in context.documents):
+        return
     for site in sites:
         for node in _mapping_objects(site):
             node.verdict = Verdict.MAPPED

@@ -4,8 +4,8 @@ from sysmlc.frontends.caex import rules, units
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
-from sysmlc.frontends.caex.vocabulary import PRIMITIVES
-from sysmlc.ir import Edge, Element, Kind, Reference
+from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE, PRIMITIVES
+from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 _PACKAGE = "values#"
@@ -15,15 +15,39 @@ def type_value(
     context: Context, element: Element, node: Node, document: Document, type: Type | None
 ) -> None:
     """Type a value property: by its class, by a value type with its unit, or by a primitive."""
+    found = target(context, node, document, type, element.attrs)
+    if found is not None:
+        context.graph.connect(Edge.TYPED_BY, element, found)
+    else:
+        data_type = node.attributes.get("AttributeDataType", "")
+        refer(context, Edge.TYPED_BY, element.id, data_type, element.ordinal)
+
+
+def target(
+    context: Context,
+    node: Node,
+    document: Document,
+    type: Type | None,
+    attrs: dict[str, AttrValue],
+) -> Element | None:
+    """What types a value property, its unit noted in ``attrs``; None for a primitive."""
     unit = _unit(context, node, document)
     if unit:
-        element.attrs["unit"] = unit
+        attrs["unit"] = unit
     if unit and unit not in _units(type):
-        context.graph.connect(Edge.TYPED_BY, element.id, _measured(context, node, type, unit))
-    elif type is not None:
-        context.graph.connect(Edge.TYPED_BY, element.id, type.id)
-    else:
-        _refer(context, Edge.TYPED_BY, element.id, node, element.ordinal)
+        return context.graph[_measured(context, node, type, unit)]
+    return None if type is None else context.graph[type.id]
+
+
+def multiply(attrs: dict[str, AttrValue], declared: Type | None) -> None:
+    """A list has any number of values; CAEX 2.15 tells it by its semantics (IEC 62714-1)."""
+    semantics = attrs.get("semantics")
+    told = semantics if isinstance(semantics, tuple) else ()
+    for name in ("ListType", "OrderedListType"):
+        if name in told or (declared is not None and declared.conforms(*BASE_ATTRIBUTE, name)):
+            attrs["multiplicity"] = "*"
+            if name == "OrderedListType":
+                attrs["ordered"] = True
 
 
 def complete_type(context: Context, type: Type) -> None:
@@ -31,7 +55,8 @@ def complete_type(context: Context, type: Type) -> None:
     node, element = type.node, context.graph[type.id]
     if type.base is None and node.attributes.get("AttributeDataType"):
         element.attrs["data_type"] = node.attributes["AttributeDataType"]
-        _refer(context, Edge.SPECIALIZES, type.id, node, element.ordinal)
+        data_type = node.attributes["AttributeDataType"]
+        refer(context, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
     unit = _unit(context, node, type.document)
     if unit:
         element.attrs["unit"] = unit
@@ -43,10 +68,17 @@ def primitive(data_type: str) -> str:
     return PRIMITIVES.get(data_type.rpartition(":")[2], "String")
 
 
-def _refer(context: Context, edge: Edge, id: str, node: Node, ordinal: int) -> None:
-    name = primitive(node.attributes.get("AttributeDataType", ""))
+def refer(context: Context, edge: Edge, id: str, data_type: str, ordinal: int) -> None:
+    """Refer to the UML primitive of an XML Schema data type."""
+    name = primitive(data_type)
     href = _PRIMITIVE_TYPES + name
     context.graph.refer(Reference(edge, id, href, Kind.DATA_TYPE, name, ordinal))
+
+
+def is_unit(text: str) -> bool:
+    """Whether nothing is told of a text in the place of a unit."""
+    plain = text.strip()
+    return not plain or units.known(plain) is not None
 
 
 def _unit(context: Context, node: Node, document: Document) -> str:
@@ -92,7 +124,7 @@ def _measured(context: Context, node: Node, type: Type | None, unit: str) -> str
         if type is not None:
             context.graph.connect(Edge.SPECIALIZES, id, type.id)
         else:
-            _refer(context, Edge.SPECIALIZES, id, node, -1)
+            refer(context, Edge.SPECIALIZES, id, node.attributes.get("AttributeDataType", ""), -1)
     return id
 
 

@@ -3,35 +3,75 @@
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import features, special
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge
+from sysmlc.ir import Edge, Element
 
 PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
 
 
 def lower(context: Context, sites: Sites) -> None:
     """Draw the realizations: once each, and not again where the class realises the role."""
-    of_class: dict[Type, set[Type]] = {}
-    played: dict[Type, str] = {}
-    ordered = sorted(sites, key=lambda site: bool(site.root.instance))
-    for site in ordered:
+    played = _Played()
+    clients: list[str] = []
+    realized: list[Element | None] = []
+    for site in sorted(sites, key=lambda site: bool(site.root.instance)):
         if site.type is None:
             continue
-        inherited = {r for t in _above(site) for r in of_class.get(t, ())}
-        site.ppr = next((played[t] for t in _above(site) if played.get(t)), "")
+        inherited, site.ppr = played.above(site)
         for role in _roles(context, site):
             if role in inherited:
                 continue
             _play(context, site, special.ppr(role), played)
             _be_port(context, site, role)
-            context.graph.connect(Edge.REALIZES, _client(context, site), role.id)
+            clients.append(_client(context, site))
+            realized.append(context.graph[role.id])
             if site.own is not None:
-                of_class.setdefault(site.own, set()).add(role)
+                played.add(site.own, role)
+    context.graph.connect_all([Edge.REALIZES] * len(clients), clients, realized)
+
+
+class _Played:
+    """The roles of classes: instances have them anyway."""
+
+    def __init__(self) -> None:
+        self._roles: dict[Type, set[Type]] = {}
+        self._ppr: dict[Type, str] = {}
+        self._above: dict[Type, tuple[set[Type], str]] = {}
+        self._asked: set[Type] = set()
+
+    def add(self, type: Type, role: Type) -> None:
+        """The class plays the role."""
+        self._roles.setdefault(type, set()).add(role)
+        self._forget(type)
+
+    def note_ppr(self, type: Type, ppr: str) -> None:
+        """The class is a product, process or resource."""
+        self._ppr.setdefault(type, ppr)
+        self._forget(type)
+
+    def above(self, site: Site) -> tuple[set[Type], str]:
+        """What an internal element plays by its class; a class says its own again."""
+        declared = site.declared
+        is_class = site.own is not None and site.own.row == site.row and bool(site.own.path)
+        if is_class or declared is None:
+            return set(), ""
+        known = self._above.get(declared)
+        if known is None:
+            chain = list(declared.chain())
+            self._asked.update(chain)
+            roles = {role for type in chain for role in self._roles.get(type, ())}
+            ppr = next((self._ppr[type] for type in chain if type in self._ppr), "")
+            known = self._above[declared] = roles, ppr
+        return known
+
+    def _forget(self, type: Type) -> None:
+        if type in self._asked:
+            self._above.clear()
+            self._asked.clear()
 
 
 def _be_port(context: Context, site: Site, role: Type) -> None:
@@ -42,19 +82,13 @@ def _be_port(context: Context, site: Site, role: Type) -> None:
         context.graph.set(context.graph[site.part], subkind="port-object", **kept)
 
 
-def _play(context: Context, site: Site, ppr: str, played: dict[Type, str]) -> None:
+def _play(context: Context, site: Site, ppr: str, played: _Played) -> None:
     """Note that something is a product, process or resource."""
     if ppr:
         site.ppr = ppr
         context.graph.set(context.graph[_client(context, site)], ppr=ppr)
         if site.own is not None:
-            played.setdefault(site.own, ppr)
-
-
-def _above(site: Site) -> list[Type]:
-    """The classes whose roles an internal element has anyway; a class says its own again."""
-    is_class = site.own is not None and site.own.node is site.node and bool(site.own.path)
-    return [] if is_class or site.declared is None else list(site.declared.chain())
+            played.note_ppr(site.own, ppr)
 
 
 def _client(context: Context, site: Site) -> str:
@@ -66,15 +100,14 @@ def _client(context: Context, site: Site) -> str:
 
 
 def _roles(context: Context, site: Site) -> list[Type]:
+    document = site.document
     found: dict[Type, None] = {}
-    for node in site.node.of(*ROLE_REFERENCES):
-        node.verdict = Verdict.MAPPED
-        path = _path(node)
-        role = context.type(path, Family.ROLE, site.document, node) if path else None
+    for row in site.roles:
+        document.verdicts[row] = Verdict.MAPPED
+        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
+        role = context.known(path, Family.ROLE, document) if path else None
+        if role is None and path:
+            role = context.type(path, Family.ROLE, document, document.node(row))
         if role is not None:
             found[role] = None
     return list(found)
-
-
-def _path(node: Node) -> str:
-    return node.attributes.get(ROLE_REFERENCES[node.tag], "").strip()

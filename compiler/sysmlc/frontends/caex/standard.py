@@ -21,6 +21,10 @@ class Standard:
         roots = self._document.root.of(*LIBRARIES)
         self._left = {(LIBRARIES[node.tag][0], node.name): node for node in roots}
 
+    def forget(self) -> None:
+        """Let the nodes go."""
+        self._document.forget()
+
     def provide(self, context: Context, family: Family, name: str) -> bool:
         """Add the library to the graph; False when there is none (more) of that name."""
         library = self._left.pop((family, name), None)

@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import members
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.holders import instance
+from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
@@ -41,10 +41,10 @@ class _Plan:
 
     __slots__ = ("attributes", "interfaces")
 
-    def __init__(self, context: Context, type: Type) -> None:
+    def __init__(self, context: Context, type: Type | None) -> None:
         self.attributes: dict[str, _Known] = {}
         self.interfaces: dict[str, str] = {}
-        for one in reversed(list(type.chain())):
+        for one in reversed(list(type.chain())) if type is not None else ():
             for (tag, name), member in one.members.items():
                 if tag == "Attribute":
                     self.attributes[name] = _Known(member, context.graph[member.id])
@@ -58,45 +58,51 @@ class Swift:
     def __init__(self, context: Context, document: Document) -> None:
         self._context = context
         self._document = document
-        self._plans: dict[Type, _Plan] = {}
+        self._plans: dict[Type | None, _Plan] = {}
+        self._plain = context.plain[document]
         self._slots: list[str] = []
         self._features: list[Element | None] = []
 
     def lower(self, site: Site) -> None:
         """The members of an internal element."""
-        declared, document = site.declared, self._document
-        if declared is None:
-            members.lower(self._context, site)
-            return
+        declared, document, context = site.declared, self._document, self._context
+        plan = self._plan(declared)
+        tags, ends, attributes = document.tags, document.ends, document.attributes
+        for row in site.members:
+            tag, name = tags[row], attributes[row].get("Name", "")
+            if ends[row] > row + 1 or not (
+                (tag == "Attribute" and self._attribute(site, row, name, plan))
+                or (tag == "ExternalInterface" and self._interface(site, row, name, plan))
+            ):
+                members.lower_one(context, site, document.node(row))
+
+    def _plan(self, declared: Type | None) -> _Plan:
         plan = self._plans.get(declared)
         if plan is None:
             plan = self._plans[declared] = _Plan(self._context, declared)
-        tags, ends, attributes = document.tags, document.ends, document.attributes
-        verdicts, elements = document.verdicts, document.elements
-        known_attributes, known_interfaces = plan.attributes, plan.interfaces
-        row, end = site.node.row + 1, ends[site.node.row]
-        while row < end:
-            after, tag = ends[row], tags[row]
-            if tag == "Attribute":
-                known = known_attributes.get(attributes[row].get("Name", ""))
-                if known is None or after > row + 1 or not self._repeats(row, known):
-                    members.lower_one(self._context, site, document.node(row))
-                else:
-                    verdicts[row] = Verdict.MAPPED
-                    self._value(site, row, known)
-            elif tag == "ExternalInterface" and after == row + 1:
-                values = attributes[row]
-                port = known_interfaces.get(values.get("Name", ""))
-                if port is None:
-                    members.lower_one(self._context, site, document.node(row))
-                else:
-                    verdicts[row] = Verdict.MAPPED
-                    elements[row] = port
-                    if values.get("ID"):
-                        site.interface_ids.append((port, values["ID"]))
-            elif tag != "InternalElement" and tag != "InternalLink":
-                members.lower_one(self._context, site, document.node(row))
-            row = after
+        return plan
+
+    def _attribute(self, site: Site, row: int, name: str, plan: _Plan) -> bool:
+        known = plan.attributes.get(name)
+        if known is None:
+            return self._plain.attribute(site.own or own(self._context, site), row)
+        if not self._repeats(row, known):
+            return False
+        self._document.verdicts[row] = Verdict.MAPPED
+        self._value(site, row, name, known)
+        return True
+
+    def _interface(self, site: Site, row: int, name: str, plan: _Plan) -> bool:
+        port = plan.interfaces.get(name)
+        document = self._document
+        if port is None:
+            return self._plain.interface(site.own or own(self._context, site), row)
+        document.verdicts[row] = Verdict.MAPPED
+        document.elements[row] = port
+        id = document.attributes[row].get("ID")
+        if id:
+            site.interface_ids.append((port, id))
+        return True
 
     def _repeats(self, row: int, known: _Known) -> bool:
         """Whether a row without rows inside says what the class says, but for its value."""
@@ -121,18 +127,16 @@ class Swift:
             known.template = values
         return True
 
-    def _value(self, site: Site, row: int, known: _Known) -> None:
+    def _value(self, site: Site, row: int, name: str, known: _Known) -> None:
         """A slot for the value, unless it is the one that the class gives."""
         document = self._document
         text = document.texts["Value"].get(row)
         if text is None or text == known.text:
             return
         owner = site.instance or instance(self._context, site)
-        values = document.attributes[row]
-        name = values.get("Name", "")
         id = f"{owner}/{name or 'Attribute'}"
         slot = None
-        if not values.get("ID"):
+        if not document.attributes[row].get("ID"):
             new = self._context.graph.new
             slot = new(id, Kind.SLOT, name, owner, document.ordinals[row], document.name)
         value = text if known.read is None else known.read(text)

@@ -1,0 +1,139 @@
+"""New features of a class that hold nothing inside: value properties and ports by their shape.
+
+What an attribute states in attributes of XML decides its type and how its value is read, for
+all attributes that state the same. Other features go the general way (``features``), which
+gives the same result for every row.
+"""
+
+from typing import NamedTuple
+
+from sysmlc.frontends.caex import measures, mirrors, special
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.types import Member, Missing, Type
+from sysmlc.frontends.caex.vocabulary import Family, value_of
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_Stated = tuple[str, str, str]
+"""Data type, attribute type and unit of an attribute, or nothing."""
+
+
+class _Shape(NamedTuple):
+    """What attributes that state the same have in common."""
+
+    type: Type | None
+    target: Element | None
+    """What types them; None where it is a primitive of UML."""
+    attrs: dict[str, AttrValue]
+
+
+class _PortShape(NamedTuple):
+    """What interfaces of one class have in common."""
+
+    type: Type | None
+    target: Element | None
+
+
+class Plain:
+    """Adds plain features of one file."""
+
+    def __init__(self, context: Context, document: Document) -> None:
+        self._context = context
+        self._document = document
+        self._shapes: dict[_Stated, _Shape | None] = {}
+        self._ports: dict[str, _PortShape | None] = {}
+        self._sources: list[str] = []
+        self._targets: list[Element | None] = []
+
+    def attribute(self, owner: Type, row: int) -> bool:
+        """Add an attribute of a class; False when it is not plain."""
+        document = self._document
+        if document.ends[row] > row + 1:
+            return False
+        values, texts = document.attributes[row], document.texts
+        name = values.get("Name", "")
+        stated = (
+            values.get("AttributeDataType", ""),
+            values.get("RefAttributeType", ""),
+            values.get("Unit", ""),
+        )
+        shape = self._shapes[stated] if stated in self._shapes else self._shape(stated, row)
+        if shape is None or values.get("ID") or row in texts["DefaultValue"]:
+            return False
+        if owner.base is not None and owner.base.find("Attribute", name) is not None:
+            return False
+        context = self._context
+        id = f"{owner.id}/{name or 'Attribute'}"
+        if id in context.graph:
+            return False
+        made = context.add_at(Kind.PROPERTY, document, row, owner.id, id)
+        made.attrs = shape.attrs.copy()
+        text = texts["Value"].get(row)
+        if text:
+            made.attrs["default"] = value_of(text, stated[0])
+        if shape.target is not None:
+            self._sources.append(id)
+            self._targets.append(shape.target)
+        else:
+            measures.refer(context, Edge.TYPED_BY, id, stated[0], made.ordinal)
+        owner.members["Attribute", name] = Member(id, shape.type, document, row)
+        return True
+
+    def _shape(self, stated: _Stated, row: int) -> _Shape | None:
+        data_type, path, unit = stated
+        context, document = self._context, self._document
+        declared = self._declared(path.strip(), Family.ATTRIBUTE)
+        shape = None
+        if not isinstance(declared, Missing) and measures.is_unit(unit):
+            attrs: dict[str, AttrValue] = {"role": "value"}
+            if data_type:
+                attrs["data_type"] = data_type
+            measures.multiply(attrs, declared)
+            target = measures.target(context, document.node(row), document, declared, attrs)
+            shape = _Shape(declared, target, attrs)
+        self._shapes[stated] = shape
+        return shape
+
+    def _declared(self, path: str, family: Family) -> Type | Missing | None:
+        """The class that a path means; a mirror counts as missing."""
+        if not path:
+            return None
+        id = path.partition("/")[0] if family is Family.ATTRIBUTE else path
+        if mirrors.is_reference(self._context, id):
+            return Missing("class", path)
+        return self._context.look_up(path, family, self._document)
+
+    def interface(self, owner: Type, row: int) -> bool:
+        """Add an interface of a class; False when it is not plain."""
+        document, context = self._document, self._context
+        if document.ends[row] > row + 1:
+            return False
+        values = document.attributes[row]
+        name, path = values.get("Name", ""), values.get("RefBaseClassPath", "")
+        shape = self._ports[path] if path in self._ports else self._port(path)
+        if shape is None:
+            return False
+        if owner.base is not None and owner.base.find("ExternalInterface", name) is not None:
+            return False
+        made = context.add_at(Kind.PORT, document, row, owner.id)
+        if shape.target is not None:
+            self._sources.append(made.id)
+            self._targets.append(shape.target)
+        owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
+        return True
+
+    def _port(self, path: str) -> _PortShape | None:
+        declared = self._declared(path.strip(), Family.INTERFACE)
+        shape = None
+        if not isinstance(declared, Missing) and not special.meaning(declared):
+            graph = self._context.graph
+            shape = _PortShape(declared, None if declared is None else graph[declared.id])
+        self._ports[path] = shape
+        return shape
+
+    def finish(self) -> None:
+        """Tie the features to what types them."""
+        edges = [Edge.TYPED_BY] * len(self._sources)
+        self._context.graph.connect_all(edges, self._sources, self._targets)
+        self._sources.clear()
+        self._targets.clear()

@@ -1,0 +1,118 @@
+"""What the sides of internal links lead to: interfaces, in every style that files have."""
+
+from typing import NamedTuple
+
+from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.sites import Sites
+
+SIDES = {"A": "RefPartnerSideA", "B": "RefPartnerSideB"}
+
+
+class End(NamedTuple):
+    """The port that a side of a link means, and the internal element that has it."""
+
+    port: str
+    site: Site
+
+
+class Problem(NamedTuple):
+    """Why a side leads nowhere; ``known`` is what it names all the same."""
+
+    text: str
+    known: str = ""
+
+
+class Sides:
+    """Finds the ends of the links of a unit."""
+
+    def __init__(self, context: Context, sites: Sites) -> None:
+        self._context = context
+        self._sites = sites
+        self._named: dict[Node, dict[str, Node]] = {}
+
+    def direct(self, text: str) -> End | None:
+        """The end that is named by the ID of an interface and nothing else, as in CAEX 3.0."""
+        place = self._context.ids.spot(text)
+        if place is None:
+            return None
+        document, row = place
+        tags, port = document.tags, document.elements[row]
+        above = document.parents[row]
+        if not port or tags[row] != "ExternalInterface":
+            return None
+        while tags[above] == "ExternalInterface":
+            above = document.parents[above]
+        site = self._sites.rows(document).get(above)
+        return None if site is None else End(port, site)
+
+    def end(self, node: Node, document: Document, side: str) -> End | Problem | None:
+        """The end that a side means; None when it is open. What leads nowhere is reported."""
+        text = node.attributes.get(SIDES[side], "").strip()
+        if not text:
+            self._context.report(rules.OPEN_LINK, document, node, element=node.name, side=side)
+            return None
+        found = self._found(text, document, node)
+        if isinstance(found, Problem):
+            facts = {"side": side, "reference": text, "problem": found.text}
+            self._context.report(rules.DANGLING_LINK, document, node, element=node.name, **facts)
+        return found
+
+    def _found(self, text: str, document: Document, node: Node) -> End | Problem:
+        """An interface by its id; by the id of its owner and its name; by a path."""
+        direct = self._context.find(text, document)
+        if direct is not None:
+            self._context.tell_lenient(document, node, text)
+            return self._of_node(direct[1])
+        for at in (i for i, sign in enumerate(text) if sign == ":"):
+            owner = self._context.find(text[:at], document) or self._by_path(text[:at])
+            if owner is not None:
+                self._context.tell_lenient(document, node, text[:at])
+                return self._of_name(owner[1], text[at + 1 :])
+        return Problem("no element has that id" if _is_id(text) else "it names no interface")
+
+    def _by_path(self, path: str) -> tuple[Document, Node] | None:
+        names = path.split("/")
+        for document in self._context.documents:
+            nodes = [n for n in document.root.children if n.name == names[0]]
+            for name in names[1:]:
+                nodes = [
+                    n for above in nodes for n in above.of("InternalElement") if n.name == name
+                ]
+            if len(nodes) == 1:
+                return document, nodes[0]
+        return None
+
+    def _of_node(self, node: Node) -> End | Problem:
+        above = node.parent
+        while above is not None and above.tag == "ExternalInterface":
+            above = above.parent
+        site = self._sites.of(above) if above is not None else None
+        if node.tag == "ExternalInterface" and site is not None and node.element:
+            return End(node.element, site)
+        return Problem(f"that is no interface but '{node.name}'", node.element)
+
+    def _of_name(self, owner: Node, name: str) -> End | Problem:
+        node = self._interfaces(owner).get(name)
+        if node is not None:
+            return self._of_node(node)
+        site = self._sites.of(owner)
+        known = site.type.find("ExternalInterface", name) if site and site.type else None
+        if site is not None and known is not None:
+            return End(known.id, site)
+        return Problem(f"'{owner.name}' has no interface '{name}'", owner.element)
+
+    def _interfaces(self, owner: Node) -> dict[str, Node]:
+        """The interfaces of an element by name, the first of each: all its links ask for them."""
+        known = self._named.get(owner)
+        if known is None:
+            known = self._named[owner] = {}
+            for node in owner.of("ExternalInterface"):
+                known.setdefault(node.name, node)
+        return known
+
+
+def _is_id(text: str) -> bool:
+    return len(text) >= 32 and " " not in text
