@@ -362,3 +362,14 @@ def test_two_instances_of_a_class_are_wired_differently():
     assert reading.links() == {"lx": ("a.p", "b.p"), "ly": ("a.p", "c.p")}
     assert reading.owned("Plant::x", "Instance")[-1] == "Connector lx"
     assert reading.owned("Plant::y", "Instance")[-1] == "Connector ly"
+
+
+def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
+    group = (
+        '<InternalElement Name="g" ID="g"><InternalElement Name="m" ID="m" '
+        'RefBaseSystemUnitPath="a"/><RoleRequirements RefBaseRoleClassPath="'
+        'AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Group"/></InternalElement>'
+    )
+    reading = Read(plant(f'<InternalElement Name="a" ID="a"/>{group}'))
+    assert reading.owned("Plant") == ["Instance a", "Class a", "Group g"]
+    assert reading.to("Plant::g", "references") == ["Plant::a"]
