@@ -3,7 +3,7 @@
 import json
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -57,12 +57,25 @@ def _form(outcome: Outcome) -> dict[str, object]:
     }
 
 
+_FIELDS = {
+    made: tuple(field.name for field in fields(made))
+    for made in (Finding, Diagnostic, Subject, Place)
+}
+
+
+def _shallow(value: Finding | Diagnostic | Subject | Place) -> dict[str, object]:
+    """The fields of a value; ``asdict`` would copy the rule anew for each of many findings."""
+    return {name: getattr(value, name) for name in _FIELDS[type(value)]}
+
+
 def _finding(finding: Finding) -> dict[str, object]:
-    return asdict(finding) | {"diagnostic": _diagnostic(finding.diagnostic)}
+    return _shallow(finding) | {"diagnostic": _diagnostic(finding.diagnostic)}
 
 
 def _diagnostic(found: Diagnostic) -> dict[str, object]:
-    return asdict(found) | {"rule": found.rule.code}
+    place = found.subject.place
+    subject = _shallow(found.subject) | {"place": place and _shallow(place)}
+    return _shallow(found) | {"rule": found.rule.code, "subject": subject}
 
 
 # -- back again --------------------------------------------------------------------------------
