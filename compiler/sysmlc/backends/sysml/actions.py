@@ -30,8 +30,8 @@ def action(book: Book, entry: Entry) -> list[Line]:
     return [line, *leaving(book, entry)]
 
 
-def _start(entry: Entry, element: Element) -> str:
-    return " ".join([*visibility(element), "action", quoted(entry.name)])
+def _start(book: Book, entry: Entry, element: Element) -> str:
+    return " ".join([*visibility(book, element), "action", quoted(entry.name)])
 
 
 def _contents(book: Book, entry: Entry, element: Element) -> list[Line]:
@@ -48,14 +48,14 @@ def _call(book: Book, entry: Entry, element: Element) -> Line:
     body = _contents(book, entry, element)
     target = book.graph.target(element, Edge.CALLS)
     if target is None:
-        return Line(_start(entry, element), body)
+        return Line(_start(book, entry, element), body)
     other = book.plan.entry(target)
     name = call_target(book, entry, element, target)
     if name is None or other is None:
-        return Line(_start(entry, element), body)
+        return Line(_start(book, entry, element), body)
     if other.shape.is_definition:
-        return Line(f"{_start(entry, element)} : {name}", body)
-    words = " ".join([*visibility(element), "perform", "action", quoted(entry.name)])
+        return Line(f"{_start(book, entry, element)} : {name}", body)
+    words = " ".join([*visibility(book, element), "perform", "action", quoted(entry.name)])
     return Line(f"{words} ::> {name}", body)
 
 
@@ -63,10 +63,10 @@ def _opaque(book: Book, entry: Entry, element: Element) -> Line:
     body = _contents(book, entry, element)
     found = statements(book, entry, element)
     if found is None:
-        return Line(_start(entry, element), body + opaque_lines(book, entry, element))
+        return Line(_start(book, entry, element), body + opaque_lines(book, entry, element))
     if len(found) == 1 and not found[0].startswith("perform"):
-        return Line(f"{_start(entry, element)} {found[0]}", body)
-    return Line(_start(entry, element), body + sequence(found))
+        return Line(f"{_start(book, entry, element)} {found[0]}", body)
+    return Line(_start(book, entry, element), body + sequence(found))
 
 
 def _send(book: Book, entry: Entry, element: Element) -> Line:
@@ -77,7 +77,7 @@ def _send(book: Book, entry: Entry, element: Element) -> Line:
     port = book.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
     end = "" if port is None else book.name(entry.parent, element, Edge.ROLE, port)
     sent = f" send new {name}()" if name is not None else " send"
-    return Line(f"{_start(entry, element)}{sent}{f' via {end}' if end else ''}", body)
+    return Line(f"{_start(book, entry, element)}{sent}{f' via {end}' if end else ''}", body)
 
 
 def _accept(book: Book, entry: Entry, element: Element) -> Line:
@@ -89,7 +89,7 @@ def _accept(book: Book, entry: Entry, element: Element) -> Line:
     texts = [trigger(book, entry, one) for one in found]
     if len(texts) > 1:
         book.approximated(element, "an accept action with several triggers", "its first one")
-    return Line(f"{_start(entry, element)}{f' {texts[0]}' if texts else ''}", body)
+    return Line(f"{_start(book, entry, element)}{f' {texts[0]}' if texts else ''}", body)
 
 
 def _other(book: Book, entry: Entry, element: Element) -> Line:
@@ -101,14 +101,14 @@ def _other(book: Book, entry: Entry, element: Element) -> Line:
         if name is not None and other is not None:
             mark = ":" if other.shape.is_definition else ":>"
             body.append(Line(f"ref {mark} {name}"))
-    return Line(_start(entry, element), body + opaque_lines(book, entry, element))
+    return Line(_start(book, entry, element), body + opaque_lines(book, entry, element))
 
 
 def structured(book: Book, entry: Entry) -> list[Line]:
     """A structured node: an action that holds its nodes."""
     element = entry.element
     assert element is not None
-    return [Line(_start(entry, element), contents(book, entry)), *leaving(book, entry)]
+    return [Line(_start(book, entry, element), contents(book, entry)), *leaving(book, entry)]
 
 
 def control(book: Book, entry: Entry) -> list[Line]:

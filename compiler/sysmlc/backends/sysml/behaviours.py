@@ -101,8 +101,11 @@ def held(book: Book, scope: Entry, word: str, behaviour_: Element) -> Line:
         return Line(f"{word} {start}{found[0]}")
     if found is not None and len(found) == 1 and not name:
         return Line(f"{word} {found[0].removeprefix('perform ')}")
-    keyword = entry.shape.plain
-    return Line(f"{word} {keyword} {name}".rstrip(), inside(book, entry, behaviour_))
+    body = inside(book, entry, behaviour_)
+    if entry.shape.plain == "action":
+        return Line(f"{word} action {name}".rstrip(), body)
+    inner = Line(f"{entry.shape.plain} {name}".rstrip(), body)
+    return Line(f"{word} action", [inner])
 
 
 def _performed(book: Book, scope: Entry, word: str, behaviour_: Element) -> Line:

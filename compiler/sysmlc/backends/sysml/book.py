@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from sysmlc.backends.sysml.order import in_order
 from sysmlc.backends.sysml.plan import Entry, Plan
 from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import library_name, named, redefined_name, visible
+from sysmlc.backends.sysml.references import library_name, named, qualified, redefined_name, visible
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.words import quoted
@@ -33,6 +33,10 @@ class Book:
     """What verification cases verify, by the entry's identity."""
     prepared: dict[int, list[Line]] = field(default_factory=dict)
     """What is written before its turn, by the entry's identity."""
+    dropped: set[str] = field(default_factory=set)
+    """Ids of elements that cannot be written."""
+    public: frozenset[str] = frozenset()
+    """Ids of elements that are written as public because the text refers to them."""
     caex: frozenset[str] = frozenset()
     """Files that are AutomationML: their elements keep their ids."""
     uses_library: bool = False
@@ -45,14 +49,27 @@ class Book:
         return found
 
     def names(self, scope: Entry | None, holder: Element, edge: Edge) -> list[str]:
-        """Names of all that the edges of a kind lead to."""
-        targets = self.graph.targets(holder, edge)
-        found = (self.name(scope, holder, edge, target) for target in targets)
-        return [one for one in found if one is not None]
+        """Qualified names of all that the edges of a kind lead to."""
+        found = []
+        for target in self.graph.targets(holder, edge):
+            entry = self.plan.entry(target)
+            name = None if entry is None else qualified(self.plan, scope, entry)
+            if name is None:
+                self.lost(holder, str(edge.value))
+            else:
+                found.append(name)
+        return found
 
     def lost(self, holder: Element, what: str) -> None:
         """A reference to something without a name."""
         self.losses.note(UNREACHABLE, holder, edge=what, kind=str(holder.kind))
+
+    def drop(self, entry: Entry, what: str) -> list[Line]:
+        """A member that cannot be written: nothing may refer to it."""
+        if entry.element is not None:
+            self.lost(entry.element, what)
+            self.dropped.add(entry.element.id)
+        return []
 
     def approximated(self, element: Element, said: str, written: str) -> None:
         """Something that is said in other words."""

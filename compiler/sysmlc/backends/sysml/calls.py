@@ -49,7 +49,9 @@ def parameter_of(book: Book, pin: Element) -> Element | None:
     """
     action = book.graph.owner(pin)
     called = None if action is None else book.graph.target(action, Edge.CALLS)
-    if called is None or action is None or pin.subkind in ("target", "object"):
+    if action is None or action.subkind not in ("call-behavior", "call-operation"):
+        return None
+    if called is None or pin.subkind in ("target", "object"):
         return None
     if called.kind not in (Kind.OPERATION, Kind.ACTIVITY):
         return None

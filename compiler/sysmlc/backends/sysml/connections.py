@@ -20,8 +20,7 @@ def connector(book: Book, entry: Entry) -> list[Line]:
     texts = [end_text(book, entry, end) for end in ends]
     book.said.update(end.id for end in ends)
     if len(texts) < 2 or None in texts:
-        book.lost(element, "end")
-        return []
+        return book.drop(entry, "end")
     known = [str(text) for text in texts]
     body = _body(book, entry, ends)
     if element.role == "binding connector" and len(known) == 2:
@@ -42,12 +41,12 @@ def _connection(book: Book, entry: Entry, ends: list[Element], texts: list[str])
     element = entry.element
     assert element is not None
     keyword = "interface" if _joins_ports(book, ends) else "connection"
-    types, _ = typing(book, entry, element)
+    types, _ = typing(book, entry.parent, element)
     type_ = book.plan.entry(type_of(book.graph, element))
     if type_ is not None and type_.shape.is_definition:
         keyword = type_.shape.plain
     joined = f"({', '.join(texts)})" if len(texts) > 2 else " to ".join(texts)
-    words = [*visibility(element)]
+    words = [*visibility(book, element)]
     if not entry.name and not types:
         words += ["interface", joined] if keyword == "interface" else ["connect", joined]
         return " ".join(words)
@@ -104,7 +103,7 @@ def item_flow(book: Book, entry: Entry) -> list[Line]:
 def _flow(book: Book, entry: Entry, name: str, item: Element | None, ends: tuple[str, str]) -> Line:
     element = entry.element
     assert element is not None
-    head = " ".join([*visibility(element), "flow", *([quoted(name)] if name else [])])
+    head = " ".join([*visibility(book, element), "flow", *([quoted(name)] if name else [])])
     type_ = None if item is None else book.name(entry.parent, element, Edge.CONVEYS, item)
     of = "" if type_ is None else f" of {type_}"
     return Line(f"{head}{of} from {ends[0]} to {ends[1]}")
@@ -169,8 +168,7 @@ def _flow_definition(book: Book, entry: Entry, flow: Element) -> list[Line]:
     names = [None if e is None else book.name(entry, flow, Edge.FLOW_SOURCE, e) for e in ends]
     shapes = [book.plan.entry(one) for one in ends]
     if None in names or any(one is None or not one.shape.is_definition for one in shapes):
-        book.lost(flow, "flow ends")
-        return []
+        return book.drop(entry, "flow ends")
     body = [Line(f"ref :>> payload : {name}") for name in book.names(entry, flow, Edge.CONVEYS)[:1]]
     if len(graph.targets(flow, Edge.CONVEYS)) > 1:
         book.lost(flow, "conveys")

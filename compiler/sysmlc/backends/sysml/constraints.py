@@ -6,6 +6,7 @@ from sysmlc.backends.sysml.declarations import visibility
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import qualified
 from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element
@@ -34,15 +35,9 @@ def constraint(book: Book, entry: Entry) -> list[Line]:
         word = ""
     mark = _KEYWORDS.get(element.subkind)
     marks = [f"#{book.ours(entry.parent, mark)}"] if mark else []
-    words = [
-        *visibility(element),
-        word,
-        *marks,
-        "constraint",
-        quoted(entry.name) if entry.name else "",
-    ]
-    if word == "require" and not entry.name:
-        words = [*visibility(element), word, *marks, "constraint"]
+    name = quoted(entry.name) if entry.name else ""
+    marked = [word, *marks] if word == "require" else [*marks, word]
+    words = [*visibility(book, element), *marked, "constraint", name]
     body = annotations.of(book, entry) + book.members(entry)
     body += [Line("", text=[result])] if result else opaque_lines(book, entry, element)
     lines = [Line(" ".join(one for one in words if one), body)]
@@ -69,11 +64,10 @@ def _about(book: Book, entry: Entry, element: Element) -> list[Line]:
     """What it constrains besides its owner, when it has a name to refer by."""
     owner = book.graph.owner(element)
     others = [one for one in book.graph.targets(element, Edge.REFERENCES) if one is not owner]
-    if not others:
+    if not others or not entry.name:
         return []
-    if not entry.name:
-        return []
-    names = [book.name(entry.parent, element, Edge.REFERENCES, one) for one in others]
+    targets = [book.plan.entry(one) for one in others]
+    names = [None if one is None else qualified(book.plan, entry.parent, one) for one in targets]
     known = [one for one in names if one is not None]
     mark = book.ours(entry.parent, "constrains")
     head = f"#{mark} dependency from {quoted(entry.name)} to {', '.join(known)}"

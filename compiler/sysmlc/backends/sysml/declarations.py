@@ -41,10 +41,15 @@ class Head:
         return f"{text}{typed}{self.multiplicity}{subset}{redefined}{self.value}".lstrip()
 
 
-def visibility(element: Element) -> list[str]:
-    """The prefix for a visibility that is not public."""
+def visibility(book: Book, element: Element) -> list[str]:
+    """The prefix for a visibility that is not public, unless the text refers to the element."""
     found = element.attrs.get("visibility")
-    return [str(found)] if found in _VISIBILITIES else []
+    if found not in _VISIBILITIES:
+        return []
+    if element.id in book.public:
+        book.approximated(element, f"'{found}' of what others refer to", "public")
+        return []
+    return [str(found)]
 
 
 def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head:
@@ -53,7 +58,7 @@ def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head
     Those of a quantity are left to its writer.
     """
     element = _element(entry)
-    prefixes = visibility(element)
+    prefixes = visibility(book, element)
     if element.attrs.get("abstract"):
         prefixes.append("abstract")
     head = Head(prefixes, entry.shape.keyword, quoted(entry.name) if entry.name else "")
@@ -108,17 +113,17 @@ def feature_head(book: Book, entry: Entry) -> Head:
     """Declaration of a feature, without its value."""
     element = _element(entry)
     keyword = entry.shape.keyword
-    head = Head(feature_prefixes(entry, keyword), keyword if keyword != "ref" else "")
-    head.types, head.subsets = typing(book, entry, element)
+    head = Head(feature_prefixes(book, entry, keyword), keyword if keyword != "ref" else "")
+    head.types, head.subsets = typing(book, entry.parent, element)
     head.multiplicity = multiplicity(book, entry.parent, element)
     _redefine(book, entry, head)
     return head
 
 
-def feature_prefixes(entry: Entry, keyword: str) -> list[str]:
+def feature_prefixes(book: Book, entry: Entry, keyword: str) -> list[str]:
     """Visibility, direction, and the other words before the keyword of a feature."""
     element, attrs = _element(entry), _element(entry).attrs
-    prefixes = visibility(element)
+    prefixes = visibility(book, element)
     direction = attrs.get("direction")
     if direction in ("in", "out", "inout", "return"):
         prefixes.append("out" if direction == "return" else str(direction))
@@ -140,11 +145,11 @@ def _is_referential(entry: Entry) -> bool:
     return entry.parent is not None and entry.parent.shape.plain in _REFERENTIAL
 
 
-def typing(book: Book, entry: Entry, element: Element) -> tuple[list[str], list[str]]:
+def typing(book: Book, scope: Entry | None, element: Element) -> tuple[list[str], list[str]]:
     """Types of a feature, and features that it subsets because they stand for its type."""
     types, subsets = [], []
     for type_ in book.graph.targets(element, Edge.TYPED_BY):
-        name = type_name(book, entry.parent, element, type_)
+        name = type_name(book, scope, element, type_)
         other = book.plan.entry(type_)
         if name is None:
             continue
@@ -153,7 +158,10 @@ def typing(book: Book, entry: Entry, element: Element) -> tuple[list[str], list[
         else:
             types.append(f"~{name}" if element.attrs.get("conjugated") else name)
     for feature in book.graph.targets(element, Edge.SUBSETS):
-        name = book.name(entry.parent, element, Edge.SUBSETS, feature)
+        if feature is element:
+            book.lost(element, "subsets")
+            continue
+        name = book.name(scope, element, Edge.SUBSETS, feature)
         subsets += [] if name is None else [name]
     return types, subsets
 

@@ -29,18 +29,34 @@ from sysmlc.ir import Graph, Kind
 
 
 def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
-    """The text, and whether it uses our library; what it cannot say is reported."""
+    """The text, and whether it uses our library; what it cannot say is reported.
+
+    It is written again when it refers to what is private in the model, or to what turned out
+    to have no place.
+    """
+    public: frozenset[str] = frozenset()
+    dropped: frozenset[str] = frozenset()
+    while True:
+        book, lines = _written(graph, public, dropped)
+        if public >= book.plan.shown and dropped >= book.dropped:
+            break
+        public, dropped = public | book.plan.shown, dropped | book.dropped
+    account(book)
+    book.losses.report(sink)
+    return printed(lines), book.uses_library
+
+
+def _written(
+    graph: Graph, public: frozenset[str], dropped: frozenset[str]
+) -> tuple[Book, list[Line]]:
     losses = Losses(graph)
-    plan = make_plan(graph, losses)
+    plan = make_plan(graph, losses, dropped)
     plan.applied = define(plan)
     name_all(plan)
-    caex = (one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
-    book = Book(graph, plan, losses, WRITERS, caex=frozenset(caex))
+    caex = frozenset(one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
+    book = Book(graph, plan, losses, WRITERS, public=public, caex=caex)
     relations.prepare(book)
-    lines = [line for top in plan.tops for line in book.member(top)]
-    account(book)
-    losses.report(sink)
-    return printed(lines), book.uses_library
+    return book, [line for top in plan.tops for line in book.member(top)]
 
 
 def _added(book: Book, entry: Entry) -> list[Line]:

@@ -24,7 +24,7 @@ def instance(book: Book, entry: Entry) -> list[Line]:
 
 def _head(book: Book, entry: Entry, element: Element) -> str:
     keyword = entry.shape.keyword
-    words = [*visibility(element), keyword, quoted(entry.name) if entry.name else ""]
+    words = [*visibility(book, element), keyword, quoted(entry.name) if entry.name else ""]
     text = " ".join(word for word in words if word)
     types: list[str] = []
     subsets: list[str] = []
@@ -46,8 +46,7 @@ def _part(book: Book, entry: Entry, element: Element, part: Element) -> list[Lin
     steps = [one for one in path if one is not None and one is not part]
     name = book.redefined(entry.parent, steps[0] if steps else part)
     if name is None:
-        book.lost(element, "represents")
-        return []
+        return book.drop(entry, "represents")
     names = [name, *(quoted(one.name) for one in (*steps, part)[1:])]
     for one in reversed(names):
         body = [Line(f"part :>> {one}", body)]

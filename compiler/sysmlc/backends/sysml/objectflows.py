@@ -20,8 +20,7 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     source = book.graph.target(element, Edge.FLOW_SOURCE)
     target = book.graph.target(element, Edge.FLOW_TARGET)
     if source is None or target is None:
-        book.lost(element, "flow ends")
-        return []
+        return book.drop(entry, "flow ends")
     if source.kind is Kind.CONTROL:
         return []
     is_direct = target.kind is not Kind.CONTROL
@@ -31,7 +30,7 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     for one in [target] if is_direct else _reached(book, target):
         end = feature(book, entry.parent, one)
         if start is None or end is None:
-            book.lost(element, "flow ends")
+            book.drop(entry, "flow ends")
             continue
         lines.append(Line(_text(book, element, name, (source, start), (one, end))))
         name = ""
@@ -43,7 +42,7 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
 def _text(
     book: Book, flow: Element, name: str, source: tuple[Element, str], target: tuple[Element, str]
 ) -> str:
-    words = visibility(flow)
+    words = visibility(book, flow)
     if _is_bound(book, source[0], target[0]):
         start = ["binding", quoted(name)] if name else []
         return " ".join([*words, *start, "bind", target[1], "=", source[1]])

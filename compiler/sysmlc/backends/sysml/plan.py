@@ -47,12 +47,21 @@ class Plan:
     """Type and multiplicity of attributes that no element stands for, by identity."""
     imports: dict[int, set[str]] = field(default_factory=dict)
     """Packages of libraries that a package of the text imports, by its identity."""
+    dropped: frozenset[str] = frozenset()
+    """Ids of elements that cannot be written."""
+    shown: set[str] = field(default_factory=set)
+    """Ids of elements that are not public in the model and that the text refers to."""
     applied: dict[str, Entry] = field(default_factory=dict)
     """Metadata definition of each application of a stereotype, by its id."""
 
     def entry(self, element: Element | None) -> Entry | None:
         """The entry that an element has, or that stands for it."""
         return None if element is None else self.entries.get(element.id)
+
+    def show(self, entry: Entry) -> None:
+        """Something refers to the member from outside of its namespace, so that it is public."""
+        if entry.element is not None and "visibility" in entry.element.attrs:
+            self.shown.add(entry.element.id)
 
     def new(self, shape: Shape, parent: Entry | None, name: str, element: Element | None) -> Entry:
         """A new entry at the end of its namespace."""
@@ -63,9 +72,12 @@ class Plan:
         return made
 
 
-def make_plan(graph: Graph, losses: Losses) -> Plan:
-    """The plan of the text for a graph; names are those of the model as yet."""
-    plan = Plan(graph, losses)
+def make_plan(graph: Graph, losses: Losses, dropped: frozenset[str]) -> Plan:
+    """The plan of the text for a graph, without elements that cannot be written.
+
+    Names are those of the model as yet.
+    """
+    plan = Plan(graph, losses, dropped=dropped)
     used = used_outside(graph)
     outside = Outside(plan)
     for root in graph.roots():
@@ -148,7 +160,7 @@ def _place(plan: Plan, top: Element, above: Entry | None, used: set[str]) -> Non
         element, parent = stack.pop()
         if element.attrs.get("external") and element.id not in used:
             continue
-        if scalar_of(element) or _is_measure(element):
+        if scalar_of(element) or _is_measure(element) or element.id in plan.dropped:
             continue
         entry = _entry(plan, element, parent)
         stack.extend((one, entry) for one in reversed(plan.graph.owned(element)))

@@ -10,7 +10,7 @@ from itertools import pairwise
 from sysmlc.backends.sysml.library import IMPORTED, IMPORTS
 from sysmlc.backends.sysml.plan import Entry, Plan
 from sysmlc.backends.sysml.words import quoted
-from sysmlc.ir import Edge, Element
+from sysmlc.ir import Edge, Element, Kind
 
 _GENERAL = (
     Edge.REDEFINES,
@@ -35,14 +35,21 @@ def lookup(plan: Plan, scope: Entry | None, name: str) -> Entry | None:
 
 
 def visible(plan: Plan, space: Entry) -> dict[str, Entry]:
-    """Own and inherited members of a namespace, by name; nearer ones first."""
+    """Own and inherited members of a namespace, by name.
+
+    Two inherited members of one name hide one another (KerML 1.0, 8.3.2.4).
+    """
     if space.visible is None:
-        found = {one.name: one for one in space.members if one.name}
-        for general in _generals(plan, space):
-            for one in general.members:
-                if one.name:
-                    found.setdefault(one.name, one)
-        space.visible = found
+        space.visible = {one.name: one for one in space.members if one.name}
+        inherited: dict[str, Entry | None] = {}
+        for general in _direct(plan, space):
+            for name, one in visible(plan, general).items():
+                known = inherited.setdefault(name, one)
+                if known is not None and known is not one and not _is_same(plan, known, one):
+                    inherited[name] = one if _is_same(plan, one, known) else None
+        for name, found in inherited.items():
+            if found is not None:
+                space.visible.setdefault(name, found)
     return space.visible
 
 
@@ -87,6 +94,8 @@ def _direct(plan: Plan, space: Entry) -> Iterator[Entry]:
     if element is None:
         return
     edges: tuple[Edge, ...] = _GENERAL
+    if element.kind is Kind.ACTION and element.subkind not in ("call-behavior", "call-operation"):
+        edges = _GENERAL[:-1]
     if space.shape.keyword == "part" and element.subkind == "part":
         edges = (Edge.REPRESENTS, *_GENERAL)
     for edge in edges:
@@ -113,8 +122,18 @@ def path_to(plan: Plan, scope: Entry | None, target: Entry) -> list[Entry] | Non
         if not one.name:
             return None
         if _is_same(plan, lookup(plan, scope, one.name), one):
-            return path[number::-1]
-    return path[::-1]
+            return _shown(plan, scope, path[number::-1])
+    return _shown(plan, scope, path[::-1])
+
+
+def _shown(plan: Plan, scope: Entry | None, path: list[Entry]) -> list[Entry]:
+    """The path; what it reaches from outside of its owner, or inherits, cannot be private."""
+    head = path[0]
+    if head.parent is not None and all(head.parent is not one for one in _outwards(scope)):
+        plan.show(head)
+    for one in path[1:]:
+        plan.show(one)
+    return path
 
 
 def _is_same(plan: Plan, found: Entry | None, wanted: Entry) -> bool:
@@ -138,6 +157,15 @@ def reference(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
     return ("" if is_found else "$::") + _joined(found)
 
 
+def qualified(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
+    """The same as a qualified name, where no feature chain may stand."""
+    found = path_to(plan, scope, target)
+    if found is None:
+        return None
+    is_found = _is_same(plan, lookup(plan, scope, found[0].name), found[0])
+    return ("" if is_found else "$::") + "::".join(quoted(one.name) for one in found)
+
+
 def _joined(path: Sequence[Entry]) -> str:
     text = quoted(path[0].name)
     for before, one in pairwise(path):
@@ -158,6 +186,10 @@ def chain(plan: Plan, scope: Entry | None, steps: Iterable[Element]) -> str | No
     known = [one for one in entries if one is not None and one.name]
     if not known or len(known) != len(entries):
         return None
+    for before, one in pairwise(known):
+        if not _is_same(plan, visible(plan, before).get(one.name), one):
+            return None
+        plan.show(one)
     first = reference(plan, scope, known[0])
     return None if first is None else ".".join([first, *(quoted(one.name) for one in known[1:])])
 
@@ -184,5 +216,6 @@ def redefined_name(plan: Plan, scope: Entry | None, target: Entry) -> str | None
     if scope is not None and target.name:
         for general in _generals(plan, scope):
             if any(one is target for one in general.members):
+                plan.show(target)
                 return quoted(target.name)
     return reference(plan, None if scope is None else scope.parent, target)

@@ -7,7 +7,7 @@ from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import definition_head, visibility
 from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import reference
+from sysmlc.backends.sysml.references import qualified, reference
 from sysmlc.backends.sysml.structure import classifier, contents
 from sysmlc.backends.sysml.words import comment_lines, quoted
 from sysmlc.ir import Edge, Kind
@@ -96,21 +96,26 @@ def _names(book: Book, scope: Entry | None, entries: list[Entry]) -> str:
     return ", ".join(str(reference(book.plan, scope, one)) for one in entries)
 
 
+def _qualified(book: Book, scope: Entry | None, entries: list[Entry]) -> str:
+    return ", ".join(str(qualified(book.plan, scope, one)) for one in entries)
+
+
 def _plain(book: Book, entry: Entry) -> list[Line]:
     """A dependency, with a keyword when it is of a special kind."""
     element = entry.element
     assert element is not None
     clients, suppliers = _ends(book, entry)
     if not clients or not suppliers:
+        book.dropped.add(element.id)
         return []
     word = _KEYWORDS.get(element.role) or _SUBKINDS.get(element.subkind)
     if element.role == "refine":
         mark = f"#{book.library(entry.parent, 'ModelingMetadata::refinement')} "
     else:
         mark = f"#{book.ours(entry.parent, word)} " if word else ""
-    words = " ".join([*visibility(element), f"{mark}dependency"])
+    words = " ".join([*visibility(book, element), f"{mark}dependency"])
     name = f"{quoted(entry.name)} " if entry.name else ""
-    ends = [_names(book, entry.parent, one) for one in (clients, suppliers)]
+    ends = [_qualified(book, entry.parent, one) for one in (clients, suppliers)]
     body = contents(book, entry)
     return [Line(f"{words} {name}from {ends[0]} to {ends[1]}", body)]
 

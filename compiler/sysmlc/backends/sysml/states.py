@@ -32,7 +32,7 @@ def state(book: Book, entry: Entry) -> list[Line]:
     """A state with its actions; one with several regions is parallel."""
     element = entry.element
     assert element is not None
-    head = " ".join([*visibility(element), "state", quoted(entry.name)])
+    head = " ".join([*visibility(book, element), "state", quoted(entry.name)])
     for machine in book.graph.targets(element, Edge.CALLS):
         other = book.plan.entry(machine)
         name = book.name(entry.parent, element, Edge.CALLS, machine)
@@ -72,8 +72,7 @@ def transition(book: Book, entry: Entry) -> list[Line]:
     book.said.update(one.id for one in triggers)
     ends = [_end(book, entry, element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
     if None in ends:
-        book.lost(element, "flow ends")
-        return []
+        return book.drop(entry, "flow ends")
     body = annotations.of(book, entry)
     if element.subkind not in ("", "external"):
         body.append(annotations.ours(book, entry, "Kind", {"name": element.subkind}))
@@ -97,7 +96,7 @@ def _line(
 ) -> Line:
     element = entry.element
     assert element is not None
-    words = [*visibility(element), "transition", quoted(name) if name else ""]
+    words = [*visibility(book, element), "transition", quoted(name) if name else ""]
     parts = [" ".join(word for word in words if word), f"first {ends[0]}"]
     if not accepted and len(parts[0]) == len("transition") and "guard" not in element.attrs:
         effects = book.graph.targets(element, Edge.EFFECT)

@@ -6,6 +6,7 @@ from sysmlc.backends.sysml.declarations import Head, definition_head, feature_he
 from sysmlc.backends.sysml.library import quantity_of, scalar_of, unit_name
 from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import qualified
 from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
@@ -17,7 +18,7 @@ from sysmlc.ir.query import flow_directions, type_of
 def package(book: Book, entry: Entry) -> list[Line]:
     """A package, of the model or one that holds what is outside of it."""
     body = [] if entry.element is None else annotations.of(book, entry)
-    words = [] if entry.element is None else declarations.visibility(entry.element)
+    words = [] if entry.element is None else declarations.visibility(book, entry.element)
     head = " ".join([*words, entry.shape.keyword, quoted(entry.name)])
     body += book.members(entry)
     heads = {line.head.partition(" ")[2] for line in body}
@@ -49,7 +50,8 @@ def _realisations(book: Book, entry: Entry, element: Element) -> list[Line]:
     }
     lines = []
     for target in book.graph.targets(element, Edge.REALIZES):
-        name = None if target.id in told else book.name(entry, element, Edge.REALIZES, target)
+        other = None if target.id in told else book.plan.entry(target)
+        name = None if other is None else qualified(book.plan, entry, other)
         if name is not None:
             mark = book.ours(entry, "realization")
             lines.append(Line(f"#{mark} dependency from {quoted(entry.name)} to {name}"))
@@ -199,7 +201,7 @@ def reception(book: Book, entry: Entry) -> list[Line]:
     """A reception: an action that accepts the signal."""
     element = entry.element
     assert element is not None
-    types, _ = typing(book, entry, element)
+    types, _ = typing(book, entry.parent, element)
     accepted = f" accept : {types[0]}" if types else ""
     return [Line(f"action {quoted(entry.name)}{accepted}", contents(book, entry))]
 
@@ -225,7 +227,7 @@ def association(book: Book, entry: Entry) -> list[Line]:
         own = book.plan.entry(end)
         if own is None or own.parent is entry:
             continue
-        types, _ = typing(book, own, end)
+        types, _ = typing(book, entry, end)
         keyword = own.shape.keyword if own.shape.keyword != "ref" else ""
         count = declarations.multiplicity(book, entry, end)
         head = " ".join(word for word in ("end", count.strip(), keyword, quoted(own.name)) if word)

@@ -44,7 +44,7 @@ def extend(book: Book, entry: Entry) -> list[Line]:
     targets = book.names(entry.parent, element, Edge.EXTENDS)
     targets += book.names(entry.parent, element, Edge.REFERENCES)
     if not targets:
-        return []
+        return book.drop(entry, "extends")
     name = f"{quoted(entry.name)} " if entry.name else ""
     head = f"#{mark} dependency {name}from {owner} to {', '.join(targets)}"
     return [Line(head, contents(book, entry))]
