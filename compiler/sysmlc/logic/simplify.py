@@ -82,24 +82,40 @@ def _count(found: Iterable[Domain], limit: int) -> int:
 def _is_satisfiable(formula: Formula, variables: tuple[tuple[Var, Domain], ...]) -> bool:
     """Parts of a disjunction are tried one by one, parts of a conjunction that have nothing to
     do with one another too: that is much less than all values of all variables."""
+    branches = _branches(formula)
+    if branches:
+        return any(_is_possible(one, variables) for one in branches)
+    groups = _apart(_joined(formula))
+    if len(groups) > 1:
+        return all(_is_possible(f.both(*group), variables) for group in groups)
+    return _has_model(formula, dict(variables))
+
+
+def _branches(formula: Formula) -> tuple[Formula, ...]:
+    """The parts of a disjunction, however it is written; nothing for what is none."""
     match formula:
-        case Const(value):
-            return bool(value)
         case Apply(Op.OR, args):
-            return any(_is_possible(arg, variables) for arg in args)
+            return args
         case Apply(Op.IMPLIES, (left, right)):
-            return _is_possible(f.negate(left), variables) or _is_possible(right, variables)
+            return f.negate(left), right
         case Apply(Op.NOT, (Apply(Op.AND, args),)):
-            return any(_is_possible(f.negate(arg), variables) for arg in args)
-        case Apply(Op.AND, args) if len(groups := _apart(args)) > 1:
-            return all(_is_possible(f.both(*group), variables) for group in groups)
-        case Apply(Op.NOT, (Apply(Op.OR, args),)) if len(groups := _apart(args)) > 1:
-            return all(_is_possible(f.negate(f.either(*group)), variables) for group in groups)
+            return tuple(map(f.negate, args))
         case _:
-            return _has_model(formula, dict(variables))
+            return ()
+
+
+def _joined(formula: Formula) -> tuple[Formula, ...]:
+    """The parts of a conjunction, however it is written, else the formula alone."""
+    match formula:
+        case Apply(Op.NOT, (Apply(Op.OR, args),)):
+            return tuple(map(f.negate, args))
+        case _:
+            return _parts(formula)
 
 
 def _is_possible(formula: Formula, around: tuple[tuple[Var, Domain], ...]) -> bool:
+    if isinstance(formula, Const):
+        return bool(formula.value)
     used = frozenset(f.variables(formula))
     return _is_satisfiable(formula, tuple(pair for pair in around if pair[0] in used))
 

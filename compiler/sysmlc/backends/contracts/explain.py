@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -63,31 +63,32 @@ def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> 
     )
 
 
+_Told = Callable[[str], tuple[str, str]]
+"""The element with an id in words, and the file that it stands in."""
+
+
 def _page(graph: Graph, contract: Contract) -> Page:
     owned = {owner: [v for v in contract.variables if v.owner == owner] for owner in ("env", "sys")}
+    told = cache(lambda id: (_name(graph, id), _place(graph, id)))
     return Page(
         contract.component,
-        _name(graph, contract.origin),
-        _place(graph, contract.origin),
-        tuple(_variable(graph, one) for one in owned["env"]),
-        tuple(_variable(graph, one) for one in owned["sys"]),
-        _sections(graph, contract.assumptions),
-        _sections(graph, contract.guarantees),
+        *told(contract.origin),
+        tuple(_variable(told, one) for one in owned["env"]),
+        tuple(_variable(told, one) for one in owned["sys"]),
+        _sections(told, contract.assumptions),
+        _sections(told, contract.guarantees),
     )
 
 
-def _variable(graph: Graph, variable: Variable) -> Row:
-    origin = variable.origin
-    return Row(
-        variable.name, describe(variable.domain), _name(graph, origin), _place(graph, origin)
-    )
+def _variable(told: _Told, variable: Variable) -> Row:
+    return Row(variable.name, describe(variable.domain), *told(variable.origin))
 
 
-def _sections(graph: Graph, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
+def _sections(told: _Told, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
     rows: dict[Class, list[Row]] = {class_: [] for class_ in Class}
     for one in conjuncts:
-        name, place = _name(graph, one.origin), _place(graph, one.origin)
-        rows[one.class_].append(Row(print_formula(one.formula), one.text, name, place))
+        row = Row(print_formula(one.formula), one.text, *told(one.origin))
+        rows[one.class_].append(row)
     return tuple(Section(_TITLES[c], tuple(found)) for c, found in rows.items() if found)
 
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Domain
-from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_literal
 
@@ -38,18 +38,28 @@ class TooLargeError(Exception):
 
 _REMEMBERED = 1 << 14
 """Comparisons whose cases are kept: machines of one kind have the same."""
+_MACHINES = 64
+"""Sets of variables whose formulas are kept, for the same reason."""
 
 
 def spin(contract: Contract) -> str:
     """``(A) -> (G)``. Raises TooLargeError."""
-    known = {variable.name: variable.domain for variable in contract.variables}
-    sides = (_side(contract.assumptions, known), _side(contract.guarantees, known))
+    spelling = _spelling(tuple((one.name, one.domain) for one in contract.variables))
+    sides = (_side(contract.assumptions, spelling), _side(contract.guarantees, spelling))
     return "({}) -> ({})\n".format(*sides)
 
 
 def spin_conjunct(conjunct: Conjunct, known: Mapping[str, Domain]) -> str:
     """One conjunct with the temporal operators that its class implies."""
-    body = _text(conjunct.formula, known)
+    return _conjunct(conjunct, Spelling(known))
+
+
+def _side(conjuncts: Iterable[Conjunct], spelling: "Spelling") -> str:
+    return " && ".join(_conjunct(one, spelling) for one in conjuncts) or "true"
+
+
+def _conjunct(conjunct: Conjunct, spelling: "Spelling") -> str:
+    body = spelling.text(conjunct.formula)
     match conjunct.class_:
         case Class.SAFETY:
             return f"[]({body})"
@@ -59,33 +69,47 @@ def spin_conjunct(conjunct: Conjunct, known: Mapping[str, Domain]) -> str:
             return f"({body})"
 
 
-def _side(conjuncts: Iterable[Conjunct], known: Mapping[str, Domain]) -> str:
-    return " && ".join(spin_conjunct(one, known) for one in conjuncts) or "true"
+class Spelling:
+    """How formulas over some variables are spelt; each is spelt once."""
+
+    def __init__(self, known: Mapping[str, Domain]) -> None:
+        self._known = known
+        self._texts: dict[Formula, str] = {}
+
+    def text(self, formula: Formula) -> str:
+        """The formula in SPIN's spelling. Raises TooLargeError."""
+        text = self._texts.get(formula)
+        if text is None:
+            text = self._texts[formula] = self._text(formula)
+        return text
+
+    def _text(self, formula: Formula) -> str:
+        match formula:
+            case Const(value):
+                return print_literal(value)
+            case Var(name, primed):
+                return _proposition(name, primed, True, self._known)
+            case Apply(op, args) if op in _COMPARISONS:
+                return self._written_out(formula)
+            case Apply(op, args) if op in _PREFIX:
+                return f"{_PREFIX[op]}{self._operand(args[0])}"
+            case Apply(op, args):
+                return f" {_INFIX[op]} ".join(map(self._operand, args))
+
+    def _operand(self, formula: Formula) -> str:
+        text = self.text(formula)
+        if not isinstance(formula, Apply) or formula.op in _PREFIX:
+            return text
+        return text if _ATOM.fullmatch(text) else f"({text})"
+
+    def _written_out(self, formula: Formula) -> str:
+        names = dict.fromkeys(variable.name for variable in f.variables(formula))
+        return _spelt(formula, tuple((name, self._known[name]) for name in names))
 
 
-def _text(formula: Formula, known: Mapping[str, Domain]) -> str:
-    match formula:
-        case Const(value):
-            return print_literal(value)
-        case Var(name, primed):
-            return _proposition(name, primed, True, known)
-        case Apply(op, args) if op in _COMPARISONS:
-            return _written_out(formula, known)
-        case Apply(op, args) if op in _PREFIX:
-            return f"{_PREFIX[op]}{_operand(args[0], known)}"
-        case Apply(op, args):
-            return f" {_INFIX[op]} ".join(_operand(arg, known) for arg in args)
-
-
-def _operand(formula: Formula, known: Mapping[str, Domain]) -> str:
-    text = _text(formula, known)
-    is_infix = isinstance(formula, Apply) and (formula.op in _INFIX or formula.op in _COMPARISONS)
-    return f"({text})" if is_infix and not _ATOM.fullmatch(text) else text
-
-
-def _written_out(formula: Formula, known: Mapping[str, Domain]) -> str:
-    names = dict.fromkeys(variable.name for variable in f.variables(formula))
-    return _spelt(formula, tuple((name, known[name]) for name in names))
+@lru_cache(_MACHINES)
+def _spelling(variables: tuple[tuple[str, Domain], ...]) -> Spelling:
+    return Spelling(dict(variables))
 
 
 @lru_cache(_REMEMBERED)
@@ -104,7 +128,7 @@ def _spelt(formula: Formula, found: tuple[tuple[str, Domain], ...]) -> str:
         ):
             return f"!{_atom(name, primed, value, known)}"
         case _:
-            return _cases(formula, variables, {}, {}, known)
+            return _cases(evaluation(formula), variables, {}, {}, known)
 
 
 def _atom(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) -> str:
@@ -113,7 +137,7 @@ def _atom(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) 
 
 
 def _cases(
-    formula: Formula,
+    truth: Evaluation,
     variables: list[Var],
     now: dict[str, Literal],
     then: dict[str, Literal],
@@ -121,14 +145,14 @@ def _cases(
 ) -> str:
     """The values that make the comparison true, one variable after the other."""
     if not variables:
-        return print_literal(is_true(formula, now, then))
+        return print_literal(bool(truth(now, then)))
     first, *rest = variables
     parts: list[str] = []
     values = domains.values(known[first.name])
     for value in values:
         chosen = {first.name: value}
         before, after = (now, then | chosen) if first.primed else (now | chosen, then)
-        inner = _cases(formula, rest, before, after, known)
+        inner = _cases(truth, rest, before, after, known)
         if inner != "false":
             atom = _proposition(first.name, first.primed, value, known)
             parts.append(atom if inner == "true" else f"({atom} && {_wrapped(inner)})")
