@@ -373,3 +373,16 @@ def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
     reading = Read(plant(f'<InternalElement Name="a" ID="a"/>{group}'))
     assert reading.owned("Plant") == ["Instance a", "Class a", "Group g"]
     assert reading.to("Plant::g", "references") == ["Plant::a"]
+
+
+def test_a_mirror_of_an_element_that_only_repeats_a_part_mirrors_the_part():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="A"><InternalElement Name="m" ID="m"/></SystemUnitClass>'
+            '<SystemUnitClass Name="B"><InternalElement Name="a" ID="a" '
+            'RefBaseSystemUnitPath="Lib/A"><InternalElement Name="m" ID="again"/>'
+            '</InternalElement><InternalElement Name="x" ID="x" RefBaseSystemUnitPath="again"/>'
+            "</SystemUnitClass>"
+        )
+    )
+    assert reading.to("Lib::B::x", "mirrors") == ["Lib::A::m"]

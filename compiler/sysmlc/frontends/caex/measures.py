@@ -53,9 +53,10 @@ def multiply(attrs: dict[str, AttrValue], declared: Type | None) -> None:
 def complete_type(context: Context, type: Type) -> None:
     """Give an attribute type its primitive, and its unit."""
     node, element = type.node, context.graph[type.id]
-    if type.base is None and node.attributes.get("AttributeDataType"):
-        element.attrs["data_type"] = node.attributes["AttributeDataType"]
-        data_type = node.attributes["AttributeDataType"]
+    data_type = node.attributes.get("AttributeDataType")
+    if data_type:
+        element.attrs["data_type"] = data_type
+    if data_type and type.base is None:
         refer(context, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
     unit = _unit(context, node, type.document)
     if unit:

@@ -1,5 +1,7 @@
 """Mirrors: second places of one element; the last master of a chain is what is meant."""
 
+from collections.abc import Callable
+
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
@@ -54,11 +56,17 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
     return node
 
 
-def draw(context: Context, document: Document, node: Node, element: Element) -> Node | None:
-    """The edge from the mirror's element to its master's; the master."""
+def draw(
+    context: Context,
+    document: Document,
+    node: Node,
+    element: Element,
+    standing: Callable[[Node], str] = lambda node: node.element,
+) -> Node | None:
+    """The edge from the mirror's element to what stands for its master; the master."""
     found = master(context, document, node)
-    if found is not None and found.element in context.graph:
-        context.graph.connect(Edge.MIRRORS, element.id, found.element)
+    if found is not None and standing(found) in context.graph:
+        context.graph.connect(Edge.MIRRORS, element.id, standing(found))
         return found
     return None
 
