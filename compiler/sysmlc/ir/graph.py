@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.neighbours import Index, drop, every, first, put, put_new
-from sysmlc.ir.reference import Reference, References
+from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
 
@@ -50,9 +50,10 @@ class Graph:
         """The element with this id, or None."""
         return None if id is None else self._elements.get(id)
 
-    def find_all(self, ids: Iterable[str]) -> list[Element | None]:
+    def find_all(self, ends: Iterable[End]) -> list[Element | None]:
         """The elements with these ids, None for each that is not there."""
-        return list(map(self._elements.get, ids))
+        get = self._elements.get
+        return [get(end) if isinstance(end, str) else end for end in ends]
 
     def of_kind(self, *kinds: Kind) -> list[Element]:
         """Elements of these kinds: kind by kind, each in the order of addition."""
@@ -199,15 +200,14 @@ class Graph:
         self._link(edge, self._known(source), self._known(target))
 
     def connect_all(
-        self, edges: Iterable[Edge], sources: Iterable[str], targets: Iterable[Element | None]
+        self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
         """Add many edges; those without a target, or from an element that is not there, are not."""
-        get, indexes, drawn = self._elements.get, self._out, self._drawn
-        for edge, id, target in zip(edges, sources, targets, strict=True):
-            source = get(id)
+        indexes, drawn = self._out, self._drawn
+        for edge, source, target in zip(edges, self.find_all(sources), targets, strict=True):
             if source is None or target is None:
                 continue
-            out = indexes[edge]
+            out, id = indexes[edge], source.id
             if id in out or edge not in drawn:
                 self._link(edge, source, target)
             else:
@@ -239,6 +239,7 @@ class Graph:
 
     def remove(self, element: Element) -> None:
         """Remove the element, what it owns, and all their edges."""
+        self.pending.forget_elements()
         for doomed in reversed(list(self.subtree(element))):
             self._cut(doomed)
             del self._elements[doomed.id]

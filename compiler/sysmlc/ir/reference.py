@@ -3,7 +3,11 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Edge, Kind
+
+End = Element | str
+"""One end of a reference: an element that is in the graph, or an id or href."""
 
 
 class Reference(NamedTuple):
@@ -27,15 +31,16 @@ class References:
     """References in the order in which they were found, as columns.
 
     A large model has as many references as elements, and next to none says more than edge,
-    source and target: a tuple for each would cost more than the edge that comes of it.
+    source and target: a tuple for each would cost more than the edge that comes of it. Ends
+    are elements where they are known, for to look for an id in a large graph costs as much.
     """
 
     __slots__ = ("edges", "ordinals", "said", "sources", "targets")
 
     def __init__(self) -> None:
         self.edges: list[Edge] = []
-        self.sources: list[str] = []
-        self.targets: list[str] = []
+        self.sources: list[End] = []
+        self.targets: list[End] = []
         self.ordinals: list[int] = []
         self.said: dict[int, tuple[Kind, str]] = {}
         """What is known of external targets, by the number of the reference."""
@@ -49,8 +54,8 @@ class References:
     def __getitem__(self, number: int) -> Reference:
         kind, name = self.said.get(number, (Kind.CLASS, ""))
         ordinal = self.ordinals[number]
-        edge, source, target = self.edges[number], self.sources[number], self.targets[number]
-        return Reference(edge, source, target, kind, name, ordinal)
+        source, target = id_of(self.sources[number]), id_of(self.targets[number])
+        return Reference(self.edges[number], source, target, kind, name, ordinal)
 
     def append(self, reference: Reference) -> None:
         """Add a reference."""
@@ -62,7 +67,30 @@ class References:
         self.targets.append(target)
         self.ordinals.append(ordinal)
 
+    def extend(
+        self,
+        edges: list[Edge],
+        sources: list[End],
+        targets: list[End],
+        ordinals: list[int],
+    ) -> None:
+        """Add references to elements that are there, column by column."""
+        self.edges += edges
+        self.sources += sources
+        self.targets += targets
+        self.ordinals += ordinals
+
+    def forget_elements(self) -> None:
+        """Know all ends by their ids alone: elements may leave the graph."""
+        self.sources = list(map(id_of, self.sources))
+        self.targets = list(map(id_of, self.targets))
+
     def clear(self) -> None:
         """Forget all references."""
         for column in (self.edges, self.sources, self.targets, self.ordinals, self.said):
             column.clear()
+
+
+def id_of(end: End) -> str:
+    """The id, or href, of an end."""
+    return end if isinstance(end, str) else end.id

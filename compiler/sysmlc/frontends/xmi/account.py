@@ -12,11 +12,10 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
     """Count every element of the file once, and report what is not or not wholly read."""
     document = context.document
     counts = coverage.file(document.name)
-    rows = zip(
-        document.types, document.features, context.lowered.own, context.verdicts, strict=True
-    )
-    for (written, feature, is_own, verdict), number in Counter(rows).items():
-        counts.count(_type(written, feature, is_own), verdict or Verdict.UNSUPPORTED, number)
+    is_own = map(bool, context.lowered.own)
+    rows = zip(document.types, document.features, is_own, context.verdicts, strict=True)
+    for (written, feature, own, verdict), number in Counter(rows).items():
+        counts.count(_type(written, feature, own), verdict or Verdict.UNSUPPORTED, number)
     for feature, number in document.drawn.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
@@ -31,11 +30,12 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
 
 def _types(context: Context) -> list[str]:
     """Name of each row's type."""
-    rows = zip(context.document.types, context.document.features, context.lowered.own, strict=True)
+    is_own = map(bool, context.lowered.own)
+    rows = zip(context.document.types, context.document.features, is_own, strict=True)
     return [_type(*row) for row in rows]
 
 
-def _type(written: str, feature: str, is_own: int) -> str:
+def _type(written: str, feature: str, is_own: bool) -> str:
     """Name of a row's type: as written, else the default of its feature, else its tag."""
     known = written or (metaclasses.DEFAULT_TYPES.get(feature) if is_own else "")
     return f"uml:{known}" if known else feature

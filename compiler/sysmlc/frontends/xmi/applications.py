@@ -85,8 +85,8 @@ def _plain(context: Context, row: int, bases: dict[str, int]) -> None:
     element = _element(context, row, context.gids[places[0]])
     links = context.unit.links
     links.begin(context.lowered)
-    for target in bases:
-        links.add(Edge.SUBJECT, target, row)
+    for target, at in bases.items():
+        links.add(Edge.SUBJECT, element, target, at, row)
     application_tags.read(context, element, row)
     if element.name == "ItemFlow" or "propertyPath" in values:
         _specialities(context, element, row, [(context.lowered, at) for at in places])

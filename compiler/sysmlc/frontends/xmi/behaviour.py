@@ -196,6 +196,8 @@ def references(document: Document, row: int, feature: str) -> list[tuple[str, in
     """Targets of a feature, each with the row that names it and whether it is an href."""
     written = document.attributes[row].get(feature)
     found = [(target, row, False) for target in document.tokens(written)] if written else []
+    if feature not in document.referring:
+        return found
     for child in document.children(row, feature):
         href = document.attributes[child].get("href", "")
         target = href or document.idref(child)

@@ -9,7 +9,7 @@ from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming,
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.dangling import Loose
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
-from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
+from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
@@ -112,10 +112,12 @@ class Context:
         element = Element(
             id, kind, values.get("name", ""), owner or None, document.ordinals[row], document.name
         )
-        element.attrs |= details.attributes(kind, subkind, type_name, feature)
+        said = details.attributes(kind, subkind, type_name, feature)
+        if said:
+            element.attrs = said
         self.graph.add(element)
         self.gids[row] = id
-        self.lowered.own[row] = 1
+        self.lowered.own[row] = element
         self.verdicts[row] = Verdict.MAPPED
         detail = details.of(kind, feature)
         if detail is not None:
@@ -208,10 +210,8 @@ class Context:
     def _other(self, element: Element, row: int, name: str, value: str) -> None:
         backwards = v.REVERSED.get((element.kind, name))
         if backwards is not None:
-            links, lowered, id = self.unit.links, self.lowered, element.id
-            links.begin(lowered)
             for target in value.split():
-                links.append(Link(backwards, id, lowered, target, row, name, False, True))
+                self.link(backwards, element.id, target, row, name, is_reversed=True)
         elif name in v.CONDITIONS:
             self.conditions(value.split(), name)
         elif name in _BOUNDS:
@@ -273,13 +273,7 @@ class Context:
         is_reversed: bool = False,
     ) -> None:
         """Leave a reference from an element to an id or href."""
-        links = self.unit.links
-        links.begin(self.lowered)
-        if is_href or is_reversed or self.gids[row] != source:
-            lowered = self.lowered
-            links.append(Link(edge, source, lowered, target, row, feature, is_href, is_reversed))
-        else:
-            links.add(edge, target, row)
+        self._link(self.lowered, edge, source, target, row, feature, is_href, is_reversed)
 
     def link_from(
         self,
@@ -292,12 +286,28 @@ class Context:
         is_href: bool,
     ) -> None:
         """Leave a reference that a row of another document makes."""
+        self._link(holder, edge, source, target, row, feature, is_href, False)
+
+    def _link(
+        self,
+        holder: Lowered,
+        edge: Edge,
+        source: str,
+        target: str,
+        row: int,
+        feature: str,
+        is_href: bool,
+        is_reversed: bool,
+    ) -> None:
         links = self.unit.links
         links.begin(holder)
-        if is_href or holder.gids[row] != source:
-            links.append(Link(edge, source, holder, target, row, feature, is_href))
-        else:
-            links.add(edge, target, row)
+        element = self.graph.get(source)
+        if is_href or element is None or element.source != holder.document.name:
+            links.append(Link(edge, source, holder, target, row, feature, is_href, is_reversed))
+            return
+        if is_reversed:
+            links.backwards.add(len(links.edges))
+        links.add(edge, element, target, holder.document.ids.get(target, NOWHERE), row)
 
     def approximate(self, row: int, lost: str) -> None:
         """The row is in the graph without part of its meaning."""

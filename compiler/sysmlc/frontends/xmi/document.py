@@ -20,6 +20,7 @@ class Document:
     the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
     ``xmi:type`` (or empty), which is no longer in ``attributes``; ``ends[row]`` is the first
     row after the row's content; ``shapes[shape_numbers[row]]`` is the row's shape;
+    ``referring`` are the features of the rows that refer to others;
     ``declared`` are the namespaces that the file declares outside drawings.
     """
 
@@ -35,6 +36,7 @@ class Document:
         "name",
         "ordinals",
         "parents",
+        "referring",
         "repeated",
         "shape_numbers",
         "shapes",
@@ -56,6 +58,7 @@ class Document:
         self.features: list[str] = []
         self.types: list[str] = []
         self.shapes: list[Shape] = []
+        self.referring: frozenset[str] = frozenset()
         self.shape_numbers: list[int] = []
         self.ids: dict[str, int] = {}
         self.repeated: dict[str, list[int]] = {}
@@ -98,6 +101,8 @@ class Document:
         """Local ids that the row's feature refers to, as attribute list or as children."""
         written = self.attributes[row].get(feature)
         ids = self.tokens(written) if written else []
+        if feature not in self.referring:
+            return ids
         return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
 
     def retype(self, row: int, type_name: str) -> None:
@@ -174,6 +179,9 @@ def _index_shapes(document: Document) -> None:
     shapes = zip(document.features, document.types, map(tuple, document.attributes), strict=True)
     document.shape_numbers = list(map(numbers.__getitem__, shapes))
     document.shapes = list(numbers)
+    references = {document.idref_key, "href"}
+    referring = (feature for feature, _, names in numbers if not references.isdisjoint(names))
+    document.referring = frozenset(referring)
 
 
 class _Numbers(dict[Shape, int]):

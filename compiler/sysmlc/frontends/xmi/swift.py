@@ -45,14 +45,15 @@ class Swift:
             document.attributes,
             document.features,
         )
-        parents, ordinals, ids = document.parents, document.ordinals, document.ids
+        parents, ordinals, row_of = document.parents, document.ordinals, document.ids.get
         gids, own, verdicts = context.gids, lowered.own, context.verdicts
         clashes, plans, new = context.unit.clashes, self._plans, context.graph.new
         file, id_key, mapped = document.name, document.id_key, Verdict.MAPPED
         links.begin(lowered)
-        add_edge, add_target, add_row = (
-            links.edges.append,
+        add_edge, add_source = links.edges.append, links.sources.append
+        add_target, add_found, add_row = (
             links.targets.append,
+            links.found.append,
             links.rows.append,
         )
         end, above_roots = len(shapes), row - 1
@@ -73,16 +74,19 @@ class Swift:
                 row = other(context, row)
                 continue
             gids[row] = id
-            own[row] = 1
+            own[row] = made
             verdicts[row] = mapped
             if detail is not None:
                 detail(context, made, row, type_name, features[row])
             for step, is_id, edge, key in steps:
                 value = values[step]
-                if is_id and value in ids:
+                at = row_of(value) if is_id else None
+                if at is not None:
                     if edge is not None:
                         add_edge(edge)
+                        add_source(made)
                         add_target(value)
+                        add_found(at)
                         add_row(row)
                 elif key is None:
                     context.attribute(made, row, step, value)

@@ -1,15 +1,20 @@
 """All files of one compile unit: ids that are the same for every order of files, references."""
 
 from collections.abc import Iterator
-from itertools import pairwise
-from typing import NamedTuple
+from itertools import compress, pairwise
+from operator import not_
+from typing import NamedTuple, cast
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import fragments, hrefs
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
-from sysmlc.ir import Edge, Graph, Kind, Reference
+from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.identity import is_unmistakable
+from sysmlc.ir.reference import End, id_of
+
+NOWHERE = -1
+"""The row of what is not in the file; no element is below it."""
 
 _NOT_KEPT = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
 
@@ -18,7 +23,7 @@ class Lowered:
     """One document and what became of its rows.
 
     ``gids[row]`` is the id in the graph of the row's element, or of the nearest element above
-    it; ``own[row]`` says whether it is the row's own.
+    it; ``own[row]`` is the row's own element, or None.
     """
 
     __slots__ = ("document", "gids", "own", "verdicts")
@@ -26,7 +31,7 @@ class Lowered:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.gids: list[str] = [""] * len(document)
-        self.own = bytearray(len(document))
+        self.own: list[Element | None] = [None] * len(document)
         self.verdicts: list[Verdict | None] = [None] * len(document)
 
 
@@ -46,19 +51,24 @@ class Link(NamedTuple):
 class Links:
     """Links in the order in which they were found.
 
-    Nearly all lead from the element of a row to a local id: they are columns of edge, target
-    and row, and ``files`` says where the links of another file begin. Those that lead to an
-    href or backwards, or leave another element, are in ``rare``, by number.
+    Nearly all lead from an element of a file to a local id in it: they are columns of edge,
+    source, target as written, the target's row or -1, and the row that says so; ``files`` says
+    where the links of another file begin. ``backwards`` are the numbers of those that lead from
+    the target to the source. Those that lead to an href, or to another file, are in ``rare``,
+    by number.
     """
 
-    __slots__ = ("edges", "files", "rare", "rows", "targets")
+    __slots__ = ("backwards", "edges", "files", "found", "rare", "rows", "sources", "targets")
 
     def __init__(self) -> None:
         self.edges: list[Edge] = []
+        self.sources: list[End] = []
         self.targets: list[str] = []
+        self.found: list[int] = []
         self.rows: list[int] = []
         self.files: list[tuple[int, Lowered]] = []
         self.rare: dict[int, Link] = {}
+        self.backwards: set[int] = set()
 
     def begin(self, lowered: Lowered) -> None:
         """What is added from here on is in this file, unless it is rare."""
@@ -74,23 +84,27 @@ class Links:
             return rare
         lowered = next(file for start, file in reversed(self.files) if start <= number)
         edge, target, row = self.edges[number], self.targets[number], self.rows[number]
-        feature = _feature(lowered.document, row, target)
-        return Link(edge, lowered.gids[row], lowered, target, row, feature)
+        feature, source = _feature(lowered.document, row, target), id_of(self.sources[number])
+        return Link(edge, source, lowered, target, row, feature, False, number in self.backwards)
 
     def __setitem__(self, number: int, link: Link) -> None:
         self.rare[number] = link
 
-    def add(self, edge: Edge, target: str, row: int) -> None:
-        """Add a link from the element of a row of the file that was begun to a local id."""
+    def add(self, edge: Edge, source: Element, target: str, at: int, row: int) -> None:
+        """Add a link from an element of the file that was begun to the local id of a row."""
         self.edges.append(edge)
+        self.sources.append(source)
         self.targets.append(target)
+        self.found.append(at)
         self.rows.append(row)
 
     def append(self, link: Link) -> None:
         """Add a link, whatever it is."""
         self.rare[len(self.edges)] = link
         self.edges.append(link.edge)
+        self.sources.append(link.source)
         self.targets.append(link.target)
+        self.found.append(NOWHERE)
         self.rows.append(link.row)
 
     def runs(self) -> Iterator[tuple[int, int, Lowered]]:
@@ -102,8 +116,8 @@ class Links:
 
     def clear(self) -> None:
         """Forget all links."""
-        for column in (self.edges, self.targets, self.rows, self.files, self.rare):
-            column.clear()
+        for name in self.__slots__:
+            getattr(self, name).clear()
 
 
 def _feature(document: Document, row: int, target: str) -> str:
@@ -125,6 +139,8 @@ class Unit:
         self.library: dict[str, tuple[str, str]] = {}
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
         self._holders: dict[str, list[Lowered]] = {}
+        self._hrefs: dict[tuple[str, str], tuple[Lowered, int] | None] = {}
+        """What hrefs were found to mean, by the file that they are in."""
         for file in self.files if len(self.files) > 1 else ():
             for id in file.document.ids:
                 self._holders.setdefault(id, []).append(file)
@@ -139,6 +155,12 @@ class Unit:
         """File and row that an id or href means, if a file of the unit has it."""
         if not is_href:
             return self._local(lowered, target)
+        name = lowered.document.name
+        if (name, target) not in self._hrefs:
+            self._hrefs[name, target] = self._elsewhere(lowered, target)
+        return self._hrefs[name, target]
+
+    def _elsewhere(self, lowered: Lowered, target: str) -> tuple[Lowered, int] | None:
         path, _, fragment = hrefs.normalised(target, lowered.document.name).partition("#")
         if fragments.is_path(fragment):
             return self._at_path(path, fragment)
@@ -208,30 +230,24 @@ class Unit:
         self.links.clear()
 
     def _flush(self, start: int, end: int, lowered: Lowered) -> None:
+        """Column by column for all links at once, but for those that have to be looked at."""
         links, pending = self.links, self.graph.pending
-        rare, edges, targets, rows = links.rare, links.edges, links.targets, links.rows
-        row_of, ordinals = lowered.document.ids.get, lowered.document.ordinals
-        own, gids = lowered.own, lowered.gids
-        add_edge, add_source = pending.edges.append, pending.sources.append
-        add_target, add_ordinal = pending.targets.append, pending.ordinals.append
-        found = map(row_of, targets[start:end])
-        columns = zip(range(start, end), edges[start:end], found, rows[start:end], strict=True)
-        for number, edge, at, row in columns:
-            if at is not None and own[at] and number not in rare:
-                add_edge(edge)
-                add_source(gids[row])
-                add_target(gids[at])
-                add_ordinal(ordinals[row])
-                continue
-            link = links[number]
-            edge, source, holder, _, row, _, is_href, is_reversed = link
-            if at is None or not own[at] or is_href or holder is not lowered:
-                self._refer(link)
-                continue
-            add_edge(edge)
-            add_source(gids[at] if is_reversed else source)
-            add_target(source if is_reversed else gids[at])
-            add_ordinal(ordinals[row] if is_reversed else self._ordinal(source, lowered, row))
+        edges, sources = links.edges[start:end], links.sources[start:end]
+        held = cast("list[End]", [*lowered.own, ""])
+        targets = list(map(held.__getitem__, links.found[start:end]))
+        ordinals = list(map(lowered.document.ordinals.__getitem__, links.rows[start:end]))
+        others = set(compress(range(start, end), map(not_, targets)))
+        others |= links.rare.keys() & range(start, end)
+        for number in links.backwards.intersection(range(start, end)) - others:
+            at = number - start
+            sources[at], targets[at] = targets[at], sources[at]
+        done = 0
+        for number in sorted(others):
+            run = slice(done, number - start)
+            pending.extend(edges[run], sources[run], targets[run], ordinals[run])
+            self._refer(links[number])
+            done = number - start + 1
+        pending.extend(edges[done:], sources[done:], targets[done:], ordinals[done:])
 
     def _refer(self, link: Link) -> None:
         target = self.target_id(link.lowered, link.target, link.is_href)

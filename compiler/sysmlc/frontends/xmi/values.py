@@ -1,6 +1,7 @@
 """Value specifications: literals as JSON values, expressions as text."""
 
 import re
+from functools import lru_cache
 from math import isfinite
 from typing import NamedTuple
 
@@ -68,7 +69,7 @@ def value_of(document: Document, row: int) -> ValueText:
 def _value(document: Document, row: int, inner: _Inner) -> ValueText:
     type_name = document.types[row]
     if type_name in _LITERALS:
-        return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
+        return _literal_value(type_name, document.get(row, "value"))
     if type_name in _NAMES:
         return _instance(document, row, _NAMES[type_name])
     if type_name in _EXPRESSIONS:
@@ -134,17 +135,27 @@ def name_of_instance(document: Document, row: int) -> str:
 
 def _texts(document: Document, row: int) -> tuple[list[str], list[str]]:
     """Bodies and languages, each written as an attribute or as children."""
-    found: dict[str, list[str]] = {"body": [], "language": []}
-    features, texts = document.features, document.texts
-    for child in document.children(row):
-        known = found.get(features[child])
-        if known is not None:
-            known.append(texts.get(child, ""))
+    bodies: list[str] = []
+    languages: list[str] = []
+    features, texts, ends = document.features, document.texts, document.ends
+    child, end = row + 1, ends[row]
+    while child < end:
+        if features[child] == "body":
+            bodies.append(texts.get(child, ""))
+        elif features[child] == "language":
+            languages.append(texts.get(child, ""))
+        child = ends[child]
     values = document.attributes[row]
-    for feature in found:
-        if feature in values:
-            found[feature] = [values[feature]]
-    return found["body"], found["language"]
+    if "body" in values:
+        bodies = [values["body"]]
+    if "language" in values:
+        languages = [values["language"]]
+    return bodies, languages
+
+
+@lru_cache(4096)
+def _literal_value(type_name: str, text: str) -> ValueText:
+    return ValueText(_literal(type_name, text), is_literal=True)
 
 
 def _literal(type_name: str, text: str) -> AttrValue:

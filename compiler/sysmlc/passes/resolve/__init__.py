@@ -172,10 +172,11 @@ class _Answers:
 
     def _canonical(self, target: str, uses: list[_Use]) -> str:
         # All uses are asked, for the order in which they come must not matter.
-        name = max({primitive(target, use.path, use.kind) for use in uses})
+        said = {(use.path, use.kind) for use in uses}
+        name = max({primitive(target, path, kind) for path, kind in said})
         if name:
             return PRIMITIVE_TYPES + name
-        found = known(target, {use.path for use in uses}, {use.kind for use in uses})
+        found = known(target, {path for path, _ in said}, {kind for _, kind in said})
         if found is None:
             return target
         if found.owner == "PrimitiveTypes":

@@ -3,6 +3,7 @@
 import posixpath
 from collections.abc import Iterable
 from functools import cached_property
+from operator import attrgetter
 from urllib.parse import unquote
 
 from sysmlc.ir import Element, Graph
@@ -34,7 +35,7 @@ class Targets:
     @cached_property
     def _files(self) -> dict[str, set[str]]:
         index: dict[str, set[str]] = {}
-        for file in {element.source for element in self._graph if element.source}:
+        for file in set(map(attrgetter("source"), self._graph)) - {""}:
             index.setdefault(_basename(file), set()).add(file)
         return index
 
