@@ -21,23 +21,63 @@ OLD = """\
   <SystemUnitClassLib Name="Lib">
     <SystemUnitClass Name="Stopper">
       <Attribute Name="speed" AttributeDataType="xs:double"><Value>1.5</Value></Attribute>
+      <ExternalInterface Name="in" ID="e3" RefBaseClassPath="Interfaces/Port"/>
     </SystemUnitClass>
+    <SystemUnitClass Name="SmartStopper" RefBaseClassPath="Lib/Stopper"/>
     <SystemUnitClass Name="Gate">
-      <ExternalInterface Name="in" ID="e1" RefBaseClassPath="Interfaces/Port"/>
-      <ExternalInterface Name="out" ID="e2" RefBaseClassPath="Interfaces/Port"/>
+      <ExternalInterface Name="p_in" ID="e1" RefBaseClassPath="Interfaces/Port"/>
+      <ExternalInterface Name="p_out" ID="e2" RefBaseClassPath="Interfaces/Port"/>
       <InternalElement Name="st" ID="st" RefBaseSystemUnitPath="Lib/Stopper"/>
+      <InternalLink Name="link" RefPartnerSideA="e1" RefPartnerSideB="st:in"/>
     </SystemUnitClass>
   </SystemUnitClassLib>
 </CAEXFile>
 """
 NEW = (
-    OLD.replace('Name="out" ID="e2"', 'Name="outfeed" ID="e2"')
+    OLD.replace("p_out", "outfeed")
     .replace("<Value>1.5</Value>", "<Value>2</Value>")
-    .replace('ID="st"', 'ID="st2"')
-    .replace("</SystemUnitClass>\n  </S", '<Attribute Name="a|b"/></SystemUnitClass>\n  </S')
+    .replace(
+        'ID="st" RefBaseSystemUnitPath="Lib/Stopper"',
+        'ID="s2" RefBaseSystemUnitPath="Lib/SmartStopper"',
+    )
+    .replace('"e1" RefPartnerSideB="st:in"', '"e2" RefPartnerSideB="s2:in"')
+    .replace(
+        '      <ExternalInterface Name="p_in"',
+        '      <Attribute Name="width|mm"/>\n      <ExternalInterface Name="p_in"',
+    )
 )
 
 
+TEXT = """\
+Lib::Gate
+  ~ connector link: rewired, ends: p_in -- st.in => outfeed -- st.in
+  ~ port outfeed: renamed, was p_out
+  ~ part st: retyped, type: Stopper => SmartStopper
+  + value width|mm: added
+
+Lib::Stopper
+  ~ value speed: default: 1.5 => 2.0
+
+1 added, 1 renamed, 1 retyped, 1 rewired, 1 changed
+"""
+MARKDOWN = """\
+**1 added, 1 renamed, 1 retyped, 1 rewired, 1 changed**
+
+#### `Lib::Gate`
+
+| | element | change | before | after |
+|---|---|---|---|---|
+| `~` | connector `link` | rewired: ends | `p_in -- st.in` | `outfeed -- st.in` |
+| `~` | port `outfeed` | renamed | `p_out` | `outfeed` |
+| `~` | part `st` | retyped: type | `Stopper` | `SmartStopper` |
+| `+` | value `width\\|mm` | added |  |  |
+
+#### `Lib::Stopper`
+
+| | element | change | before | after |
+|---|---|---|---|---|
+| `~` | value `speed` | changed: default | `1.5` | `2.0` |
+"""
 REAL_PASSES = registry.passes
 
 
@@ -57,36 +97,21 @@ def test_equal_models_are_0(plants):
 def test_differences_are_1_and_stand_below_their_owners(plants):
     done = plants.sysmlc("diff", "old.aml", "new.aml")
     assert done.exit_code == 1
-    assert done.stdout == (
-        "Lib::Gate\n"
-        "  + value a|b: added\n"
-        "  ~ port outfeed: renamed, was out\n"
-        "\n"
-        "Lib::Stopper\n"
-        "  ~ value speed: default: 1.5 => 2.0\n"
-        "\n"
-        "1 added, 1 renamed, 1 changed\n"
-    )
+    assert done.stdout == TEXT
+
+
+def test_the_documentation_shows_what_is_printed(plants):
+    page = (resources.root() / "docs" / "compare-two-models.md").read_text("utf-8")
+    assert indented(TEXT) in page
+
+
+def indented(text):
+    return "".join(f"    {line}\n" if line else "\n" for line in text.splitlines())
 
 
 def test_markdown_is_a_table_for_each_owner(plants):
     done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "markdown")
-    assert done.stdout == (
-        "**1 added, 1 renamed, 1 changed**\n"
-        "\n"
-        "#### `Lib::Gate`\n"
-        "\n"
-        "| | element | change | before | after |\n"
-        "|---|---|---|---|---|\n"
-        "| `+` | value `a\\|b` | added |  |  |\n"
-        "| `~` | port `outfeed` | renamed | `out` | `outfeed` |\n"
-        "\n"
-        "#### `Lib::Stopper`\n"
-        "\n"
-        "| | element | change | before | after |\n"
-        "|---|---|---|---|---|\n"
-        "| `~` | value `speed` | changed: default | `1.5` | `2.0` |\n"
-    )
+    assert done.stdout == MARKDOWN
 
 
 def test_json_has_a_schema_and_the_places_of_both(plants):
@@ -99,12 +124,12 @@ def test_json_has_a_schema_and_the_places_of_both(plants):
         "id": "e2",
         "qualified_name": "Lib::Gate::outfeed",
         "file": "new.aml",
-        "line": 12,
+        "line": 15,
         "column": 7,
     }
     assert (renamed["old"]["file"], renamed["old"]["qualified_name"]) == (
         "old.aml",
-        "Lib::Gate::out",
+        "Lib::Gate::p_out",
     )
 
 
@@ -122,12 +147,32 @@ def test_a_model_that_cannot_be_read_is_2(here):
     assert here.sysmlc("diff", "plant.ir", "missing.ir").exit_code == 2
 
 
+def test_what_is_wrong_inside_a_model_is_no_hindrance(plants):
+    plants.write("dangling.aml", NEW.replace('RefPartnerSideA="e2"', 'RefPartnerSideA="gone"'))
+    done = plants.sysmlc("diff", "new.aml", "dangling.aml")
+    assert (done.exit_code, done.stderr) == (1, "")
+    assert "dependency link: retyped, kind: Connector => Dependency" in done.stdout
+
+
+def test_overlays_count_when_both_have_one(plants):
+    overlay = "overlay: 1\nblocks:\n  Lib/Gate:\n    operations:\n      readId:\n"
+    plants.write("old.overlay.yaml", overlay)
+    plants.write("same.aml", OLD)
+    assert plants.sysmlc("diff", "old.aml", "same.aml").exit_code == 0
+    plants.write("same.overlay.yaml", overlay.replace("readId", "getInPallet"))
+    done = plants.sysmlc("diff", "old.aml", "same.aml")
+    assert done.stdout == (
+        "Lib::Gate\n  + operation getInPallet: added\n  - operation readId: removed\n"
+        "\n1 added, 1 removed\n"
+    )
+
+
 def test_colours_on_a_terminal_only(plants, monkeypatch):
     plain = plants.sysmlc("diff", "old.aml", "new.aml").stdout
     monkeypatch.setattr("sysmlc.cli.session.has_color", lambda stream: True)
     coloured = plants.sysmlc("diff", "old.aml", "new.aml").stdout
     assert "\x1b[" not in plain
-    assert "\x1b[32m+ value a|b: added\x1b[0m" in coloured
+    assert "\x1b[32m+ value width|mm: added\x1b[0m" in coloured
 
 
 def test_long_texts_show_what_differs(here):

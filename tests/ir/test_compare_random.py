@@ -4,8 +4,8 @@ from functools import cache
 from random import Random
 
 import pytest
-from mutating import KINDS, Mutation, reissued
 
+from dialects.graph_mutations import KINDS, Mutation, reissued
 from dialects.random_models import random_model
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND

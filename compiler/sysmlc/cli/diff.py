@@ -49,6 +49,7 @@ def command(
     """Compare OLD and NEW (files or folders, of any format) as they are written.
 
     Places in files, ids that were given anew and the order of elements make no difference.
+    Overlays count when both models have one.
     Exit code 0 when they are equal, 1 when they differ, 2 when one cannot be read.
     """
     from sysmlc.cli import session
@@ -56,10 +57,11 @@ def command(
 
     settings = session.Settings(**given)
     made = [_read(path, settings) for path in (old, new)]
-    unread = [one for one in made if not one.is_complete]
+    unread = [one for one in made if _is_unread(one)]
     if unread:
         session.show([found for one in unread for found in session.findings(one)], settings)
         ctx.exit(2)
+    _refine(made)
     changes = compare(made[0].graph, made[1].graph, ignore)
     click.echo(_text(changes, form, made), nl=False, color=True)
     ctx.exit(1 if changes else 0)
@@ -69,6 +71,23 @@ def _read(path: Path, settings: "Settings") -> "Compilation":
     from sysmlc.cli import session
 
     return session.read_unit((path,), session.load_config([path], settings.config), settings)
+
+
+def _is_unread(made: "Compilation") -> bool:
+    """Whether an input gave nothing at all; what is wrong inside a file is no hindrance."""
+    read = {element.source.partition("!")[0] for element in made.graph}
+    return not made.is_complete and not (made.inputs and all(i.path in read for i in made.inputs))
+
+
+def _refine(made: "list[Compilation]") -> None:
+    """Add what overlays say, when both models have one: else the overlay were the difference."""
+    from sysmlc.diagnostics import Sink
+    from sysmlc.overlay import Refinement
+    from sysmlc.passes.overlay import Overlay
+
+    if all(one.graph.derived(Refinement) for one in made):
+        for one in made:
+            Overlay().run(one.graph, Sink())
 
 
 def _text(changes: "list[Change]", form: str, made: "list[Compilation]") -> str:

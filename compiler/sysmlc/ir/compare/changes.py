@@ -5,11 +5,11 @@ from collections.abc import Callable, Collection, Iterator
 
 from sysmlc.ir.compare.alike import by_likeness, by_move
 from sysmlc.ir.compare.change import Change, Ref, What
-from sysmlc.ir.compare.colours import by_choice, by_surroundings
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import Fact
 from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
 from sysmlc.ir.compare.side import Side
+from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
 from sysmlc.ir.compare.titles import exactly, title, whole, word
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph

@@ -1,130 +1,102 @@
-"""Pairs what has no name, or one that its neighbours have too, by what surrounds it.
+"""The colours of elements that are in no pair yet: equal colours, equal surroundings.
 
 Colour refinement (Weisfeiler and Leman): elements that say the same have the same colour; in every
-round the colours of their neighbours are mixed in. Pairs are made of the last round first.
+round the colours of their neighbours are mixed in.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 
 from sysmlc.ir.compare.facts import facts
 from sysmlc.ir.compare.pairs import Pairs, Token, fact_token
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 
-_ROUNDS = 4
+_ROUNDS = 12
 
-_Colours = dict[str, int]
-_Group = tuple[list[Element], list[Element]]
-
-
-def by_surroundings(pairs: Pairs) -> None:
-    """Pair what is the only one on each side, below one owner, that says what it says."""
-    groups = list(pairs.leftovers())
-    for old, new in _refined(pairs, groups):
-        for group in groups:
-            _pair(pairs, group, old, new, _single)
+Colours = dict[str, int]
+Group = tuple[list[Element], list[Element]]
+"""Unpaired elements of one owner, of the old and of the new model."""
 
 
-def by_choice(pairs: Pairs) -> None:
-    """Where several say the same, any may be chosen: of each owner only some, in order.
+class Refinement:
+    """The colours of the leftovers of one side.
 
-    What the others are paired with depends on that choice.
+    What lies below a leftover belongs to it: a flow from its pin is a flow from itself.
     """
-    groups = list(pairs.leftovers())
-    rounds = _refined(pairs, groups)
-    for group in groups:
-        any(_pair(pairs, group, old, new, _first) for old, new in rounds)
-
-
-def _refined(pairs: Pairs, groups: Sequence[_Group]) -> list[tuple[_Colours, _Colours]]:
-    """The colours of both sides after each round, the last one first."""
-    numbers: dict[Token, int] = {}
-    old = _Refinement(pairs, pairs.old, [one for left, _ in groups for one in left], numbers)
-    new = _Refinement(pairs, pairs.new, [one for _, right in groups for one in right], numbers)
-    rounds = [(old.colours, new.colours)]
-    for _ in range(_ROUNDS if groups else 0):
-        old.mix()
-        new.mix()
-        rounds.append((old.colours, new.colours))
-    return rounds[::-1]
-
-
-_Classes = list[tuple[list[Element], list[Element]]]
-
-
-def _single(classes: _Classes) -> _Classes:
-    return [(olds, news) for olds, news in classes if len(olds) == len(news) == 1]
-
-
-def _first(classes: _Classes) -> _Classes:
-    return classes[:1]
-
-
-def _pair(
-    pairs: Pairs,
-    group: _Group,
-    old: _Colours,
-    new: _Colours,
-    choose: Callable[[_Classes], _Classes],
-) -> int:
-    """Pair the chosen classes of one colour; how many pairs that makes."""
-    olds = _classes((one for one in group[0] if one.id not in pairs.new_of), old)
-    news = _classes((one for one in group[1] if one.id not in pairs.old_of), new)
-    both = [(found, news[colour]) for colour, found in olds.items() if colour in news]
-    made = [two for left, right in choose(both) for two in zip(left, right, strict=False)]
-    for one, other in made:
-        pairs.put(one, other)
-    return len(made)
-
-
-def _classes(elements: Iterable[Element], colours: _Colours) -> dict[int, list[Element]]:
-    found: dict[int, list[Element]] = {}
-    for one in elements:
-        found.setdefault(colours[one.id], []).append(one)
-    return found
-
-
-class _Refinement:
-    """The colours of the leftovers of one side."""
 
     def __init__(
         self, pairs: Pairs, side: Side, elements: list[Element], numbers: dict[Token, int]
     ) -> None:
         self._to_token = pairs.old_token if side is pairs.old else pairs.new_token
         self._side = side
-        self._inside = {one.id for one in elements}
-        self._elements = elements
         self._numbers = numbers
-        self.colours = {one.id: self._number(self._said(one)) for one in elements}
+        self._elements = elements
+        self._part_of = {part.id: one for one in elements for part in side.below(one)}
+        self.colours: Colours = {one.id: self._number(self._said(one)) for one in elements}
 
     def _said(self, element: Element) -> Token:
-        said = [repr(fact_token(fact, self._blind)) for fact in facts(self._side, element)]
-        inside = sorted(f"{one.kind} {one.name}" for one in self._side.children(element))
-        return (element.kind, element.name, tuple(sorted(said)), tuple(inside))
+        said = (self._number(fact_token(f, self._blind)) for f in facts(self._side, element))
+        inside = (self._number(self._said(one)) for one in self._side.children(element))
+        return (element.kind, element.name, tuple(sorted(said)), tuple(sorted(inside)))
 
     def _blind(self, element: Element) -> Token:
         """A token that is the same for all of a kind and name while partners are unknown."""
+        if element.id in self._side.hidden:
+            owner = self._side.visible(element)
+            return ("of", owner and self._blind(owner), element.kind, element.name)
         found = self._to_token(element)
-        is_known = isinstance(found, tuple) and found[0] in ("new", "outside", "of")
+        is_known = isinstance(found, tuple) and found[0] in ("new", "outside")
         return found if is_known else ("?", element.kind, element.name)
+
+    def count(self) -> int:
+        """How many colours there are."""
+        return len(set(self.colours.values()))
 
     def mix(self) -> None:
         """One more round."""
         self.colours = {
-            one.id: self._number((self.colours[one.id], *self._around(one)))
+            one.id: self._number((self.colours[one.id], *self._mixed(one)))
             for one in self._elements
         }
 
-    def _around(self, element: Element) -> tuple[Token, ...]:
-        edges = self._side.out.get(element.id, {})
-        out = sorted((str(e), self._colour(one)) for e, found in edges.items() for one in found)
-        into = self._side.into.get(element.id, ())
-        return (tuple(out), tuple(sorted((str(e), self._colour(one)) for e, one in into)))
+    def _mixed(self, element: Element) -> list[tuple[str, int]]:
+        return sorted((how, self._colour(one)) for how, one in self.around(element))
 
     def _colour(self, element: Element) -> int:
-        if element.id in self._inside:
-            return self.colours[element.id]
-        return self._number(self._blind(element))
+        known = self.colours.get(element.id)
+        return self._number(self._blind(element)) if known is None else known
+
+    def around(self, element: Element) -> list[tuple[str, Element]]:
+        """What leads from the element and to it, and how; leftovers for what lies in them."""
+        found = []
+        for part in self._side.below(element):
+            out = self._side.out.get(part.id, {})
+            found += [(f"{part.name} {edge} >", one) for edge, to in out.items() for one in to]
+            into = self._side.into.get(part.id, ())
+            found += [(f"{part.name} < {edge}", one) for edge, one in into]
+        return [(how, self._part_of.get(one.id, one)) for how, one in found]
 
     def _number(self, value: Token) -> int:
         return self._numbers.setdefault(value, len(self._numbers))
+
+
+class Refined:
+    """The colours of both sides after each round, the last round first."""
+
+    def __init__(self, pairs: Pairs, groups: Sequence[Group]) -> None:
+        numbers: dict[Token, int] = {}
+        left = [one for olds, _ in groups for one in olds]
+        right = [one for _, news in groups for one in news]
+        self.old = Refinement(pairs, pairs.old, left, numbers)
+        self.new = Refinement(pairs, pairs.new, right, numbers)
+        self.rounds = [(self.old.colours, self.new.colours)]
+        self._refine()
+        self.rounds.reverse()
+
+    def _refine(self) -> None:
+        known = 0
+        while known < self.old.count() and len(self.rounds) <= _ROUNDS:
+            known = self.old.count()
+            self.old.mix()
+            self.new.mix()
+            self.rounds.append((self.old.colours, self.new.colours))

@@ -3,7 +3,7 @@
 from random import Random
 
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.compare.content import ENDS, IN_ORDER, is_external
+from sysmlc.ir.compare.content import ENDS, IN_ORDER, WORDS, is_external
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.query import CLASSIFIERS
 
@@ -13,7 +13,10 @@ def reissued(graph: Graph, random: Random) -> Graph:
     ids = {element.id: f"_{random.getrandbits(96):024x}" for element in graph}
     made = Graph()
     for element in _shuffled(graph, random):
-        attrs = {name: _translated(value, ids) for name, value in element.attrs.items()}
+        attrs = {
+            name: value if name in WORDS else _translated(value, ids)
+            for name, value in element.attrs.items()
+        }
         owner = None if element.owner is None else ids[element.owner]
         copy = Element(ids[element.id], element.kind, element.name, owner, attrs=attrs)
         copy.source, copy.ordinal = "other.uml", random.randrange(10**6)
