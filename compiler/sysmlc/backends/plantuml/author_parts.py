@@ -30,6 +30,8 @@ class _Drawing:
     choice: Choice
     aliases: Aliases = field(default_factory=Aliases)
     paths: dict[_Ids, None] = field(default_factory=dict)
+    used: list[Connection] = field(default_factory=list)
+    """Connections that are drawn."""
 
     def view(self) -> InternalView:
         self.paths = paths(self.choice)
@@ -43,7 +45,8 @@ class _Drawing:
         )
         drawn = tuple(self._lines())
         has_ports = any(self._is_port(path) for path in self.paths)
-        return InternalView(frame, drawn, has_ports, tuple(ibd.guides(frame)))
+        domains = ibd.domains_of(self.used)
+        return InternalView(frame, drawn, has_ports, tuple(ibd.guides(frame, drawn)), domains)
 
     # -- parts ---------------------------------------------------------------------------------
 
@@ -65,7 +68,7 @@ class _Drawing:
         graph, part = self.choice.graph, self._element(path)
         words = (word for word in labels.applied(graph, part) if word not in _SAID)
         listed = list(self._listed(part))
-        rows = [label(labels.typed(graph, part)), *(_row(graph, one) for one in listed)]
+        rows = [*ibd.bold(labels.typed(graph, part)), *(_row(graph, one) for one in listed)]
         return PartView(
             self._alias(path),
             stack([small(plain(labels.guillemets(words))), *rows]),
@@ -127,6 +130,7 @@ class _Drawing:
             if not self.choice.ids.isdisjoint(one.shows):
                 source, target = self._end(prefix, one.source), self._end(prefix, one.target)
                 if source and target:
+                    self.used.append(one)
                     yield _line(source, target, one)
 
     def _end(self, prefix: _Ids, end: Path) -> str:
@@ -171,7 +175,7 @@ _CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
 
 def _line(source: str, target: str, one: Connection) -> Line:
     near, far = label(one.near), label(one.far)
-    return Line(source, one.arrow, target, keyword_label(one.label), near, far, one.shows)
+    return Line(source, one.arrow, target, one.text(), near, far, one.shows)
 
 
 def _is_typed(graph: Graph, part: Element, classifier: Element) -> bool:

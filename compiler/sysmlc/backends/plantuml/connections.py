@@ -4,7 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import allocated, labels
+from sysmlc.backends.plantuml.domains import coloured, styled
 from sysmlc.backends.plantuml.relations import conveyed
+from sysmlc.backends.plantuml.text import keyword_label, label, stack
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 
@@ -32,7 +34,10 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """One line of an internal block diagram; ``shows`` are the ids that it stands for."""
+    """One line of an internal block diagram; ``shows`` are the ids that it stands for.
+
+    ``carried`` are the items that flow over it, each with its domain or the empty text.
+    """
 
     source: Path
     target: Path
@@ -41,10 +46,16 @@ class Connection:
     near: str = ""
     far: str = ""
     shows: tuple[str, ...] = ()
+    carried: tuple[tuple[str, str], ...] = ()
 
     def tops(self) -> set[str]:
         """Ids of the parts of the frame's block that it connects."""
         return {end.top for end in (self.source, self.target) if end.top}
+
+    def text(self) -> str:
+        """What stands at the line, as PlantUML text."""
+        rows = [coloured(label(text), domain) for text, domain in self.carried]
+        return stack([keyword_label(self.label), *rows])
 
 
 def connections(graph: Graph, block: Element) -> list[Connection]:
@@ -75,19 +86,24 @@ def _line(graph: Graph, connector: Element, joined: list[tuple[Element, Path]]) 
     ways = [_way(graph, flow, first, second) for flow in flows]
     aims = {"→": _end_name(graph, second), "←": _end_name(graph, first)}
     rows = [
-        _row(conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1)
+        (_row(conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1), _domain(flow))
         for way, flow in zip(ways, flows, strict=True)
     ]
     ends = graph.targets(connector, Edge.END)
     return Connection(
         first,
         second,
-        _arrow(connector, ways),
-        "\n".join(row for row in (_name(graph, connector), *rows) if row),
+        styled(_arrow(connector, ways), _domain(connector)),
+        _name(graph, connector),
         labels.multiplicity(near),
         labels.multiplicity(far),
         (connector.id, *(end.id for end in ends), *(flow.id for flow in flows)),
+        tuple(row for row in rows if row[0]),
     )
+
+
+def _domain(relation: Element) -> str:
+    return str(relation.attrs.get("domain", ""))
 
 
 def _end_name(graph: Graph, path: Path) -> str:
@@ -138,15 +154,20 @@ def _name(graph: Graph, connector: Element) -> str:
 def _arrow(connector: Element, ways: list[str]) -> str:
     if connector.role == "binding connector":
         return "-[dashed]-"
-    tail = "<" if "←" in ways else ""
-    tip = ">" if "→" in ways else ""
+    tail = "<" if "←" in ways or "⇄" in ways else ""
+    tip = ">" if "→" in ways or "⇄" in ways else ""
     return f"{tail}--{tip}"
 
 
 def _way(graph: Graph, flow: Element, first: Path, second: Path) -> str:
-    """``→`` when the flow runs from the first end to the second, ``←`` back, else ``↔``."""
+    """``→`` when the flow runs from the first end to the second, ``←`` back, ``⇄`` both ways.
+
+    ``↔`` when that is not known.
+    """
     sources = {item.id for item in graph.targets(flow, Edge.FLOW_SOURCE)}
     targets = {item.id for item in graph.targets(flow, Edge.FLOW_TARGET)}
+    if len(sources) > 1 and sources == targets:
+        return "⇄"
     forward = _fits(graph, first, sources) + _fits(graph, second, targets)
     back = _fits(graph, second, sources) + _fits(graph, first, targets)
     if forward == back:
@@ -176,8 +197,10 @@ def _free_flows(graph: Graph, block: Element) -> Iterator[Connection]:
 
 
 def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:
-    text = f"«flow» {conveyed(graph, flow)}"
-    return Connection(_direct(source), _direct(target), "..>", text, shows=(flow.id,))
+    carried = ((conveyed(graph, flow), _domain(flow)),)
+    arrow = styled("..>", _domain(flow))
+    ends = (_direct(source), _direct(target))
+    return Connection(*ends, arrow, "«flow»", shows=(flow.id,), carried=carried)
 
 
 def _allocations(graph: Graph, block: Element) -> Iterator[Connection]:

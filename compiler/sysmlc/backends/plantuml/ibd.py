@@ -1,14 +1,17 @@
 """Internal block diagrams: one for each block with connectors or item flows between its parts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.connections import Connection, Path, connections
-from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
+from sysmlc.backends.plantuml.domains import in_order
+from sysmlc.backends.plantuml.sides import sides
+from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
 
 FORMS = {"in": "portin", "out": "portout"}
@@ -126,10 +129,12 @@ class _Drawing:
     connections: list[Connection]
     aliases: Aliases = field(default_factory=Aliases)
     has_ports: bool = False
+    sides: dict[tuple[str, ...], str] = field(default_factory=dict)
     instances: dict[tuple[str, ...], Element] = field(default_factory=dict)
     """Instances with the values of parts, by the parts that lead to them."""
 
     def __post_init__(self) -> None:
+        self.sides = sides(self.connections)
         waiting: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
         for path, owner in waiting:
             for inner in self.graph.owned(owner):
@@ -143,14 +148,15 @@ class _Drawing:
         slots = _slots(self.graph, self.block)
         frame = PartView(
             self.aliases.make("frame", self.block.name, "block"),
-            stack(_rows(slots)) or " ",
+            stack(_rows(self.graph, slots)) or " ",
             "frame",
             tuple(self._ports((), _classifier(self.graph, self.block))),
             parts,
             (self.block.id, *(slot.id for slot in slots)),
         )
         drawn = tuple(self._line(connection) for connection in self.connections)
-        return InternalView(frame, drawn, self.has_ports, tuple(guides(frame)))
+        hidden = tuple(guides(frame, drawn))
+        return InternalView(frame, drawn, self.has_ports, hidden, domains_of(self.connections))
 
     def _part(self, path: tuple[str, ...], part: Element) -> PartView:
         alias = self.aliases.make(_key(path), part.name, "part")
@@ -158,11 +164,11 @@ class _Drawing:
         type_ = self.graph.target(part, Edge.TYPED_BY)
         instance = self.instances.get(path)
         slots = [] if instance is None else _slots(self.graph, instance)
-        rows = _rows(slots)
+        rows = _rows(self.graph, slots)
         values = () if instance is None else (instance.id, *(slot.id for slot in slots))
         return PartView(
             alias,
-            stack([small(plain(self._words(part))), label(labels.typed(self.graph, part)), *rows]),
+            stack([small(plain(self._words(part))), *bold(labels.typed(self.graph, part)), *rows]),
             _style(part),
             tuple(self._ports(path, type_)),
             inner,
@@ -212,7 +218,7 @@ class _Drawing:
         shown = ".".join(labels.name(self.graph[id]) for id in key)
         alias = self.aliases.make(_key((*path, *key)), port.name, "port")
         text = shown if port.name.strip() else labels.typed(self.graph, port)
-        form = FORMS.get(self._direction(key), "port")
+        form = FORMS.get(self._direction(key)) or self.sides.get((*path, *key), "port")
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
         return PortView(alias, stack(rows), form, key)
 
@@ -228,7 +234,7 @@ class _Drawing:
             self._end(connection.source),
             connection.arrow,
             self._end(connection.target),
-            keyword_label(connection.label),
+            connection.text(),
             label(connection.near),
             label(connection.far),
             connection.shows,
@@ -243,26 +249,55 @@ def _slots(graph: Graph, instance: Element) -> list[Element]:
     return [one for one in graph.owned(instance) if one.kind is Kind.SLOT]
 
 
-def _rows(slots: list[Element]) -> list[str]:
+def _rows(graph: Graph, slots: list[Element]) -> list[str]:
     """What the slots say; what one says of a port stands in none of its rows."""
     told = [slot for slot in slots if "value" in slot.attrs]
-    return [small(plain(f"{slot.name} = {slot.attrs['value']}")) for slot in told]
+    return [small(plain(f"{one.name} = {one.attrs['value']}{_unit(graph, one)}")) for one in told]
 
 
-def guides(part: PartView) -> Iterator[Line]:
+def _unit(graph: Graph, slot: Element) -> str:
+    """The unit of what the slot gives a value to, behind the value."""
+    feature = graph.target(slot, Edge.INSTANCE_OF)
+    unit = None if feature is None else unit_of(graph, feature)
+    return "" if unit is None else f" {unit.attrs.get('symbol') or labels.name(unit)}"
+
+
+def bold(text: str) -> list[str]:
+    """The name of a part in escaped lines."""
+    return [f"**{row}**" for row in lines(text)]
+
+
+def domains_of(drawn: list[Connection]) -> tuple[str, ...]:
+    """Domains of what flows in the diagram."""
+    return in_order(domain for one in drawn for _, domain in one.carried)
+
+
+def guides(part: PartView, drawn: Sequence[Line]) -> Iterator[Line]:
     """Invisible lines that keep ports on the border: dot ranks what is inside between them.
 
-    PlantUML puts the ports of a side on one rank, so that the first of each side is enough.
+    PlantUML puts the ports of a side on one rank, so that the first of each side is enough. A
+    part that has a line to that side needs none; one more would only make lines cross.
     """
-    entry = next((port.alias for port in part.ports if port.form != "portout"), None)
-    exit_ = next((port.alias for port in part.ports if port.form == "portout"), None)
+    joined = {frozenset((line.source, line.target)) for line in drawn}
+    yield from _guides(part, joined)
+
+
+def _guides(part: PartView, joined: set[frozenset[str]]) -> Iterator[Line]:
+    left = [port.alias for port in part.ports if port.form != "portout"]
+    right = [port.alias for port in part.ports if port.form == "portout"]
     for inner in part.parts:
-        anchor = inner.ports[0].alias if inner.ports else inner.alias
-        if entry is not None:
-            yield Line(entry, "-[hidden]->", anchor)
-        if exit_ is not None:
-            yield Line(anchor, "-[hidden]---->", exit_)
-        yield from guides(inner)
+        into = next((port.alias for port in inner.ports if port.form != "portout"), inner.alias)
+        out = next((port.alias for port in inner.ports if port.form == "portout"), into)
+        own = [inner.alias, *(port.alias for port in inner.ports)]
+        if left and not _are_joined(left, own, joined):
+            yield Line(left[0], "-[hidden]->", into)
+        if right and not _are_joined(own, right, joined):
+            yield Line(out, "-[hidden]---->", right[0])
+        yield from _guides(inner, joined)
+
+
+def _are_joined(some: list[str], others: list[str], joined: set[frozenset[str]]) -> bool:
+    return any(frozenset((one, other)) in joined for one in some for other in others)
 
 
 def _key(path: tuple[str, ...]) -> str:

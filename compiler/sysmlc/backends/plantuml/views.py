@@ -116,6 +116,8 @@ class InternalView:
     lines: tuple[Line, ...]
     has_ports: bool
     guides: tuple[Line, ...] = ()
+    domains: tuple[str, ...] = ()
+    """``physical`` and ``information``, where something of the kind flows."""
 
 
 @dataclass(frozen=True, slots=True)
