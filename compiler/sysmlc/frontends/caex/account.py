@@ -12,7 +12,7 @@ from sysmlc.frontends.caex import measures, rules
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
-from sysmlc.frontends.caex.vocabulary import LIBRARIES, ORDER, STANDARD
+from sysmlc.frontends.caex.vocabulary import LIBRARIES, ORDER, ROLE_REFERENCES, STANDARD
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.encoding import codec
@@ -141,7 +141,8 @@ def _mark(context: Context, node: Node) -> None:
         names = {str(name) for name in known} if isinstance(known, tuple) else set()
         names.add(_EDGES.get(node.tag, Edge.SPECIALIZES).value)
         context.graph.set(holder, unresolved=tuple(sorted(names)))
-        if holder.id in (node.element, node.parent.element if node.parent else ""):
+        says = node.parent if node.tag in ROLE_REFERENCES else node
+        if says is not None and holder.id == says.element:
             context.keep_path(holder, node)
 
 
