@@ -81,7 +81,7 @@ def write_if_changed(target: Path, text: str) -> bool:
     return True
 
 
-def write(target: Path, data: bytes) -> None:
+def write(target: Path | str, data: bytes) -> None:
     """Make the file, or replace it, in one step: no reader sees half of it."""
     folder = os.path.dirname(target)  # noqa: PTH120
     temporary = os.path.join(folder, f".sysmlc-{token_hex(8)}")  # noqa: PTH118
@@ -90,7 +90,7 @@ def write(target: Path, data: bytes) -> None:
         with os.fdopen(handle, "wb") as stream:
             stream.write(data)
             os.chmod(handle, 0o644)  # noqa: PTH101
-        Path(temporary).replace(target)
+        os.replace(temporary, target)  # noqa: PTH105 - a Path for each file costs as much again
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise

@@ -27,7 +27,7 @@ def test_a_file_with_the_same_bytes_is_not_touched(tmp_path):
 def test_a_failing_write_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):
     target = tmp_path / "a.txt"
     write_if_changed(target, "old")
-    monkeypatch.setattr("pathlib.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
+    monkeypatch.setattr("os.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
     with pytest.raises(OSError, match="full"):
         write_if_changed(target, "new")
     assert target.read_text() == "old"

@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -48,6 +48,30 @@ def locate(
     return found
 
 
+def positions(sources: Iterable[Source], places: Sequence[Place]) -> list[tuple[int, int]]:
+    """Line and column of each place, in order; 0 where they are not known. Excerpts take longer."""
+    found = [(place.line, place.column) for place in places]
+    in_file: dict[str, list[int]] = {}
+    for index, place in enumerate(places):
+        in_file.setdefault(place.file, []).append(index)
+    for source in sources:
+        indexes = in_file.get(source.name, [])
+        ordinals = {places[index].ordinal for index in indexes if places[index].ordinal >= 0}
+        offsets = _offsets(source, ordinals)
+        spots = [(_offset(places[index], offsets), index) for index in indexes]
+        text = _Text(source)
+        for offset, index in sorted(spots):
+            if offset >= 0:
+                found[index] = text.position(offset)
+            elif places[index].line > 0:
+                found[index] = (places[index].line, max(places[index].column, 1))
+    return found
+
+
+def _offset(place: Place, offsets: Mapping[int, int]) -> int:
+    return offsets.get(place.ordinal, -1) if place.ordinal >= 0 else place.offset
+
+
 def _in_file(source: Source, places: Sequence[Place], with_xpath: bool) -> dict[Place, Location]:
     offsets = (_spots if with_xpath else _plain)(source, places)
     exact = [(offsets.get(place, (-1, ""))[0], place) for place in places]
@@ -60,8 +84,7 @@ def _in_file(source: Source, places: Sequence[Place], with_xpath: bool) -> dict[
 def _plain(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
     """Offsets of the places that can be found."""
     offsets = _offsets(source, {place.ordinal for place in places if place.ordinal >= 0})
-    found = ((p, offsets.get(p.ordinal, -1) if p.ordinal >= 0 else p.offset) for p in places)
-    return {place: (offset, "") for place, offset in found}
+    return {place: (_offset(place, offsets), "") for place in places}
 
 
 def _spots(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
@@ -115,12 +138,15 @@ class _Text:
 
     def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
+        return self._located(*self.position(offset), path)
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """Line and column of a byte."""
         if offset > self._offset:
             self._before += len(self._decode(self._data[self._offset : offset]))
             self._offset = offset
         line = bisect_right(self._starts, self._before)
-        column = self._before - self._starts[line - 1] + 1
-        return self._located(line, column, path)
+        return line, self._before - self._starts[line - 1] + 1
 
     def line(self, place: Place) -> Location:
         """Location of a place whose line is known already."""

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -37,9 +38,14 @@ class Plan:
         """Paths that ``apply`` would write or remove, sorted."""
         return sorted([*self.missing(), *self.stale])
 
+    def place(self, path: str) -> str:
+        """Where the file at the path is; a text, for there may be thousands."""
+        return os.path.join(self.folder, path)  # noqa: PTH118
+
     def _digest(self, path: str) -> str:
         try:
-            return hashlib.sha256((self.folder / path).read_bytes()).hexdigest()
+            with open(self.place(path), "rb", buffering=0) as stream:  # noqa: PTH123
+                return hashlib.sha256(stream.read()).hexdigest()
         except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
             return ""
 
@@ -66,7 +72,7 @@ def apply(plan: Plan) -> list[str]:
         removed = [_remove(plan.folder, path) for path in plan.stale]
         changed = plan.missing()
         for path in changed:
-            write(plan.folder / path, plan.text(path).encode("utf-8"))
+            write(plan.place(path), plan.text(path).encode("utf-8"))
         return removed + changed
     except OSError as problem:
         where = problem.filename or plan.folder

@@ -1,10 +1,10 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 from sysmlc.diagnostics import Place, Subject
+from sysmlc.diagnostics.locate import positions
 from sysmlc.driver.compilation import Compilation
-from sysmlc.driver.places import Locator
 from sysmlc.ir import Element, Graph
 from sysmlc.output import json_text
 
@@ -32,18 +32,23 @@ def trace_text(compilation: Compilation) -> str:
 
 def _elements(compilation: Compilation, ids: Iterable[str]) -> list[dict[str, object]]:
     graph = compilation.graph
-    known = [element for element in map(graph.get, ids) if element is not None]
     names: dict[str, str] = {}
-    subjects = {element.id: _subject(graph, element, names) for element in known}
-    places = Locator(compilation.sources)(s.place for s in subjects.values() if s.place)
+    found = (element for element in map(graph.get, ids) if element is not None)
+    known = sorted((_subject(graph, element, names) for element in found), key=_by_name)
+    standing = [subject.place for subject in known if subject.place]
+    lines = iter(positions(compilation.sources, standing))
     return [
         {
-            "id": id,
+            "id": subject.id,
             "qualified_name": subject.name,
-            "source": _source(subject.place, places) if subject.place else None,
+            "source": _source(subject.place.file, *next(lines)) if subject.place else None,
         }
-        for id, subject in sorted(subjects.items(), key=lambda pair: (pair[1].name, pair[0]))
+        for subject in known
     ]
+
+
+def _by_name(subject: Subject) -> tuple[str, str]:
+    return subject.name, subject.id
 
 
 def _subject(graph: Graph, element: Element, names: dict[str, str]) -> Subject:
@@ -55,17 +60,17 @@ def _subject(graph: Graph, element: Element, names: dict[str, str]) -> Subject:
 
 
 def _qualified_name(graph: Graph, element: Element, names: dict[str, str]) -> str:
-    owner = graph.owner(element)
-    above = "" if owner is None else names.get(owner.id)
-    if above is None and owner is not None:
-        names[owner.id] = above = graph.qualified_name(owner)
     own = element.name or f"<{element.kind}>"
-    return f"{above}::{own}" if owner is not None else own
+    if element.owner is None:
+        return own
+    above = names.get(element.owner)
+    if above is None:
+        names[element.owner] = above = graph.qualified_name(graph[element.owner])
+    return f"{above}::{own}"
 
 
-def _source(place: Place, places: Mapping[Place, Place]) -> dict[str, object]:
-    found = places.get(place, place)
-    return {"file": place.file, "line": found.line or None, "column": found.column or None}
+def _source(file: str, line: int, column: int) -> dict[str, object]:
+    return {"file": file, "line": line or None, "column": column or None}
 
 
 def as_text(value: object) -> str:
