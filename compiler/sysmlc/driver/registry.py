@@ -186,6 +186,8 @@ def _modules(package: str) -> Iterator[str]:
             raise
         return
     yield package
-    for found in pkgutil.walk_packages(getattr(folder, "__path__", ()), f"{package}."):
+    # What cannot be imported is given all the same: who imports it finds out.
+    paths, ignore = getattr(folder, "__path__", ()), lambda _: None
+    for found in pkgutil.walk_packages(paths, f"{package}.", onerror=ignore):
         if not found.name.endswith("__main__"):
             yield found.name
