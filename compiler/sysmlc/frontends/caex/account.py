@@ -66,10 +66,17 @@ def _count(document: Document, counts: FileCoverage) -> None:
 
 def _unordered(document: Document) -> list[int]:
     """Rows with a child that stands after one that the schema has behind it."""
-    ranks = [ORDER.get(tag, -1) for tag in document.tags]
+    tags, ends, parents = document.tags, document.ends, document.parents
+    if ORDER.keys() >= set(tags[1:]):
+        following = [*tags, ""]
+        pairs = list(zip(tags, map(following.__getitem__, ends), strict=True))
+        wrong = {p for p in set(pairs) if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
+        rows = (row for row, pair in enumerate(pairs) if pair in wrong)
+        return sorted({parents[row] for row in rows if parents[ends[row]] == parents[row]})
+    ranks = [ORDER.get(tag, -1) for tag in tags]
     highest: dict[int, int] = {}
     found: dict[int, None] = {}
-    for parent, rank in zip(document.parents, ranks, strict=True):
+    for parent, rank in zip(parents, ranks, strict=True):
         if rank < 0:
             continue
         if rank < highest.get(parent, -1):

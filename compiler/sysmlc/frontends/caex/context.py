@@ -194,12 +194,7 @@ class Context:
             self._report_anonymous(document)
 
     def _report_anonymous(self, document: Document) -> None:
-        rows = zip(document.tags, document.attributes, strict=True)
-        without = [
-            row
-            for row, (tag, values) in enumerate(rows)
-            if tag == "InternalElement" and not values.get("ID")
-        ]
+        without = self.ids.without(document, "InternalElement")
         if without:
             first, others = document.node(without[0]), len(without) - 1
             more = f", nor have {others} more elements of the file" if others else ""

@@ -6,6 +6,9 @@ from sysmlc.diagnostics import Place, Verdict
 from sysmlc.frontends.caex.columns import FOLDED, fill
 from sysmlc.sources import Source, SourceError
 
+_FORMS = ("utf-8", "utf-16-le", "utf-16-be")
+"""How ASCII looks in the encodings that expat reads."""
+
 
 class Node:
     """One row of a document. There is one node for each row that was asked for.
@@ -109,7 +112,8 @@ class Document:
     ``tags`` are local names; ``ends[row]`` is the first row after the row's content;
     ``ordinals`` are places among all elements of the file. ``texts`` holds by tag the texts of
     folded children, and under the empty name the row's own, for the rows that have some.
-    ``elements`` are ids of what the rows became in the graph.
+    ``has_changes`` tells whether some row may have a ChangeMode. ``elements`` are ids of what
+    the rows became in the graph.
     """
 
     __slots__ = (
@@ -117,6 +121,7 @@ class Document:
         "attributes",
         "elements",
         "ends",
+        "has_changes",
         "is_built_in",
         "name",
         "ordinals",
@@ -137,6 +142,7 @@ class Document:
         self.texts: dict[str, dict[int, str]] = {tag: {} for tag in ("", *FOLDED)}
         self.verdicts: list[Verdict | None] = []
         self.elements: list[str] = []
+        self.has_changes = True
         self._nodes: dict[int, Node] = {}
 
     @property
@@ -182,6 +188,7 @@ def read(source: Source, is_built_in: bool = False) -> Document:
     if document.tags[0] != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
     rows = len(document.tags)
+    document.has_changes = any("ChangeMode".encode(form) in source.data for form in _FORMS)
     document.verdicts = [None] * rows
     document.elements = [""] * rows
     return document

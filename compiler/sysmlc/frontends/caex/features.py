@@ -1,15 +1,13 @@
 """Attributes and external interfaces: value properties and ports of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import constraints, documents, measures, mirrors, special
+from sysmlc.frontends.caex import constraints, documents, measures, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import DIRECTIONS, Family, value_of
-from sysmlc.ir import AttrValue, Edge, Element, Kind
-
-_CARDINALITY = ("MinOccur", "MaxOccur")
+from sysmlc.frontends.caex.vocabulary import Family, value_of
+from sysmlc.ir import Edge, Element, Kind
 
 
 def lower_own(context: Context, type: Type) -> None:
@@ -139,7 +137,7 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     element = context.add(Kind.PORT, node, document, owner.id)
     declared = interface_class(context, node, document)
     _redefine(context, owner, node, element)
-    said = port_attributes(node)
+    said = ports.said_of(node)
     element.attrs.update(said)
     for child in node.of("Attribute"):
         mark(child)
@@ -181,42 +179,3 @@ def _own_interface(
     block = Element(f"{element.id}#type", Kind.CLASS, node.name, owner.id)
     block.attrs.update(role="interface block", subkind="external-interface")
     return _own_type(context, block, Type(block.id, document, node.row, Family.INTERFACE), declared)
-
-
-def port_attributes(node: Node) -> dict[str, AttrValue]:
-    """What the attributes of an interface say: direction, cardinality, category, values."""
-    said: dict[str, AttrValue] = {}
-    for child in node.of("Attribute"):
-        _tell(said, child)
-    return said
-
-
-def _tell(said: dict[str, AttrValue], node: Node) -> None:
-    value = node.text("Value") or node.text("DefaultValue") or ""
-    if node.name == "Direction" and value.strip().lower() in DIRECTIONS:
-        said["direction"] = DIRECTIONS[value.strip().lower()]
-    elif node.name == "Cardinality":
-        _cardinality(said, node)
-    elif node.name == "Category" and value:
-        said["category"] = value
-    else:
-        _values(said, node)
-
-
-def _cardinality(said: dict[str, AttrValue], node: Node) -> None:
-    found = {child.name: (child.text("Value") or "").strip() for child in node.of("Attribute")}
-    lower, upper = (found.get(name) or "" for name in _CARDINALITY)
-    if lower or upper:
-        bounds = (lower or "0", upper or "*")
-        said["multiplicity"] = bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
-
-
-def _values(said: dict[str, AttrValue], top: Node) -> None:
-    waiting = [(top, f"value.{top.name}")]
-    while waiting:
-        node, key = waiting.pop()
-        value = node.text("Value")
-        value = node.text("DefaultValue") if value is None else value
-        if value is not None:
-            said[key] = value_of(value, node.attributes.get("AttributeDataType", ""))
-        waiting += [(child, f"{key}.{child.name}") for child in node.of("Attribute")]

@@ -22,12 +22,13 @@ class Identifiers:
         self._repeated: dict[str, list[int]] = {}
         self._plain: dict[str, int] | None = None
         self._paths: bool | None = None
-        self._know([v.get("ID") or "" for one in documents for v in one.attributes])
+        written = [values.get("ID") for one in documents for values in one.attributes]
+        self._without = [number for number, id in enumerate(written) if not id]
+        self._know(written)
 
-    def _know(self, written: list[str]) -> None:
-        numbers = dict(zip(written, range(len(written)), strict=True))
-        numbers.pop("", None)
-        if len(numbers) < len(written) - written.count(""):
+    def _know(self, written: list[str | None]) -> None:
+        numbers = {id: n for n, id in enumerate(written) if id}
+        if len(numbers) < len(written) - len(self._without):
             numbers = {}
             for number, id in enumerate(written):
                 if id and numbers.setdefault(id, number) != number:
@@ -46,6 +47,12 @@ class Identifiers:
         """Each ID that several elements have, with these."""
         for id, numbers in self._repeated.items():
             yield id, list(map(self._place, numbers))
+
+    def without(self, document: Document, tag: str) -> list[int]:
+        """Rows of a file with this tag that have no ID."""
+        start, tags = self._starts[self._documents.index(document)], document.tags
+        rows = (number - start for number in self._without)
+        return [row for row in rows if 0 <= row < len(tags) and tags[row] == tag]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:
         """The node with the ID: literally, else without regard to braces, case and alias.

@@ -23,6 +23,7 @@ class Links:
         self._drawn: set[_Key] = set()
         self._drawing: set[str] = set()
         """Ids of the classes with links of their own."""
+        self._steps: dict[Site, list[Element | None]] = {}
         self._edges: list[Edge] = []
         self._from: list[str] = []
         self._to: list[Element | None] = []
@@ -85,8 +86,7 @@ class Links:
         if crosses and owner is not None:
             owner = self._context.graph[owner].owner
         connector = self._context.add_at(Kind.CONNECTOR, document, row, owner)
-        for side, end in zip(SIDES, ends, strict=True):
-            self._add_end(connector, side, end, crosses)
+        self._add_ends(connector, ends, crosses)
         self._note(top, owner, ends)
 
     def _note(self, top: Site, owner: str | None, ends: list[End]) -> None:
@@ -95,26 +95,38 @@ class Links:
             self._drawn.add((owner, _key(ends, top)))
             self._drawing.add(owner)
 
-    def _add_end(self, connector: Element, side: str, end: End, crosses: bool) -> None:
+    def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
         graph, above = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
-        id = f"{above}#{side}"
-        made = graph.new(id, Kind.CONNECTOR_END, "", above, ordinal, source)
-        if made is None:
-            id = f"{id}~{ordinal}"
-            made = graph.add(Element(id, Kind.CONNECTOR_END, "", above, ordinal, source))
-        self._draw(Edge.END, above, made)
-        self._draw(Edge.ROLE, id, graph[end.port])
-        root = end.site.root
-        if crosses and root.instance:
-            self._draw(Edge.PATH, id, graph[root.instance])
-        for part in end.site.parts_below(root):
-            self._draw(Edge.PATH, id, graph[part])
+        edge, start, target = self._edges.append, self._from.append, self._to.append
+        for side, (port, site) in zip(SIDES, ends, strict=True):
+            id = f"{above}#{side}"
+            made = graph.new(id, Kind.CONNECTOR_END, "", above, ordinal, source)
+            if made is None:
+                id = f"{id}~{ordinal}"
+                made = graph.add(Element(id, Kind.CONNECTOR_END, "", above, ordinal, source))
+            edge(Edge.END)
+            start(above)
+            target(made)
+            edge(Edge.ROLE)
+            start(id)
+            target(graph[port])
+            for step in self._steps_to(site)[0 if crosses else 1 :]:
+                edge(Edge.PATH)
+                start(id)
+                target(step)
 
-    def _draw(self, edge: Edge, source: str, target: Element) -> None:
-        self._edges.append(edge)
-        self._from.append(source)
-        self._to.append(target)
+    def _steps_to(self, site: Site) -> list[Element | None]:
+        """The Instance at the top (if any), and the parts that lead down to an element."""
+        known = self._steps.get(site)
+        if known is None:
+            graph = self._context.graph
+            if site.parent is None:
+                known = [graph.get(site.instance)]
+            else:
+                known = [*self._steps_to(site.parent), graph.get(site.part)]
+            self._steps[site] = known
+        return known
 
     def _relation(
         self, node: Node, document: Document, holder: Site, ends: list[End], meaning: str

@@ -1,7 +1,7 @@
 """Attributes and interfaces of internal elements: those of their class, and new ones."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, features, special
+from sysmlc.frontends.caex import documents, features, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
@@ -134,7 +134,7 @@ def _interface(context: Context, site: Site, node: Node) -> None:
 
 def _port_values(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
     """A slot for what the attributes of an interface say here and not in the class."""
-    said = features.port_attributes(node)
+    said = ports.said_of(node)
     of_class = context.graph[known.id].attrs
     new = {key: value for key, value in said.items() if of_class.get(key) != value}
     for child in node.of("Attribute"):

@@ -42,7 +42,8 @@ def _holders(document: Document) -> list[int]:
     """Rows that something is said about: few of a large file."""
     tags, parents = document.tags, document.parents
     rows = {parents[row] for row, tag in enumerate(tags) if tag in _SAID}
-    rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
+    if document.has_changes:
+        rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
     rows.update(document.texts["Description"], document.texts["Version"])
     return sorted(rows)
 

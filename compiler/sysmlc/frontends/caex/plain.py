@@ -5,13 +5,15 @@ all attributes that state the same. Other features go the general way (``feature
 gives the same result for every row.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
-from sysmlc.frontends.caex import measures, mirrors, special
+from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex import measures, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
-from sysmlc.frontends.caex.vocabulary import Family, value_of
+from sysmlc.frontends.caex.vocabulary import Family, reader_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _Stated = tuple[str, str, str]
@@ -25,6 +27,7 @@ class _Shape(NamedTuple):
     target: Element | None
     """What types them; None where it is a primitive of UML."""
     attrs: dict[str, AttrValue]
+    read: Callable[[str], AttrValue] | None
 
 
 class _PortShape(NamedTuple):
@@ -70,7 +73,7 @@ class Plain:
         made.attrs = shape.attrs.copy()
         text = texts["Value"].get(row)
         if text:
-            made.attrs["default"] = value_of(text, stated[0])
+            made.attrs["default"] = text if shape.read is None else shape.read(text)
         if shape.target is not None:
             self._sources.append(id)
             self._targets.append(shape.target)
@@ -90,7 +93,7 @@ class Plain:
                 attrs["data_type"] = data_type
             measures.multiply(attrs, declared)
             target = measures.target(context, document.node(row), document, declared, attrs)
-            shape = _Shape(declared, target, attrs)
+            shape = _Shape(declared, target, attrs, reader_of(data_type))
         self._shapes[stated] = shape
         return shape
 
@@ -106,7 +109,7 @@ class Plain:
     def interface(self, owner: Type, row: int) -> bool:
         """Add an interface of a class; False when it is not plain."""
         document, context = self._document, self._context
-        if document.ends[row] > row + 1:
+        if not self._has_only_attributes(row):
             return False
         values = document.attributes[row]
         name, path = values.get("Name", ""), values.get("RefBaseClassPath", "")
@@ -120,7 +123,18 @@ class Plain:
             self._sources.append(made.id)
             self._targets.append(shape.target)
         owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
+        inside = document.ends[row] - row - 1
+        if inside:
+            made.attrs = ports.said_of(document.node(row))
+            document.verdicts[row + 1 : row + 1 + inside] = [Verdict.MAPPED] * inside
         return True
+
+    def _has_only_attributes(self, row: int) -> bool:
+        document = self._document
+        if document.ends[row] == row + 1:
+            return True
+        tags = document.tags
+        return all(tags[child] == "Attribute" for child in document.children(row))
 
     def _port(self, path: str) -> _PortShape | None:
         declared = self._declared(path.strip(), Family.INTERFACE)

@@ -1,7 +1,7 @@
 """Roles: what a class or an internal element realises (thesis, Table 3.1)."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import features, special
+from sysmlc.frontends.caex import ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
@@ -77,7 +77,7 @@ class _Played:
 def _be_port(context: Context, site: Site, role: Type) -> None:
     """A port object of CAEX 2.15 (role Port): a part that says what an interface Port says."""
     if site.part and not site.is_known and role.conforms(*BASE_ROLE, "Port"):
-        told = features.port_attributes(site.node)
+        told = ports.said_of(site.node)
         kept = {key: told[key] for key in PORT_ATTRIBUTES if key in told}
         context.graph.set(context.graph[site.part], subkind="port-object", **kept)
 

@@ -1,8 +1,8 @@
 """The way that most rows of a plant go: what an instance says again of what its class says.
 
-An attribute or interface without anything inside, and without more to say than a value, needs
-a look into the table of its class and perhaps a slot. Everything else goes the general way
-(``members``), which gives the same result for every row.
+An attribute or interface without more to say than values needs a look into the table of its
+class and perhaps a slot. Everything else goes the general way (``members``), which gives the
+same result for every row.
 """
 
 from sysmlc.diagnostics import Verdict
@@ -14,7 +14,7 @@ from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import reader_of
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _Stated = tuple[str | None, ...]
 
@@ -22,18 +22,27 @@ _Stated = tuple[str | None, ...]
 class _Known:
     """An attribute of a class, and how instances repeat it."""
 
-    __slots__ = ("alike", "element", "member", "read", "template", "text")
+    __slots__ = ("_inner", "alike", "element", "member", "read", "template", "text")
 
-    def __init__(self, member: Member, element: Element) -> None:
+    def __init__(self, context: Context, member: Member) -> None:
         node = member.node
         self.member = member
-        self.element = element
+        self.element = context.graph[member.id]
         self.text = node.text("Value")
         self.read = reader_of(node.attributes.get("AttributeDataType", ""))
-        self.template: dict[str, str] = {}
+        self.template: dict[str, str] | None = None
         """Attributes of the last row that said the same: nearly all rows have equal ones."""
         self.alike: set[_Stated] = set()
         """What rows stated that said no more than the class."""
+        self._inner: dict[str, _Known | None] = {}
+
+    def inner(self, context: Context, name: str) -> "_Known | None":
+        """The attribute of that name in it."""
+        if name not in self._inner:
+            type = self.member.type
+            found = type.find("Attribute", name) if type is not None else None
+            self._inner[name] = None if found is None else _Known(context, found)
+        return self._inner[name]
 
 
 class _Plan:
@@ -47,7 +56,7 @@ class _Plan:
         for one in reversed(list(type.chain())) if type is not None else ():
             for (tag, name), member in one.members.items():
                 if tag == "Attribute":
-                    self.attributes[name] = _Known(member, context.graph[member.id])
+                    self.attributes[name] = _Known(context, member)
                 elif tag == "ExternalInterface":
                     self.interfaces[name] = member.id
 
@@ -58,45 +67,52 @@ class Swift:
     def __init__(self, context: Context, document: Document) -> None:
         self._context = context
         self._document = document
-        self._plans: dict[Type | None, _Plan] = {}
         self._plain = context.plain[document]
+        self._plans: dict[Type | None, _Plan] = {}
+        texts = document.texts
+        self._odd = texts["DefaultValue"].keys() | texts["Description"].keys()
+        """Rows that say something beside their value."""
+        self._edges: list[Edge] = []
         self._slots: list[str] = []
         self._features: list[Element | None] = []
 
     def lower(self, site: Site) -> None:
         """The members of an internal element."""
         declared, document, context = site.declared, self._document, self._context
-        plan = self._plan(declared)
-        tags, ends, attributes = document.tags, document.ends, document.attributes
-        for row in site.members:
-            tag, name = tags[row], attributes[row].get("Name", "")
-            if ends[row] > row + 1 or not (
-                (tag == "Attribute" and self._attribute(site, row, name, plan))
-                or (tag == "ExternalInterface" and self._interface(site, row, name, plan))
-            ):
-                members.lower_one(context, site, document.node(row))
-
-    def _plan(self, declared: Type | None) -> _Plan:
         plan = self._plans.get(declared)
         if plan is None:
-            plan = self._plans[declared] = _Plan(self._context, declared)
-        return plan
+            plan = self._plans[declared] = _Plan(context, declared)
+        tags, attributes, verdicts = document.tags, document.attributes, document.verdicts
+        known_attributes, ends = plan.attributes, document.ends
+        values_of, odd = document.texts["Value"], self._odd
+        for row in site.members:
+            tag, values = tags[row], attributes[row]
+            name = values.get("Name", "")
+            is_read = False
+            if tag == "Attribute":
+                known = known_attributes.get(name)
+                if known is None:
+                    is_read = self._plain.attribute(site.own or own(context, site), row)
+                elif ends[row] > row + 1:
+                    is_read = self._structure(site, row, known)
+                elif (values == known.template and row not in odd) or self._repeats(row, known):
+                    is_read = True
+                    verdicts[row] = Verdict.MAPPED
+                    text = values_of.get(row)
+                    if text is not None and text != known.text:
+                        self._slot(site, row, name, known, text)
+            elif tag == "ExternalInterface":
+                is_read = self._interface(site, row, plan.interfaces.get(name))
+            if not is_read:
+                members.lower_one(context, site, document.node(row))
 
-    def _attribute(self, site: Site, row: int, name: str, plan: _Plan) -> bool:
-        known = plan.attributes.get(name)
-        if known is None:
-            return self._plain.attribute(site.own or own(self._context, site), row)
-        if not self._repeats(row, known):
-            return False
-        self._document.verdicts[row] = Verdict.MAPPED
-        self._value(site, row, name, known)
-        return True
-
-    def _interface(self, site: Site, row: int, name: str, plan: _Plan) -> bool:
-        port = plan.interfaces.get(name)
+    def _interface(self, site: Site, row: int, port: str | None) -> bool:
+        """An interface: the port that the class has, or a new one; False when more is said."""
         document = self._document
         if port is None:
             return self._plain.interface(site.own or own(self._context, site), row)
+        if document.ends[row] > row + 1:
+            return False
         document.verdicts[row] = Verdict.MAPPED
         document.elements[row] = port
         id = document.attributes[row].get("ID")
@@ -105,14 +121,11 @@ class Swift:
         return True
 
     def _repeats(self, row: int, known: _Known) -> bool:
-        """Whether a row without rows inside says what the class says, but for its value."""
-        document = self._document
-        values, texts = document.attributes[row], document.texts
-        if row in texts["DefaultValue"] or row in texts["Description"]:
+        """Whether a row says what the class says, but for its value and rows inside."""
+        if row in self._odd:
             return False
-        if values == known.template:
-            document.attributes[row] = known.template
-            return True
+        document = self._document
+        values = document.attributes[row]
         stated = (
             values.get("Unit"),
             values.get("AttributeDataType"),
@@ -127,31 +140,57 @@ class Swift:
             known.template = values
         return True
 
-    def _value(self, site: Site, row: int, name: str, known: _Known) -> None:
-        """A slot for the value, unless it is the one that the class gives."""
+    def _structure(self, site: Site, top: int, known: _Known) -> bool:
+        """An attribute with attributes; False when there is more to it."""
         document = self._document
-        text = document.texts["Value"].get(row)
-        if text is None or text == known.text:
-            return
-        owner = site.instance or instance(self._context, site)
-        id = f"{owner}/{name or 'Attribute'}"
+        tags, attributes = document.tags, document.attributes
+        waiting: list[tuple[int, _Known, tuple[Element, ...]]] = [(top, known, ())]
+        found = []
+        while waiting:
+            row, one, path = waiting.pop()
+            if not self._repeats(row, one):
+                return False
+            found.append((row, one, path))
+            for child in document.children(row):
+                name = attributes[child].get("Name", "")
+                inner = one.inner(self._context, name) if tags[child] == "Attribute" else None
+                if inner is None:
+                    return False
+                waiting.append((child, inner, (*path, one.element)))
+        for row, one, path in found:
+            document.verdicts[row] = Verdict.MAPPED
+            text = document.texts["Value"].get(row)
+            if text is not None and text != one.text:
+                id = self._slot(site, row, attributes[row].get("Name", ""), one, text)
+                for outer in path:
+                    self._edges.append(Edge.PATH)
+                    self._slots.append(id)
+                    self._features.append(outer)
+        return True
+
+    def _slot(self, site: Site, row: int, name: str, known: _Known, text: str) -> str:
+        """A slot for a value that the class does not give."""
+        document, context = self._document, self._context
+        owner = site.instance or instance(context, site)
+        value: AttrValue = text if known.read is None else known.read(text)
         slot = None
         if not document.attributes[row].get("ID"):
-            new = self._context.graph.new
-            slot = new(id, Kind.SLOT, name, owner, document.ordinals[row], document.name)
-        value = text if known.read is None else known.read(text)
+            id = f"{owner}/{name or 'Attribute'}"
+            ordinal = document.ordinals[row]
+            slot = context.graph.new(id, Kind.SLOT, name, owner, ordinal, document.name)
         if slot is None:
-            node = document.node(row)
-            slot = self._context.add(Kind.SLOT, node, document, owner, value=value)
-        elif value != "":
+            slot = context.add_at(Kind.SLOT, document, row, owner)
+            id = slot.id
+        if value != "":
             slot.attrs = {"value": value}
-        document.elements[row] = slot.id
-        self._slots.append(slot.id)
+        document.elements[row] = id
+        self._edges.append(Edge.INSTANCE_OF)
+        self._slots.append(id)
         self._features.append(known.element)
+        return id
 
     def finish(self) -> None:
         """Tie the slots to the attributes that they have the values of."""
-        edges = [Edge.INSTANCE_OF] * len(self._slots)
-        self._context.graph.connect_all(edges, self._slots, self._features)
-        self._slots.clear()
-        self._features.clear()
+        self._context.graph.connect_all(self._edges, self._slots, self._features)
+        for column in (self._edges, self._slots, self._features):
+            column.clear()
