@@ -21,6 +21,7 @@ def generally(monkeypatch, *sources):
     """What comes out when no row and no application has a short cut."""
     with monkeypatch.context() as patch:
         patch.setattr(swift, "plan_of", lambda *_: None)
+        patch.setattr(swift, "reader_of", lambda *_: None)
         patch.setattr(applications, "_plain_bases", lambda *_: {})
         return everything(*sources)
 
@@ -58,7 +59,8 @@ ODDITIES = """
 </packagedElement>
 <packagedElement xmi:type="uml:Activity" xmi:id="y" name="Y" node="n" partition="z">
   <group xmi:type="uml:ActivityPartition" xmi:id="z" node="n n2"/>
-  <node xmi:type="uml:OpaqueAction" xmi:id="n" inPartition="z"/>
+  <node xmi:type="uml:OpaqueAction" xmi:id="n" inPartition="z" incoming="e nowhere"/>
+  <edge xmi:type="uml:ControlFlow" xmi:id="e" source="n" target="n n2" guard="k"/>
   <node xmi:type="uml:ValueSpecificationAction" xmi:id="n2">
     <value xmi:id="v" value="1"/>
   </node>

@@ -20,9 +20,9 @@ _MADE_BY_TOOLS = re.compile(
 def read(context: Context, element: Element, row: int) -> None:
     """Put what the application in the row says into the element, as attributes ``tag.<name>``."""
     document = context.document
-    for name, value in document.attributes[row].items():
+    for name, written in document.attributes[row].items():
         if "}" not in name and not name.startswith(_NOT_TAGS):
-            element.attrs[f"tag.{name}"] = _tag(context, element, row, name, value)
+            element.attrs[f"tag.{name}"] = value(context, element, row, name, written)
     if document.ends[row] == row + 1:
         return
     collected: dict[str, list[AttrValue]] = {}
@@ -34,19 +34,20 @@ def read(context: Context, element: Element, row: int) -> None:
         element.attrs[f"tag.{feature}"] = values[0] if len(values) == 1 else tuple(values)
 
 
-def _tag(context: Context, element: Element, row: int, name: str, value: str) -> AttrValue:
-    tokens = value.split()
-    if value[:1] == "{":
-        return id_of(context, value) or value
+def value(context: Context, element: Element, row: int, name: str, written: str) -> AttrValue:
+    """What an attribute of an application says: a text, or ids of the elements that it names."""
+    tokens = written.split()
+    if written[:1] == "{":
+        return id_of(context, written) or written
     ids = context.document.ids
     if len(tokens) == 1 and tokens[0] not in ids and not _MADE_BY_TOOLS.fullmatch(tokens[0]):
-        return value
+        return written
     if all(token in ids for token in tokens):
         known = tokens
     else:
         known = _existing(context, element, row, name, tokens)
     found = [_meant(context, token) for token in known]
-    return value if not found else found[0] if len(tokens) == 1 else tuple(found)
+    return written if not found else found[0] if len(tokens) == 1 else tuple(found)
 
 
 def _existing(
@@ -85,8 +86,9 @@ def _is_known(context: Context, id: str) -> bool:
 def _meant(context: Context, id: str) -> AttrValue:
     """Id of the element that a local id means; what a value specification says is its value."""
     row = context.document.ids.get(id, -1)
-    is_own = row < 0 or context.lowered.own[row]
-    if not is_own and context.document.types[row] in metaclasses.VALUE_TYPES:
+    if row >= 0 and context.lowered.own[row] is not None:
+        return context.gids[row]
+    if row >= 0 and context.document.types[row] in metaclasses.VALUE_TYPES:
         return value_of(context.document, row).value
     return context.unit.target_id(context.lowered, id, False) or id
 

@@ -176,7 +176,7 @@ def _event(document: Document, row: int) -> Event:
 
 def _event_details(context: Context, element: Element, holder: Lowered, event: Event) -> None:
     for feature, target, at, is_href in event.types:
-        context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
+        context.link_from(holder, Edge.TYPED_BY, element, target, at, feature, is_href)
     for key, value in event.conditions:
         _condition(element, key, value)
         if key == "when" and event.is_relative:
@@ -207,14 +207,22 @@ def references(document: Document, row: int, feature: str) -> list[tuple[str, in
 
 
 def _target(unit: Unit, lowered: Lowered, row: int, feature: str) -> tuple[Lowered, int] | None:
-    for target, _, is_href in references(lowered.document, row, feature):
+    document = lowered.document
+    if feature not in document.referring:
+        at = document.ids.get(document.attributes[row].get(feature, ""))
+        if at is not None:
+            return lowered, at
+    for target, _, is_href in references(document, row, feature):
         return unit.find(lowered, target, is_href)
     return None
 
 
 def _transition_guard(context: Context, element: Element, target: str, row: int) -> None:
-    id = context.unit.target_id(context.lowered, target, False)
-    constraint = context.graph.get(id)
+    at = context.document.ids.get(target)
+    constraint = None if at is None else context.lowered.own[at]
+    if constraint is None:
+        id = context.unit.target_id(context.lowered, target, False)
+        constraint = context.graph.get(id)
     if constraint is None:
         context.link(Edge.GUARD, element.id, target, row, "guard")
         return

@@ -7,12 +7,13 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.dangling import Loose
+from sysmlc.frontends.xmi.dangling import Loose, Names
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
 from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
+from sysmlc.ir.reference import End, id_of
 from sysmlc.sources import DEFAULT_LIMITS
 
 Completion = Callable[["Context", Element, int], None]
@@ -61,6 +62,8 @@ class Context:
         self.lost: dict[int, str] = {}
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
+        self.naming: dict[Names, list[bool]] = {}
+        """Which shapes can name an element, by the names that count for some reader."""
         self.flow_targets: frozenset[str] | None = None
         self.computed: set[str] = set()
         """Elements with a bound that is an expression."""
@@ -80,7 +83,9 @@ class Context:
     def owner(self, row: int) -> Element | None:
         """Element of the nearest row above that has one."""
         parent = self.document.parents[row]
-        return self.graph.get(self.gids[parent]) if parent >= 0 else None
+        if parent < 0:
+            return None
+        return self.lowered.own[parent] or self.graph.get(self.gids[parent])
 
     def subtree(self, row: int, verdict: Verdict) -> int:
         """Give the row and all its content one verdict; return the row after."""
@@ -265,7 +270,7 @@ class Context:
     def link(
         self,
         edge: Edge,
-        source: str,
+        source: End,
         target: str,
         row: int,
         feature: str,
@@ -279,7 +284,7 @@ class Context:
         self,
         holder: Lowered,
         edge: Edge,
-        source: str,
+        source: End,
         target: str,
         row: int,
         feature: str,
@@ -292,22 +297,44 @@ class Context:
         self,
         holder: Lowered,
         edge: Edge,
-        source: str,
+        source: End,
         target: str,
         row: int,
         feature: str,
         is_href: bool,
         is_reversed: bool,
     ) -> None:
-        links = self.unit.links
+        links, document = self.unit.links, holder.document
         links.begin(holder)
-        element = self.graph.get(source)
-        if is_href or element is None or element.source != holder.document.name:
-            links.append(Link(edge, source, holder, target, row, feature, is_href, is_reversed))
+        element = self.graph.get(source) if isinstance(source, str) else source
+        if is_href or element is None or element.source != document.name:
+            id = id_of(source)
+            links.append(Link(edge, id, holder, target, row, feature, is_href, is_reversed))
             return
         if is_reversed:
             links.backwards.add(len(links.edges))
-        links.add(edge, element, target, holder.document.ids.get(target, NOWHERE), row)
+        links.add(edge, element, target, document.ids.get(target, NOWHERE), row)
+
+    def listed(
+        self,
+        element: Element,
+        row: int,
+        name: str,
+        edge: Edge | None,
+        is_reversed: bool,
+        is_list: bool,
+    ) -> None:
+        """Put an attribute that can be a list of ids into the graph; without an edge only look."""
+        value, ids, links = self.document.attributes[row][name], self.document.ids, self.unit.links
+        targets = value.split() if is_list else []
+        found = [ids.get(target, NOWHERE) for target in targets]
+        if not found or NOWHERE in found or len(found) > DEFAULT_LIMITS.references:
+            self.attribute(element, row, name, value)
+        elif edge is not None:
+            for target, at in zip(targets, found, strict=True):
+                if is_reversed:
+                    links.backwards.add(len(links.edges))
+                links.add(edge, element, target, at, row)
 
     def approximate(self, row: int, lost: str) -> None:
         """The row is in the graph without part of its meaning."""

@@ -5,7 +5,6 @@ what they name must exist all the same. Readers note what they do not follow whi
 what no file of the unit has is told once for each element and feature.
 """
 
-from collections.abc import Collection
 from typing import TYPE_CHECKING, NamedTuple
 
 from sysmlc.diagnostics import Place, Subject
@@ -20,6 +19,9 @@ if TYPE_CHECKING:
 _SAID_ELSEWHERE = frozenset(map(snake, naming.SAID_ELSEWHERE))
 
 
+Names = tuple[str, ...] | frozenset[str]
+
+
 class Loose(NamedTuple):
     """Ids that a feature names and that its own file does not have."""
 
@@ -31,13 +33,16 @@ class Loose(NamedTuple):
     is_said_elsewhere: bool
 
 
-def look_inside(context: "Context", row: int, lost: Collection[str] = ()) -> None:
+def look_inside(context: "Context", row: int, lost: Names = ()) -> None:
     """Note the dangling references of a row, and of all inside, that become no elements.
 
     Those that ``lost`` names are said nowhere else.
     """
-    document = context.document
+    document, numbers = context.document, context.document.shape_numbers
+    is_naming = context.naming.get(lost) or _naming_shapes(context, lost)
     for at in range(row, document.ends[row]):
+        if not is_naming[numbers[at]]:
+            continue
         for name, value in document.attributes[at].items():
             if name in naming.NAMING or name in lost:
                 context.look(at, name, value, name not in lost)
@@ -45,6 +50,14 @@ def look_inside(context: "Context", row: int, lost: Collection[str] = ()) -> Non
         if idref and at != row:
             feature = document.features[at]
             context.look(document.parents[at], feature, idref, feature not in lost)
+
+
+def _naming_shapes(context: "Context", lost: Names) -> list[bool]:
+    """For each shape whether its rows can name an element; the last is for rows without one."""
+    names = {*naming.NAMING, *lost, context.document.idref_key}
+    found = [not names.isdisjoint(written) for _, _, written in context.document.shapes]
+    context.naming[lost] = [*found, True]
+    return context.naming[lost]
 
 
 def existing(context: "Context", element: Element, key: str, targets: list[str]) -> list[str]:

@@ -43,8 +43,8 @@ def of(kind: Kind, feature: str) -> Detail | None:
 # -- what depends on the element ---------------------------------------------------------------
 
 
-def _pin(context: "Context", element: Element, _row: int, _type_name: str, _feature: str) -> None:
-    owner = context.graph.owner(element)
+def _pin(context: "Context", element: Element, row: int, _type_name: str, _feature: str) -> None:
+    owner = context.owner(row)
     if owner is not None and owner.subkind == "reply":
         # Where no type is written the default is that of an accepted call, an output pin.
         element.attrs["direction"] = "in"
@@ -53,7 +53,7 @@ def _pin(context: "Context", element: Element, _row: int, _type_name: str, _feat
 def _constraint(
     context: "Context", element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
-    owner = context.graph.owner(element)
+    owner = context.owner(row)
     if owner is not None:
         context.guards.append((owner, element.id, row))
 
@@ -66,15 +66,15 @@ def _transition(
 
 
 def _behaviour(
-    context: "Context", element: Element, _row: int, _type_name: str, feature: str
+    context: "Context", element: Element, row: int, _type_name: str, feature: str
 ) -> None:
-    owner = context.graph.owner(element)
+    owner = context.owner(row)
     if owner is not None:
         context.graph.connect(v.STATE_BEHAVIOURS[feature], owner, element)
 
 
 def _trigger(context: "Context", element: Element, row: int, _type_name: str, feature: str) -> None:
-    owner = context.graph.owner(element)
+    owner = context.owner(row)
     context.triggers.append((element, row))
     if feature == "deferrableTrigger":
         element.attrs["deferred"] = True
@@ -85,7 +85,7 @@ def _trigger(context: "Context", element: Element, row: int, _type_name: str, fe
 def _connector_end(
     context: "Context", element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
-    owner = context.graph.owner(element)
+    owner = context.owner(row)
     if owner is not None:
         context.graph.connect(Edge.END, owner, element)
     context.ends.append((element, row))

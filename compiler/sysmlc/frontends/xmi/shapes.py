@@ -40,11 +40,14 @@ class Step(NamedTuple):
     """One attribute: the id of an element, a text, or one of the rarer cases.
 
     An id is the target of ``edge``; without one something else says the same, and it only has
-    to lead to an element.
+    to lead to an element. The edge of a mere list leads from what it names.
     """
 
     name: str
     is_id: bool = False
+    """Whether it names one element, nearly always."""
+    is_list: bool = False
+    """Whether it can name several."""
     edge: Edge | None = None
     key: Key | None = None
 
@@ -156,15 +159,16 @@ def _steps(kind: Kind, names: tuple[str, ...]) -> Iterator[Step]:
 def _step(kind: Kind, name: str) -> Step:
     edge = v.REFERENCES.get(name)
     if edge is not None:
-        return Step(name, True, v.SPECIAL.get((kind, name), edge))
+        return Step(name, True, True, v.SPECIAL.get((kind, name), edge))
     if name in v.FLAGS:
         return Step(name, key=Key(v.FLAGS[name], "false", _FLAG))
     if name in v.TEXTS:
         return Step(name, key=Key(*v.TEXTS[name]))
     if name in v.UNLESS_FALSE:
         return Step(name, key=Key(v.UNLESS_FALSE[name], "true", _UNLESS_FALSE))
-    is_other = name in v.CONDITIONS or (kind, name) in v.REVERSED
-    return Step(name, name in v.REDUNDANT and not is_other)
+    backwards = v.REVERSED.get((kind, name))
+    is_unread = name in v.REDUNDANT and name not in v.CONDITIONS and backwards is None
+    return Step(name, is_unread, is_unread or backwards is not None, backwards)
 
 
 _FLAG: Mapping[str, AttrValue] = MappingProxyType(dict.fromkeys(v.TRUE, True))

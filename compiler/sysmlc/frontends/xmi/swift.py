@@ -78,7 +78,7 @@ class Swift:
             verdicts[row] = mapped
             if detail is not None:
                 detail(context, made, row, type_name, features[row])
-            for step, is_id, edge, key in steps:
+            for step, is_id, is_list, edge, key in steps:
                 value = values[step]
                 at = row_of(value) if is_id else None
                 if at is not None:
@@ -89,7 +89,7 @@ class Swift:
                         add_found(at)
                         add_row(row)
                 elif key is None:
-                    context.attribute(made, row, step, value)
+                    context.listed(made, row, step, edge, not is_id, is_list)
                 elif value != key.default:
                     key.keep(made, value)
             if is_done:
