@@ -5,7 +5,9 @@ from pathlib import Path
 from sysmlc.driver import Compilation, Request, compile_model, select_backends
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*/*.uml"))
+EXAMPLES = sorted(p for p in (ROOT / "examples").glob("*/*.uml") if p.stem == p.parent.name)
+PLANT = ROOT / "examples" / "baygate" / "baygate.aml"
+"""AutomationML with an overlay, which names the behaviours of ``gate.uml`` beside it."""
 
 
 def compile_example(model: Path, *emit: str) -> Compilation:

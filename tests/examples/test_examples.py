@@ -8,12 +8,12 @@ import re
 
 import pytest
 
-from examples.compiling import EXAMPLES, compile_example, findings, outputs
+from examples.compiling import EXAMPLES, PLANT, ROOT, compile_example, findings, outputs
 
 _TELLING = re.compile(r"recipes/.*|diagrams/.*|contracts/.*\.md|contracts/.*(Stopper|Gripper)\..*")
 
 
-@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
 def test_an_example_gives_its_golden_outputs(model, golden):
     compilation = compile_example(model)
     made = outputs(compilation)
@@ -25,12 +25,13 @@ def test_an_example_gives_its_golden_outputs(model, golden):
     golden.check(f"examples/{model.parent.name}", kept)
 
 
-def test_there_are_three_examples():
-    names = [path.parent.name for path in EXAMPLES]
-    assert names == ["baygate-behaviour", "four-tasks", "lego-recipe"]
+def test_there_are_four_examples():
+    names = [path.parent.name for path in (PLANT, *EXAMPLES)]
+    assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe"]
+    assert {path.name for path in (ROOT / "examples").iterdir()} == set(names)
 
 
-@pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
 def test_an_example_is_in_the_graph_whole(model):
     total = compile_example(model, "ir").coverage.as_json()["total"]
     assert total["unsupported"] == 0
