@@ -14,7 +14,6 @@ _EVERYWHERE = frozenset(
         "version",
         "copyright",
         "change_mode",
-        "unresolved",
         "unresolved_paths",
         "external",
         "library",
@@ -108,6 +107,8 @@ def _follows(book: Book, element: Element, name: str) -> bool:
     """Attributes that only some elements of a kind have for a reason that is written."""
     if element.kind in (Kind.METADATA, Kind.DOCUMENT):
         return True
+    if name == "unresolved":
+        return "unresolved_paths" in element.attrs or not book.ids.is_ours(element)
     if name == "abstract":
         return element.subkind == "role-class"
     if element.kind is Kind.PORT and name in ("aggregation", "conjugated"):

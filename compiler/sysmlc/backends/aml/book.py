@@ -54,6 +54,10 @@ class Book:
     """Internal elements with the class that they are copies of."""
     late: list[tuple[Node, str, Element]] = field(default_factory=list)
     """References to ids: the node, its attribute, the element that is meant."""
+    mapped: dict[str, list[tuple[Element, Element]]] = field(default_factory=dict)
+    """Features that redefine those of roles, by the id of the class that has them."""
+    paths: dict[tuple[str, Family, str], str] = field(default_factory=dict)
+    """Classes by the paths that were written: name of the file, family, path."""
     first: dict[tuple[File | None, Family, tuple[str, ...]], str] = field(default_factory=dict)
     """The element that a path means: of two classes of one path the first."""
 
@@ -80,10 +84,15 @@ class Book:
         if any(_BRACKETED.intersection(name) for name in names):
             names = tuple(f"[{name}]" for name in names)
         path = "/".join(names)
-        if place.file is None or place.file is file:
-            return path
-        alias = file.aliases.get(place.file.name)
-        return f"{alias}@{path}" if alias else ""
+        if place.file is not None and place.file is not file:
+            alias = file.aliases.get(place.file.name)
+            path = f"{alias}@{path}" if alias else ""
+        self.paths[file.name, place.family, path] = target.id
+        return path
+
+    def class_at(self, path: str, family: Family, file: File) -> Element | None:
+        """The class that a path means that was written in a file."""
+        return self.graph.get(self.paths.get((file.name, family, path)))
 
     def enter(self, element: Element, place: Place) -> None:
         """Know a class under its path."""

@@ -7,18 +7,31 @@ from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element
 
 _COPIED = frozenset({"DefaultValue", "Value", "RefSemantic", "Constraint", "Attribute"})
+_FEATURES = frozenset({"Attribute", "ExternalInterface"})
 _IDENTITY = frozenset({"ID", "ChangeMode"})
 
 
 def write(book: Book) -> None:
     """Complete every internal element by the attributes that its classes have and it has not."""
     for node, declared in book.copies:
-        for above in _chain(book, declared):
-            for child in above.children:
-                if child.tag == "Attribute":
-                    _complete(node, child)
-                elif child.tag == "ExternalInterface":
-                    _interface(node, child)
+        for child in _features(book, declared):
+            if child.tag == "Attribute":
+                _complete(node, child)
+            else:
+                _interface(node, child)
+
+
+def _features(book: Book, type_: Element) -> Iterator[Node]:
+    """What a class has of its own and inherits: of one name what is nearest."""
+    seen: set[tuple[str, str]] = set()
+    for node in _chain(book, type_):
+        for child in node.children:
+            key = (child.tag, child.attributes.get("Name", ""))
+            if child.tag in _FEATURES and key not in seen:
+                seen.add(key)
+                # What a part of a class gives a value is known of that part alone.
+                if not child.is_copy:
+                    yield child
 
 
 def _chain(book: Book, type_: Element) -> Iterator[Node]:

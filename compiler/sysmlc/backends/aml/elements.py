@@ -71,11 +71,14 @@ def _fill(book: Book, top: Unit) -> None:
         _members(book, unit)
         players = [one for one in unit.players if one is not unit.part or unit.own is None]
         roles.write(book, unit.node, unit.file, *dict.fromkeys([*players, *unit.players]))
-        if unit.instance is not None or unit.part is not None:
+        if unit.players != [unit.own] and not _is_mirror(book, unit):
             declared = _declared(book, unit)
-            roles.inherited(book, unit.node, unit.file, declared)
             if declared is not None:
+                roles.inherited(book, unit.node, unit.file, declared)
                 book.copies.append((unit.node, declared))
+        for type_ in (unit.own, _declared(book, unit)):
+            if type_ is not None:
+                roles.map_features(book, unit.node, unit.file, type_)
         waiting += reversed(unit.inside)
 
 
@@ -92,6 +95,7 @@ def _members(book: Book, unit: Unit) -> None:
             unit.inside.append(_unit(book, unit.node, unit.file, one, below))
         elif one.kind in groups.ROLES:
             unit.node.add(groups.write(book, one, unit.file))
+    _interface_ids(book, unit)
     for one in [*book.owned(unit.instance), *_values_of_class(book, unit)]:
         if one.kind is Kind.SLOT:
             _slot(book, unit, one)
@@ -99,7 +103,6 @@ def _members(book: Book, unit: Unit) -> None:
             unit.inside.append(_unit(book, unit.node, unit.file, None, one))
         elif one.kind is Kind.COMMENT and graph.targets(one, Edge.REFERENCES):
             _description(book, unit, one)
-    _interface_ids(book, unit)
 
 
 def _is_part(book: Book, one: Element) -> bool:
@@ -179,10 +182,20 @@ def _own(book: Book, unit: Unit) -> Element | None:
     owner = unit.part.owner if unit.part is not None else None
     if unit.part is None and unit.instance is not None and unit.instance.subkind != "part":
         owner = unit.instance.owner
+    of_masters = _types_of_masters(book, unit)
     for one in _types(book, unit):
-        if one.kind is Kind.CLASS and one.subkind == "internal-element" and one.owner == owner:
+        is_own = one.kind is Kind.CLASS and one.subkind == "internal-element"
+        if is_own and one.owner == owner and one.id not in of_masters:
             return one
     return None
+
+
+def _types_of_masters(book: Book, unit: Unit) -> set[str]:
+    """Ids of the classes of what a mirror stands for: they are not its own."""
+    graph, edges = book.graph, (Edge.TYPED_BY, Edge.INSTANCE_OF)
+    players = [one for one in (unit.part, unit.instance) if one is not None]
+    masters = [master for one in players for master in graph.targets(one, Edge.MIRRORS)]
+    return {type_.id for one in masters for edge in edges for type_ in graph.targets(one, edge)}
 
 
 def _declared(book: Book, unit: Unit) -> Element | None:
@@ -200,7 +213,7 @@ def _refer(book: Book, unit: Unit) -> None:
     declared = _declared(book, unit)
     if unit.own is not None and declared is not None:
         book.say(Edge.SPECIALIZES, unit.own, declared)
-    if any(book.graph.targets(one, Edge.MIRRORS) for one in unit.players):
+    if _is_mirror(book, unit):
         return
     path = book.path(declared, unit.file) if declared is not None else ""
     missing = next((p for one in unit.players if (p := unresolved(one, "InternalElement"))), "")
@@ -209,6 +222,10 @@ def _refer(book: Book, unit: Unit) -> None:
     elif declared is not None and not is_inline(declared):
         facts = {"edge": "typed-by", "kind": "part", "target": str(declared.kind)}
         book.losses.note(UNSAID_EDGE, unit.players[0], **facts)
+
+
+def _is_mirror(book: Book, unit: Unit) -> bool:
+    return any(book.graph.targets(one, Edge.MIRRORS) for one in unit.players)
 
 
 # -- values ------------------------------------------------------------------------------------

@@ -14,6 +14,8 @@ _TAGS = {
     Kind.PORT: ("ExternalInterface", "RefBaseClassPath"),
 }
 
+_ELEMENT = ("InternalElement", "RefBaseSystemUnitPath")
+
 
 def write(book: Book, element: Element, file: File) -> Node:
     """The internal element of a facet or group, with mirrors of what it shows."""
@@ -41,7 +43,8 @@ def _role(book: Book, element: Element, file: File) -> str:
 
 
 def _mirror(book: Book, element: Element, above: Node, target: Element) -> None:
-    tag, attribute = _TAGS.get(target.kind, ("InternalElement", "RefBaseSystemUnitPath"))
+    is_facet = element.kind is Kind.FACET
+    tag, attribute = _TAGS.get(target.kind, _ELEMENT) if is_facet else _ELEMENT
     node = above.add(Node(tag, {"Name": target.name}))
     if tag != "Attribute":
         node.attributes["ID"] = derived_id(element.id, f"caex mirror {target.id}")

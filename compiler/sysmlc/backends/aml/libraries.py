@@ -1,6 +1,6 @@
 """Libraries: every class gets its place first, so that paths are known, and then its content."""
 
-from sysmlc.backends.aml import attributes, elements, header, interfaces
+from sysmlc.backends.aml import attributes, elements, header, interfaces, roles
 from sysmlc.backends.aml.attributes import unresolved
 from sysmlc.backends.aml.book import Book, File, Place
 from sysmlc.backends.aml.families import HIERARCHY, LIBRARIES, Family
@@ -123,6 +123,7 @@ def _nested(book: Book, package: Element) -> None:
 
 def fill(book: Book) -> None:
     """Add what classes hold."""
+    book.mapped = roles.mapped(book)
     for id, place in list(book.places.items()):
         if place.node is None or place.file is None:
             continue

@@ -16,9 +16,12 @@ def write(book: Book) -> None:
     """Add a link for each connector, and for each dependency that was a link."""
     for one in book.graph.of_kind(Kind.CONNECTOR):
         _connector(book, one)
-    for one in book.graph.of_kind(Kind.DEPENDENCY):
+    dependencies = book.graph.of_kind(Kind.DEPENDENCY)
+    is_open = any("sides" in one.attrs for one in dependencies)
+    ids = _written(book) if is_open else frozenset()
+    for one in dependencies:
         if "sides" in one.attrs:
-            _as_written(book, one)
+            _as_written(book, one, ids)
         elif "ports" in one.attrs:
             _relation(book, one)
 
@@ -103,13 +106,33 @@ def _interface(book: Book, node: Node, port: Element, file: File) -> str:
 # -- dependencies ------------------------------------------------------------------------------
 
 
-def _as_written(book: Book, element: Element) -> None:
-    """A link that leads nowhere, as it was."""
+def _written(book: Book) -> frozenset[str]:
+    """All IDs in the files."""
+    found = set()
+    waiting = [file.root for file in book.files]
+    while waiting:
+        node = waiting.pop()
+        found.add(node.id)
+        waiting += node.children
+    return frozenset(found)
+
+
+def _as_written(book: Book, element: Element, ids: frozenset[str]) -> None:
+    """A link that leads nowhere, as it was: the side that leads somewhere has an ID."""
     holder = _holder(book, element, ())
     sides = element.attrs["sides"]
-    if holder is not None and isinstance(sides, tuple):
-        _link(book, element, holder, [str(side) for side in sides])
+    if holder is None or not isinstance(sides, tuple):
+        return
+    texts = [str(side) for side in sides]
+    _link(book, element, holder, texts)
+    edges = sum(len(book.graph.targets(element, edge)) for edge in (Edge.CLIENT, Edge.SUPPLIER))
+    if sum(bool(text) and _is_known(text, ids) for text in texts) >= edges:
         _said(book, element)
+
+
+def _is_known(text: str, ids: frozenset[str]) -> bool:
+    ends = [at for at, sign in enumerate(text) if sign == ":"]
+    return text in ids or any(text[:at] in ids for at in ends) or "/" in text
 
 
 def _said(book: Book, element: Element) -> None:

@@ -15,26 +15,21 @@ _PATHS = {"SupportedRoleClass": "RefRoleClassPath", "RoleRequirements": "RefBase
 def write(book: Book, node: Node, file: File, *players: Element) -> None:
     """Add the roles that some elements play, which one node stands for."""
     tag = _TAGS[node.tag == "InternalElement"]
-    mappings = list(_mappings(book, players))
     for player in players:
         for role in book.graph.targets(player, Edge.REALIZES):
             if path := _path(book, role, file):
                 book.say(Edge.REALIZES, player, role)
-                made = _role(node, tag, path)
-                _map(book, made, role, mappings)
+                _role(node, tag, path)
         _unresolved(player, node)
         _required(book, player, node)
 
 
-def inherited(book: Book, node: Node, file: File, type_: Element | None) -> None:
+def inherited(book: Book, node: Node, file: File, type_: Element) -> None:
     """Let an instance play the roles that its class supports, as AutomationML wants."""
-    seen: set[str] = set()
-    while type_ is not None and type_.id not in seen:
-        seen.add(type_.id)
-        for role in book.graph.targets(type_, Edge.REALIZES):
+    for one in _chain(book, type_):
+        for role in book.graph.targets(one, Edge.REALIZES):
             if path := _path(book, role, file):
                 _role(node, "RoleRequirements", path)
-        type_ = book.graph.target(type_, Edge.SPECIALIZES)
 
 
 def _path(book: Book, role: Element, file: File) -> str:
@@ -74,23 +69,40 @@ def _required(book: Book, player: Element, node: Node) -> None:
 # -- mapping objects ---------------------------------------------------------------------------
 
 
-def _mappings(book: Book, players: tuple[Element, ...]) -> Iterator[tuple[Element, Element]]:
-    """Features of the players, with those of roles that they redefine."""
-    for player in players:
-        for feature in book.graph.owned(player):
-            if feature.kind in (Kind.PROPERTY, Kind.PORT):
-                for target in book.graph.targets(feature, Edge.REDEFINES):
-                    yield feature, target
+def mapped(book: Book) -> dict[str, list[tuple[Element, Element]]]:
+    """Features that redefine those of roles, by the id of the class that has them."""
+    found: dict[str, list[tuple[Element, Element]]] = {}
+    for _, source, target in book.graph.edges(Edge.REDEFINES):
+        feature, of_role = book.graph[source], book.graph[target]
+        place = book.places.get(of_role.owner or "")
+        if place is not None and place.family is Family.ROLE and feature.owner is not None:
+            found.setdefault(feature.owner, []).append((feature, of_role))
+    return found
 
 
-def _map(book: Book, node: Node, role: Element, mappings: list[tuple[Element, Element]]) -> None:
-    chain = {one.id for one in _chain(book, role)}
-    for feature, target in mappings:
-        if target.owner in chain and (Edge.REDEFINES, feature.id, target.id) not in book.relations:
-            holder = next((c for c in node.children if c.tag == "MappingObject"), None)
-            holder = holder or node.add(Node("MappingObject"))
-            holder.add(_mapping(book, feature, target))
-            book.say(Edge.REDEFINES, feature, target)
+def map_features(book: Book, node: Node, file: File, type_: Element) -> None:
+    """Add the mapping objects for features of a class and of those that it specialises."""
+    for one in _chain(book, type_) if book.mapped else ():
+        for feature, target in book.mapped.get(one.id, ()):
+            if (Edge.REDEFINES, feature.id, target.id) in book.relations:
+                continue
+            role = _role_with(book, node, file, target)
+            if role is not None:
+                holder = next((c for c in role.children if c.tag == "MappingObject"), None)
+                holder = holder or role.add(Node("MappingObject"))
+                holder.add(_mapping(book, feature, target))
+                book.say(Edge.REDEFINES, feature, target)
+
+
+def _role_with(book: Book, node: Node, file: File, target: Element) -> Node | None:
+    """The role of an element that has a feature, of its own or inherited."""
+    for child in node.children:
+        if child.tag in _TAGS:
+            path = child.attributes.get(_PATHS[child.tag], "")
+            role = book.class_at(path, Family.ROLE, file)
+            if role is not None and any(one.id == target.owner for one in _chain(book, role)):
+                return child
+    return None
 
 
 def _mapping(book: Book, feature: Element, target: Element) -> Node:
