@@ -19,7 +19,7 @@ Scalar = str | int | float | bool | None
 
 _LARGEST = 4 << 20
 _DEEPEST = 20
-_MOST = 100_000
+_MOST = 50_000
 _NEWLINE = re.compile("\r\n|\r|\n")
 _STRING = "tag:yaml.org,2002:str"
 _CONSTANTS: dict[str, Scalar] = {

@@ -1,0 +1,214 @@
+"""Overlays as text: what is said of bad ones, and what the good ones come to."""
+
+import json
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from sysmlc import resources
+from sysmlc.diagnostics import Sink
+from sysmlc.overlay import files_of, read
+from sysmlc.overlay.paths import beside, join, split
+from sysmlc.overlay.tree import parse
+from sysmlc.sources import Source
+
+RIGHT = "overlay: 1\nitems:\n  MiniPallet: {domain: physical}\n"
+
+
+def told(data):
+    """Code, line, column and message of each finding; nothing of a bad overlay is used."""
+    sink = Sink()
+    text = data.encode("utf-8") if isinstance(data, str) else data
+    made = read(Source("p.overlay.yaml", text), sink)
+    assert (made is None) == bool(len(sink))
+    places = [(found, found.subject.place) for found in sink]
+    return [(f.rule.code, place.line, place.column, f.message) for f, place in places]
+
+
+def bomb(levels=12, width=9):
+    rows = ["a0: &a0 [x, x]"]
+    for level in range(1, levels):
+        names = ", ".join([f"*a{level - 1}"] * width)
+        rows.append(f"a{level}: &a{level} [{names}]")
+    return "\n".join(rows)
+
+
+@pytest.mark.parametrize(
+    ("data", "line", "column", "problem"),
+    [
+        ("overlay: 1\nitems: [", 2, 9, "expected the node content, but found '<stream end>'"),
+        ("overlay: 1\nitems: 'x", 2, 10, "found unexpected end of stream"),
+        ("overlay: 1\n\titems: x", 2, 1, "found character '\\t' that cannot start any token"),
+        ("overlay: 1\nitems: \x00", 2, 8, "the character #x0000 is not allowed"),
+        (b"overlay: 1\n# caf\xe9\n", 2, 6, "it is not UTF-8 here"),
+        ("overlay: 1\n---\noverlay: 1\n", 2, 1, "a second document begins"),
+        ("overlay: !!python/object:os.system 1\n", 1, 10, "the tag tag:yaml.org"),
+        ("overlay: 1\nitems: *none\n", 2, 8, "there is no anchor 'none' before this"),
+        ("overlay: 1\nitems: &a [*a]\n", 2, 12, "'a' contains itself"),
+        ("overlay: 1\n? [a]\n: 1\n", 2, 3, "a key is a word, not a list or a mapping"),
+        ("overlay: 1\nitems: " + "[" * 5000, 2, 27, "it is nested too deeply"),
+        ("overlay: 1\nitems: " + "{a: " * 5000, 2, 84, "it is nested too deeply"),
+        ("overlay: 1\nitems:\n" + "- " * 5000, 3, 39, "it is nested too deeply"),
+        (bomb(), 5, 0, "its aliases make it too large"),
+        ("overlay: 1\nitems: [" + "x," * 50_001, 2, 0, "it has too many values"),
+        (b"#" * ((4 << 20) + 1), 1, 1, "it is larger than 4 MB"),
+    ],
+    ids=lambda value: str(value)[:24],
+)
+def test_bad_yaml_is_told_with_its_place(data, line, column, problem):
+    ((code, told_line, told_column, message),) = told(data)
+    assert code == "SM320"
+    assert problem in message
+    assert (told_line, told_column if column else 0) == (line, column)
+
+
+@pytest.mark.parametrize(
+    ("text", "findings"),
+    [
+        ("", [("SM321", 1, 1, "in the overlay at the top: 'overlay' is a required property")]),
+        ("x\n", [("SM321", 1, 1, "in the overlay at the top: 'x' is not of type 'object'")]),
+        ("overlay: 2\n", [("SM321", 1, 10, "in the overlay at 'overlay': 1 was expected")]),
+        (
+            RIGHT.replace("physical", "digital"),
+            [
+                (
+                    "SM321",
+                    3,
+                    24,
+                    "in the overlay at 'items/MiniPallet/domain': 'digital' is not one of "
+                    "['physical', 'information']",
+                )
+            ],
+        ),
+        (
+            RIGHT.replace("items", "itmes"),
+            [("SM322", 2, 1, "in the overlay at the top: there is no 'itmes'")],
+        ),
+        (
+            RIGHT + "  MiniPallet: {}\n",
+            [("SM323", 4, 3, "in the overlay at 'items': 'MiniPallet' stands there twice")],
+        ),
+        (
+            "overlay: 1\nblocks:\n  A:\n    operations: {go: , go: }\n",
+            [("SM323", 4, 24, "in the overlay at 'blocks/A/operations': 'go' stands there twice")],
+        ),
+        (
+            "overlay: 1\nconnectors: {l: {flows: [{item: X}]}}\n",
+            [
+                (
+                    "SM321",
+                    2,
+                    26,
+                    "in the overlay at 'connectors/l/flows/1': it needs a 'from', a 'to' or "
+                    "'both-ways: true'",
+                )
+            ],
+        ),
+        (
+            "overlay: 1\nconnectors: {l: {flows: [{item: X, to: a, both-ways: true}]}}\n",
+            [
+                (
+                    "SM321",
+                    2,
+                    26,
+                    "in the overlay at 'connectors/l/flows/1': what flows both ways has no 'from' "
+                    "and no 'to'",
+                )
+            ],
+        ),
+        (
+            "overlay: 1\nblocks: {A: }\nitems: [1]\n",
+            [
+                (
+                    "SM321",
+                    2,
+                    12,
+                    "in the overlay at 'blocks/A': it is empty, but should be of type object",
+                ),
+                ("SM321", 3, 8, "in the overlay at 'items': [1] is not of type 'object'"),
+            ],
+        ),
+    ],
+)
+def test_each_fault_of_shape_is_told_with_its_place(text, findings):
+    assert told(text) == findings
+
+
+def test_a_misspelt_word_is_answered_with_the_nearest():
+    sink = Sink()
+    read(Source("p.overlay.yaml", RIGHT.replace("domain", "domian").encode()), sink)
+    assert [found.help for found in sink] == ["did you mean 'domain'?"]
+
+
+def test_places_count_characters_and_bytes():
+    top = parse('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
+    inner = top.entries["é"].entries["y"]
+    assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
+    assert top.keys["é"][:2] == (2, 1)
+
+
+def test_plain_words_are_names_and_quoted_digits_are_too():
+    top = parse(b"a: no\nb: 0x1F\nc: '12'\nd: 12\ne: 1.5\nf: true\ng: ~\nh: 2024-01-01\n1: x\n")
+    assert {key: one.scalar for key, one in top.entries.items()} == {
+        "a": "no",
+        "b": "0x1F",
+        "c": "12",
+        "d": 12,
+        "e": 1.5,
+        "f": True,
+        "g": None,
+        "h": "2024-01-01",
+        "1": "x",
+    }
+
+
+def test_anchors_may_be_used_for_what_is_said_again():
+    text = RIGHT + "connectors:\n  a: &one\n    flows: [{item: MiniPallet, to: x}]\n  b: *one\n"
+    made = read(Source("p.overlay.yaml", text.encode()), Sink())
+    assert [one.key.text for one in made.connectors] == ["a", "b"]
+    assert made.connectors[0].flows == made.connectors[1].flows
+
+
+def test_entries_have_an_order_of_their_own():
+    rows = ["  B: {domain: physical}\n", "  A: {domain: information}\n"]
+    made = [
+        read(Source("p.overlay.yaml", ("overlay: 1\nitems:\n" + "".join(order)).encode()), Sink())
+        for order in (rows, rows[::-1])
+    ]
+    names = [[(one.key.text, one.domain) for one in each.items] for each in made]
+    assert names[0] == names[1] == [("A", "information"), ("B", "physical")]
+
+
+def test_files_that_terms_name_are_known():
+    text = (
+        "overlay: 1\nblocks:\n  A:\n    behavior: 'models/gate.uml#Gate::Handle'\n"
+        "    values: {v: {type: 'types.uml#T::V'}}\n"
+        "    operations: {go: {method: 'models/gate.uml#Gate::Go'}}\n"
+    )
+    made = read(Source("p.overlay.yaml", text.encode()), Sink())
+    assert files_of(made) == ["models/gate.uml", "types.uml"]
+
+
+def test_the_schema_is_a_schema_and_its_words_are_explained():
+    schema = json.loads(resources.text("metamodels", "sysmlc-overlay.schema.json"))
+    Draft202012Validator.check_schema(schema)
+    assert all("description" in one for one in schema["properties"].values() if "$ref" not in one)
+
+
+@pytest.mark.parametrize(
+    ("path", "names"),
+    [
+        ("Lib/Gate", ("Lib", "Gate")),
+        ("[Lib]/[A/B]", ("Lib", "A/B")),
+        ("Lib/[http://x/[1]]", ("Lib", "http://x/[1]")),
+        ("a", ("a",)),
+    ],
+)
+def test_paths_are_split_as_those_of_caex(path, names):
+    assert split(path) == names
+    assert split(join(names)) == names
+
+
+def test_files_are_named_from_where_the_overlay_is():
+    assert beside("a/p.overlay.yaml", "../b/gate.uml") == "b/gate.uml"
+    assert beside("p.overlay.yaml", "./gate.uml") == "gate.uml"
