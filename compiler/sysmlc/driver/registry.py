@@ -30,6 +30,7 @@ _BACKENDS = {
     for name in (
         "contracts",
         "recipe",
+        "platform",
         "plantuml",
         "graph",
         "ecore",
@@ -39,7 +40,7 @@ _BACKENDS = {
         "aml",
     )
 }
-_DEFAULT = frozenset({"contracts", "recipe", "plantuml"})
+_DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})
 """Ours with ``is_default``: the others are not even imported unless they are asked for."""
 _RULE_PACKAGES = (
     "frontends",

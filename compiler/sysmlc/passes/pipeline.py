@@ -21,6 +21,7 @@ NAMES = (
     "behaviours",
     "interactions",
     "recipe",
+    "platform",
     "contracts",
     "views",
 )

@@ -7,6 +7,7 @@ from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, optional, value
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
+from sysmlc.recipe.plant import Plant
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +39,21 @@ def by_relation(context: Context, client: Element) -> Iterator[Relation]:
     """Dependencies, allocations and associations from a task or service to machines."""
     for one in context.graph.sources(client, Edge.CLIENT):
         is_allocation = one.role == "allocate" or context.applied(one, "Capability") is not None
-        suppliers = context.graph.targets(one, Edge.SUPPLIER)
+        suppliers = [
+            supplier
+            for supplier in context.graph.targets(one, Edge.SUPPLIER)
+            if not _is_of_plant(context, supplier)
+        ]
         if is_allocation and suppliers:
             yield Relation(one, tuple(suppliers))
     yield from _by_association(context, client)
+
+
+def _is_of_plant(context: Context, supplier: Element) -> bool:
+    """Whether it says where in the plant a service runs: the pass ``platform`` reads that."""
+    if context.level(supplier) == "machine":
+        return False
+    return supplier.kind is Kind.OPERATION or Plant(context.graph).holds(supplier)
 
 
 def _by_association(context: Context, client: Element) -> Iterator[Relation]:

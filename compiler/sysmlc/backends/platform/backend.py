@@ -1,0 +1,35 @@
+"""One file ``platform.json`` for a unit that has recipes and a plant."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.platform.document import document, places
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.output import Output, json_text
+from sysmlc.recipe.platform import Platform
+
+PATH = "platform.json"
+
+
+@dataclass(frozen=True, slots=True)
+class PlatformBackend:
+    """Writes what the pass ``platform`` found (metamodels/sysmlc-platform.schema.json)."""
+
+    name: str = "platform"
+    summary: str = "which element of the plant offers which service of the recipes, as JSON"
+    is_default: bool = True
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add the file; its trace names machines, services and elements of the plant."""
+        for platform in graph.derived(Platform):
+            found = options.locate(places(graph, platform))
+            text = json_text(document(graph, platform, found), 2)
+            output.add(PATH, f"{text}\n", _trace(platform), self.name)
+
+
+def _trace(platform: Platform) -> Iterator[str]:
+    yield from (one.element for one in platform.used)
+    yield from (element for _, _, element in (*platform.machines, *platform.services))
+    yield from (one.operation for one in platform.offers)

@@ -1,0 +1,28 @@
+"""The pass ``platform``: recipes on the plant that runs them (thesis 3.2)."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.recipe.model import Model
+
+
+@dataclass(frozen=True, slots=True)
+class Platform:
+    """Finds which element of the plant is which machine, and what it offers.
+
+    Assumes the models of the pass ``recipe``; then ``graph.derived(recipe.platform.Platform)``
+    holds one platform when there are recipes and a plant, else none. The graph stays as it is.
+    """
+
+    name: ClassVar[str] = "platform"
+    after: ClassVar[tuple[str, ...]] = ("recipe",)
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Store the platform of the unit, and report what does not fit."""
+        models = [one for one in graph.derived(Model) if one.machines or one.services]
+        if models:
+            from sysmlc.passes.platform.mapping import mapping
+
+            mapping(graph, models, sink)

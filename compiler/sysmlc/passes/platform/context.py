@@ -1,0 +1,91 @@
+"""What the pass ``platform`` asks of recipes, plant and graph."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.passes.platform.statements import is_structure, of_machine
+from sysmlc.recipe.model import Machine, Model, Service
+from sysmlc.recipe.plant import Plant, PlantElement
+from sysmlc.suggest import did_you_mean
+
+_TELLING = 5_000
+"""Names among which the nearest is looked for; comparing more takes seconds."""
+
+
+@dataclass
+class Context:
+    """One unit: its graph, its recipes, its plant, and what was found of it."""
+
+    graph: Graph
+    models: Sequence[Model]
+    sink: Sink
+    found: dict[str, PlantElement] = field(default_factory=dict)
+    """Elements of the plant that something was bound to, by id."""
+
+    @cached_property
+    def plant(self) -> Plant:
+        """The plant in AutomationML; empty when the unit has none."""
+        return Plant(self.graph)
+
+    @cached_property
+    def machines(self) -> dict[str, Machine]:
+        """Machines of all recipes by id, sorted."""
+        found = {one.id: one for model in self.models for one in model.machines}
+        return {id: found[id] for id in sorted(found) if found[id].element in self.graph}
+
+    @cached_property
+    def services(self) -> dict[str, Service]:
+        """Services of all recipes by id, sorted; those in several recipes have one definition."""
+        found = {one.id: one for model in self.models for one in model.services}
+        return {id: found[id] for id in sorted(found) if found[id].element in self.graph}
+
+    def users(self, what: str) -> Iterator[tuple[str, tuple[str, ...], str]]:
+        """Machines or services, the recipes that use each, and its element."""
+        for id, one in (self.machines if what == "machines" else self.services).items():
+            uses = (m.recipe.id for m in self.models if id in {o.id for o in getattr(m, what)})
+            yield id, tuple(sorted(uses)), one.element
+
+    def has_plant(self) -> bool:
+        """Whether a plant is described, or a machine is said to be something outside recipes."""
+        return bool(self.plant) or any(
+            is_structure(said.target) and not self.is_machine(said.target)
+            for one in self.machines.values()
+            for said in of_machine(self.graph, one)
+        )
+
+    def is_machine(self, element: Element) -> bool:
+        """Whether it is a machine of a recipe, or a usage of one."""
+        type_ = query.type_of(self.graph, element)
+        return element.id in self._machines or (type_ is not None and type_.id in self._machines)
+
+    @cached_property
+    def _machines(self) -> frozenset[str]:
+        levels = (one.id for one in self.graph if one.attrs.get("level") == "machine")
+        return frozenset({*levels, *(one.element for one in self.machines.values())})
+
+    def meant(self, element: Element) -> list[PlantElement]:
+        """Elements of the plant that an element of the graph stands for."""
+        if self.plant:
+            return self.plant.meant_by(element)
+        if not is_structure(element) or self.is_machine(element):
+            return []
+        is_class = element.kind in (Kind.CLASS, Kind.COMPONENT)
+        block = element if is_class else query.type_of(self.graph, element)
+        return [PlantElement(element.id, element, None, None, block, element.owner or "")]
+
+    def nearest(self, name: str) -> str:
+        """A clause on the elements of the plant that are called nearly so; empty if none is."""
+        if not self.plant or len(self.plant.elements) > _TELLING:
+            return ""
+        names: dict[str, list[PlantElement]] = {}
+        for one in self.plant.elements.values():
+            names.setdefault(one.element.name, []).append(one)
+        clause = did_you_mean(name, names)
+        if not clause.startswith("did you mean '"):
+            return ""
+        near = clause.removeprefix("did you mean '").removesuffix("'?")
+        several = [f"'{self.plant.name_of(one)}' (id {one.id})" for one in names[near][:3]]
+        return f"did you mean {' or '.join(several)}?"

@@ -1,0 +1,69 @@
+"""From recipes and a plant to the platform: bindings first, then who offers which service."""
+
+from collections.abc import Iterable, Sequence
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.passes.platform.binding import bind
+from sysmlc.passes.platform.context import Context
+from sysmlc.passes.platform.offering import offers
+from sysmlc.recipe.model import Model
+from sysmlc.recipe.plant import PlantElement
+from sysmlc.recipe.platform import Binding, Offer, Platform, Unused, Used
+
+
+def mapping(graph: Graph, models: Sequence[Model], sink: Sink) -> None:
+    """Store the platform, when there is a plant."""
+    context = Context(graph, models, sink)
+    if not context.has_plant():
+        return
+    bound = bind(context)
+    offered = offers(context, bound)
+    graph.store(Platform, [_platform(context, bound, offered)])
+
+
+def _platform(context: Context, bound: Sequence[Binding], offered: Sequence[Offer]) -> Platform:
+    ids = sorted({*(one.plant for one in bound), *(one.plant for one in offered)})
+    used = [context.found[id] for id in ids]
+    return Platform(
+        used=tuple(sorted((_used(context, one) for one in used), key=lambda one: one.name)),
+        bindings=tuple(sorted(bound, key=lambda one: (one.machine, one.plant))),
+        offers=tuple(sorted(offered, key=lambda one: (one.service, one.machine, one.plant))),
+        unused=tuple(_unused(context, used)),
+        machines=tuple(context.users("machines")),
+        services=tuple(context.users("services")),
+    )
+
+
+def _used(context: Context, one: PlantElement) -> Used:
+    return Used(one.id, context.plant.name_of(one), _type(context, one), one.element.id)
+
+
+def _type(context: Context, one: PlantElement) -> str:
+    return "" if one.block is None else context.graph.qualified_name(one.block)
+
+
+def _unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]:
+    """The topmost elements that are not used, hold nothing used, and are in nothing used."""
+    plant = context.plant
+    inside = {one.id for one in used}
+    holding = inside | {up.id for one in used for up in plant.around(one)}
+    tops: dict[str, int] = {}
+    top_of: dict[str, str | None] = {}
+    for one in plant.elements.values():
+        above = next(plant.around(one), None)
+        if one.id in holding:
+            top_of[one.id] = None
+        elif above is None or above.id in holding - inside:
+            top_of[one.id] = one.id
+            tops[one.id] = 0
+        else:
+            top_of[one.id] = top = top_of.get(above.id)
+            if top is not None:
+                tops[top] += 1
+    found = ((plant.elements[id], contents) for id, contents in tops.items())
+    made = [
+        Unused(one.id, plant.name_of(one), _type(context, one), one.element.id, contents)
+        for one, contents in found
+    ]
+    return sorted(made, key=lambda one: (one.name, one.id))

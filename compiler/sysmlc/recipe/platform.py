@@ -1,0 +1,73 @@
+"""Which element of the plant is which machine of a recipe, and offers what (thesis 3.2).
+
+The JSON form is described by metamodels/sysmlc-platform.schema.json.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """A machine stands for an element of the plant.
+
+    ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of
+    what says so in the graph.
+    """
+
+    machine: str
+    plant: str
+    how: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """An element of the plant offers a service by an operation.
+
+    ``machine`` is empty when the service needs none. ``how`` is ``name``, ``method``, ``call``,
+    ``allocation`` or ``overlay``; ``by`` is the id of what says so.
+    """
+
+    service: str
+    machine: str
+    plant: str
+    operation: str
+    how: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class Used:
+    """An element of the plant that recipes use; ``element`` is its id in the graph."""
+
+    id: str
+    name: str
+    type: str
+    element: str
+
+
+@dataclass(frozen=True, slots=True)
+class Unused:
+    """An element of the plant that no recipe uses, with so many below it."""
+
+    id: str
+    name: str
+    type: str
+    element: str
+    contents: int
+
+
+@dataclass(frozen=True, slots=True)
+class Platform:
+    """The recipes of a unit on its plant; all tuples are sorted.
+
+    ``machines`` and ``services`` are ids (qualified names) with the recipes that use them and
+    their elements in the graph: (name, recipes, element).
+    """
+
+    used: tuple[Used, ...]
+    bindings: tuple[Binding, ...]
+    offers: tuple[Offer, ...]
+    unused: tuple[Unused, ...]
+    machines: tuple[tuple[str, tuple[str, ...], str], ...]
+    services: tuple[tuple[str, tuple[str, ...], str], ...]
