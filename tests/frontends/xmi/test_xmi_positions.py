@@ -58,15 +58,32 @@ def test_the_second_of_two_equal_ids_is_the_place(tmp_path):
 def test_what_is_not_read_and_a_stereotype_of_nothing(tmp_path):
     inside = '<nestedClassifier xmi:type="uml:Nonsense" xmi:id="n"/>'
     assert found(tmp_path, inside, '<B:Block xmi:id="b" base_Class="gone"/>') == [
-        ("SM111", 4, 3, f"{GATE}/nestedClassifier[1]", "plant.uml"),
+        ("SM111", 4, 3, f"{GATE}/nestedClassifier[1]", "Plant::Gate::<nestedClassifier>"),
         ("SM113", 7, 1, "/xmi:XMI/B:Block[1]", "Block"),
+    ]
+
+
+def test_what_is_not_wholly_read_is_told_of_its_element(tmp_path):
+    several = "<body>a</body><body>b</body>"
+    inside = (
+        '<ownedAttribute xmi:id="p" name="item"><upperValue xmi:type="uml:OpaqueExpression">'
+        f"{several}</upperValue></ownedAttribute>"
+    )
+    assert found(tmp_path, inside) == [
+        (
+            "SM114",
+            4,
+            42,
+            f"{GATE}/ownedAttribute[1]/upperValue[1]",
+            "Plant::Gate::item::<upperValue>",
+        )
     ]
 
 
 def test_a_library_that_is_missing_stands_where_it_is_first_used(tmp_path):
     inside = '<ownedAttribute name="item"><type href="lib.uml#_x"/></ownedAttribute>'
     assert found(tmp_path, inside) == [
-        ("SM152", 4, 31, f"{GATE}/ownedAttribute[1]/type[1]", "lib.uml")
+        ("SM152", 4, 31, f"{GATE}/ownedAttribute[1]/type[1]", "Plant::Gate::item")
     ]
 
 

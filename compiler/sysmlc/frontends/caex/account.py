@@ -191,7 +191,8 @@ def _report_outside(
     document, node = uses[0]
     rule = rules.MISSING_CLASS_LIBRARY if missing.what == "library" else rules.MISSING_FILE
     count = "1 element refers" if len(uses) == 1 else f"{len(uses)} elements refer"
-    subject = Subject(missing.name, place=document.place(node))
+    # Without an element: what a library refers to is told all the same.
+    subject = Subject(path_of(node), place=document.place(node))
     notes = tuple(_note(*use, locations) for use in uses)
     context.sink.report(
         rule, subject, notes=notes, library=missing.name, file=missing.name, count=count

@@ -56,7 +56,7 @@ def _report_unsupported(context: Context, sink: Sink) -> None:
                 found.setdefault(types[row], []).append((row, end - row))
     for type_name, rows in found.items():
         number = sum(size for _, size in rows)
-        subject = Subject(document.name, place=context.place(rows[0][0]))
+        subject = _subject(context, rows[0][0])
         count = _count(len(rows))
         sink.report(rules.UNSUPPORTED, subject, count=count, type=type_name, number=number)
 
@@ -67,7 +67,7 @@ def _report_approximated(context: Context, sink: Sink) -> None:
     for row, lost in context.lost.items():
         found.setdefault((types[row], lost), []).append(row)
     for (type_name, lost), rows in found.items():
-        subject = Subject(context.document.name, place=context.place(rows[0]))
+        subject = _subject(context, rows[0])
         count = _count(len(rows))
         sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=lost)
 
@@ -80,6 +80,11 @@ def _report_baseless(context: Context, sink: Sink) -> None:
         subject = Subject(name, context.document.id(rows[0]), context.place(rows[0]))
         times = "once" if len(rows) == 1 else f"{len(rows)} times"
         sink.report(rules.BASELESS, subject, stereotype=name, times=times)
+
+
+def _subject(context: Context, row: int) -> Subject:
+    """The row as the subject of a finding: the element that it is, or is inside of."""
+    return Subject(context.qualified_name(row), context.gids[row], context.place(row))
 
 
 def _count(number: int) -> str:

@@ -159,11 +159,13 @@ class Context:
     def _report_repeated(self, row: int, id: str) -> None:
         if self.document.is_in_extension(row):
             return
-        subject = Subject(self._qualified_name(row), id, self.place(row))
+        subject = Subject(self.qualified_name(row), id, self.place(row))
         self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
 
-    def _qualified_name(self, row: int) -> str:
-        """Name of a row that has no element of its own yet."""
+    def qualified_name(self, row: int) -> str:
+        """Name of a row, also of one that has no element of its own."""
+        if self.lowered.own[row]:
+            return self.graph.qualified_name(self.graph[self.gids[row]])
         owner = self.owner(row)
         name = self.document.attributes[row].get("name") or f"<{self.document.features[row]}>"
         return f"{self.graph.qualified_name(owner)}::{name}" if owner is not None else name
@@ -198,7 +200,7 @@ class Context:
     def _first_attributes(self, row: int, values: dict[str, str]) -> dict[str, str]:
         """As many attributes as an element may have."""
         most = DEFAULT_LIMITS.attributes
-        name = self._qualified_name(row)
+        name = self.qualified_name(row)
         subject = Subject(name, "", self.place(row))
         self.sink.report(rules.MANY_ATTRIBUTES, subject, element=name, count=len(values), most=most)
         return dict(islice(values.items(), most))
@@ -208,7 +210,7 @@ class Context:
         targets = self.document.tokens(value)
         most = DEFAULT_LIMITS.references
         if len(targets) > most:
-            subject = Subject(self._qualified_name(row), "", self.place(row))
+            subject = Subject(self.qualified_name(row), "", self.place(row))
             self.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
         return targets[:most]
 

@@ -296,11 +296,18 @@ def _report_library(graph: Graph, sink: Sink, library: str, missing: dict[str, l
     more = [f"and {len(lines) - _LISTED} more"] if len(lines) > _LISTED else []
     sink.report(
         MISSING_LIBRARY,
-        Subject(library, place=Place(file, ordinal) if file else None),
+        _user(graph, first, Place(file, ordinal) if file else None),
         notes=(*lines[:_LISTED], *more),
         library=library,
         count=len(missing),
     )
+
+
+def _user(graph: Graph, first: _Use, place: Place | None) -> Subject:
+    """The first element that uses a library; what another library uses is told all the same."""
+    holder = first.holder
+    id = "" if holder.attrs.get("library") else holder.id
+    return Subject(graph.qualified_name(holder), id, place)
 
 
 def _takes_down(graph: Graph, href: str, uses: list[_Use]) -> str:
