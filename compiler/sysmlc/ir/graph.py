@@ -199,6 +199,14 @@ class Graph:
             raise ValueError("ownership is changed by move()")
         self._link(edge, self._known(source), self._known(target))
 
+    def connect_new(self, edge: Edge, source: Element, target: Element) -> None:
+        """Add an edge that cannot be there, for one end was made just now. Not for ownership."""
+        put_new(self._out[edge], source.id, target)
+        if edge in self._drawn:
+            self._drawn[edge] += (source, target)
+        else:
+            put_new(self._in[edge], target.id, source)
+
     def connect_all(
         self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
@@ -270,6 +278,10 @@ class Graph:
     def derived(self, type_: type[_T]) -> Sequence[_T]:
         """The derived values of a type, in the order in which the pass stored them."""
         return cast("Sequence[_T]", self._derived.get(type_, ()))
+
+    def has_derived(self, module: str) -> bool:
+        """Whether there are derived values of a type of this module, which need not be imported."""
+        return any(type_.__module__ == module for type_, values in self._derived.items() if values)
 
     # -- inside --------------------------------------------------------------------------------
 

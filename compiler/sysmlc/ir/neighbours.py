@@ -37,10 +37,14 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
     known = index.get(id)
     if known is None:
         index[id] = neighbour
-    elif known.__class__ is list and len(known) < _MANY:
+    elif isinstance(known, list):
         known.append(neighbour)
+        if len(known) > _MANY:
+            index[id] = dict.fromkeys(known)
+    elif isinstance(known, dict):
+        known[neighbour] = None
     else:
-        put(index, id, neighbour)
+        index[id] = [known, neighbour]
 
 
 def drop(index: Index, id: str, neighbour: Element) -> bool:

@@ -58,6 +58,8 @@ _Inner = dict[int, ValueText]
 def value_of(document: Document, row: int) -> ValueText:
     """The value that the value specification in this row means (UML 2.5.1 clause 8)."""
     inner: _Inner = {}
+    if document.types[row] == "OpaqueExpression":
+        return opaque(document, row)
     if document.types[row] in _NESTING:
         # From the innermost outwards: calls that nest as deep as a file may would not end well.
         for at in range(document.ends[row] - 1, row, -1):
