@@ -32,3 +32,24 @@ def test_a_flow_property_has_its_default_instead():
 def test_literals_stay(value):
     graph, sink = refined(f'Parameter x "x" direction="{value}"\n', "classify")
     assert (list(sink), graph["x"].attrs["direction"]) == ([], value)
+
+
+FLOW_PORT = (
+    'DataType t "T"\nPort x "x"\n  -> typed-by t\n'
+    '  Application a stereotype="FlowPort" tag.direction="{}"'
+    ' namespace="http://www.omg.org/spec/SysML/20120401/SysML"\n    -> subject x\n'
+)
+
+
+@pytest.mark.parametrize("value", ["sideways", "return", "In"])
+def test_a_flow_port_with_a_direction_that_does_not_exist_has_the_default(value):
+    graph, (found,) = refined(FLOW_PORT.format(value), "ports")
+    assert (found.rule.code, found.subject.id) == ("SM220", "x")
+    assert found.message.endswith(f"is '{value}', which is none of in, out, inout")
+    assert graph["x"].attrs["direction"] == "inout"
+
+
+@pytest.mark.parametrize("value", ["in", "out", "inout"])
+def test_a_flow_port_has_the_direction_that_its_stereotype_gives(value):
+    graph, sink = refined(FLOW_PORT.format(value), "ports")
+    assert (list(sink), graph["x"].attrs["direction"]) == ([], value)

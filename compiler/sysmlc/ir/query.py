@@ -30,6 +30,8 @@ CLASSIFIERS = (
 """Kinds of UML classifiers (UML 2.5.1 clause 9.9.4); behaviours are classes."""
 
 BEHAVIORS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION)
+FLOW_DIRECTIONS = ("in", "out", "inout")
+"""Literals of SysML's FlowDirection (SysML 1.6 clause 9.3.2)."""
 STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
 DOMAINS = ("physical", "information")

@@ -7,6 +7,7 @@ from typing import ClassVar
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
+    FLOW_DIRECTIONS,
     bounds,
     connectors_of,
     direction_of,
@@ -93,8 +94,8 @@ def _own_direction(graph: Graph, port: Element) -> str | None:
     if port.role != "flow port":
         return None
     given = tag(graph, port, "direction")
-    if isinstance(given, str) and given:
-        return given
+    if given in FLOW_DIRECTIONS:
+        return str(given)
     type_ = type_of(graph, port)
     return None if type_ is not None and _by_type(graph, port) else "inout"
 

@@ -2,6 +2,7 @@
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.query import FLOW_DIRECTIONS, tag
 
 UNKNOWN_LITERAL = rule(
     "SM220",
@@ -40,14 +41,24 @@ def check_literals(graph: Graph, sink: Sink) -> None:
                 # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
                 is_flow = element.role == "flow property" and attribute == "direction"
                 graph.set(element, **{attribute: "inout" if is_flow else None})
+    for port in graph.of_kind(Kind.PORT):
+        if port.role == "flow port":
+            _check_tag(graph, sink, port)
 
 
-def _report(graph: Graph, sink: Sink, element: Element, attribute: str) -> None:
+def _check_tag(graph: Graph, sink: Sink, port: Element) -> None:
+    """The direction of a flow port of SysML 1.1 is a tag, which ``ports`` reads."""
+    given = tag(graph, port, "direction")
+    if isinstance(given, str) and given and given not in FLOW_DIRECTIONS:
+        _report(graph, sink, port, "direction", given)
+
+
+def _report(graph: Graph, sink: Sink, element: Element, attribute: str, given: str = "") -> None:
     sink.report(
         UNKNOWN_LITERAL,
         graph.subject(element),
         attribute=attribute,
         element=graph.qualified_name(element),
-        value=element.attrs[attribute],
-        known=", ".join(_LITERALS[attribute]),
+        value=given or element.attrs[attribute],
+        known=", ".join(FLOW_DIRECTIONS if given else _LITERALS[attribute]),
     )
