@@ -3,14 +3,19 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from typing import TYPE_CHECKING
+
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.platform.document import document, places
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output, json_text
-from sysmlc.recipe.platform import Platform
+
+if TYPE_CHECKING:
+    from sysmlc.recipe.platform import Platform
 
 PATH = "platform.json"
+_PLATFORMS = "sysmlc.recipe.platform"
+"""The module of platforms: most models have none, and need nothing of this imported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,13 +28,18 @@ class PlatformBackend:
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the file; its trace names machines, services and elements of the plant."""
+        if not graph.has_derived(_PLATFORMS):
+            return
+        from sysmlc.backends.platform.document import document, places
+        from sysmlc.recipe.platform import Platform
+
         for platform in graph.derived(Platform):
             found = options.locate(places(graph, platform))
             text = json_text(document(graph, platform, found), 2)
             output.add(PATH, f"{text}\n", _trace(platform), self.name)
 
 
-def _trace(platform: Platform) -> Iterator[str]:
+def _trace(platform: "Platform") -> Iterator[str]:
     yield from (one.element for one in platform.used)
     yield from (element for _, _, element in (*platform.machines, *platform.services))
     yield from (one.operation for one in platform.offers)

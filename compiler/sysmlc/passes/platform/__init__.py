@@ -5,7 +5,9 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.recipe.model import Model
+
+_RECIPES = "sysmlc.recipe.model"
+"""The module of the recipe models: most models have none, and need nothing of this imported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +23,7 @@ class Platform:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the platform of the unit, and report what does not fit."""
-        models = [one for one in graph.derived(Model) if one.machines or one.services]
-        if models:
+        if graph.has_derived(_RECIPES):
             from sysmlc.passes.platform.mapping import mapping
 
-            mapping(graph, models, sink)
+            mapping(graph, sink)

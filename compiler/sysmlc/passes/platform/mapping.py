@@ -12,10 +12,11 @@ from sysmlc.recipe.plant import PlantElement
 from sysmlc.recipe.platform import Binding, Offer, Platform, Unused, Used
 
 
-def mapping(graph: Graph, models: Sequence[Model], sink: Sink) -> None:
-    """Store the platform, when there is a plant."""
+def mapping(graph: Graph, sink: Sink) -> None:
+    """Store the platform, when there is a plant and something to run on it."""
+    models = [one for one in graph.derived(Model) if one.machines or one.services]
     context = Context(graph, models, sink)
-    if not context.has_plant():
+    if not (models and context.has_plant()):
         return
     bound = bind(context)
     offered = offers(context, bound)

@@ -67,7 +67,7 @@ NOT_IN_PLANT = rule(
     "SM624",
     "machine-not-in-plant",
     Severity.WARNING,
-    "machine '{machine}' is said to be no element of the plant",
+    "machine '{machine}' is bound to no element of the plant",
     why="A recipe is run by elements of the plant. An equal name is a suggestion, never a "
     "decision.",
     help="say which one: amlId of «Machine», an allocation, or the overlay",
@@ -78,7 +78,7 @@ SEVERAL_ELEMENTS = rule(
     "SM625",
     "machine-is-several-elements",
     Severity.ERROR,
-    "machine '{machine}' is said to be {number} elements of the plant: {elements}",
+    "machine '{machine}' is bound to {number} elements of the plant: {elements}",
     why="A scheduler gives a machine one task at a time; which of the elements does it would be "
     "open. A class of the plant means all elements of that class.",
     help="leave one, or make a machine of each",
