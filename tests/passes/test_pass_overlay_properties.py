@@ -1,0 +1,192 @@
+"""What holds for every overlay: twice is once, order is nothing, and none is a fault of ours."""
+
+import json
+from random import Random
+
+from hypothesis import given
+from hypothesis import strategies as st
+from overlaying import MODEL, PLANT, overlay_of
+from structures import structures
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.ir.text import parse_text, print_text
+from sysmlc.ir.verify import verify
+from sysmlc.overlay import Refinement
+from sysmlc.passes.overlay import Overlay
+
+WORDS = [
+    "Plant/Gate/l1",
+    "Plant/Gate/loop",
+    "Plant/Gate/twin",
+    "l1",
+    "Plant/Gate",
+    "Plant/Switch",
+    "Plant/Stopper",
+    "Plant/Gate/st",
+    "Plant/Switch/p_swIn",
+    "s-in",
+    "s-out",
+    "Plant/Tag",
+    "MiniPallet",
+    "Heavy",
+    "gate.uml#Gate::Handle",
+    "gate.uml#Gate::Gone",
+    "Gate::Handle",
+    "st",
+    "sw",
+    "st/p_sOut",
+    "p_sIn",
+    "getIn",
+    "open",
+    "String",
+    "no such thing",
+    "[odd/path]",
+    "#",
+    "/",
+    "::",
+]
+signs = st.sampled_from("aZé9 /[]#:.@'-")
+words = st.sampled_from(WORDS) | st.text(signs, min_size=1, max_size=5)
+names = st.sampled_from(["go", "open", "getIn", "st", "v"])
+
+
+def mapping(**optional):
+    return st.fixed_dictionaries({}, optional=optional)
+
+
+items = mapping(
+    domain=st.sampled_from(["physical", "information"]),
+    description=st.text(signs, max_size=5),
+    specializes=st.lists(words, max_size=2),
+    path=words,
+)
+ports = mapping(direction=st.sampled_from(["in", "out", "inout"]), type=words, path=words)
+flows = st.one_of(
+    st.fixed_dictionaries({"item": words, "to": words}, optional={"from": words}),
+    st.fixed_dictionaries({"item": words, "from": words}),
+    st.fixed_dictionaries({"item": words, "both-ways": st.just(True)}),
+)
+connectors = st.fixed_dictionaries(
+    {"flows": st.lists(flows, min_size=1, max_size=3)}, optional={"path": words}
+)
+parameters = st.fixed_dictionaries(
+    {"name": names},
+    optional={"type": words, "direction": st.sampled_from(["in", "out", "inout", "return"])},
+)
+operations = mapping(
+    parameters=st.lists(parameters, max_size=2),
+    method=words,
+    description=st.text(signs, max_size=5),
+)
+values = mapping(type=words, default=st.booleans() | st.integers() | st.text(signs, max_size=3))
+blocks = mapping(
+    path=words,
+    specializes=st.lists(words, max_size=2),
+    values=st.dictionaries(names, values, max_size=2),
+    operations=st.dictionaries(names, operations, max_size=2),
+    behavior=words,
+    calls=st.dictionaries(names, words, max_size=2),
+)
+allocations = st.fixed_dictionaries({"from": words, "to": words})
+overlays = st.fixed_dictionaries(
+    {"overlay": st.just(1)},
+    optional={
+        "package": words,
+        "items": st.dictionaries(words, items, max_size=3),
+        "ports": st.dictionaries(words, ports, max_size=2),
+        "connectors": st.dictionaries(words, connectors, max_size=3),
+        "blocks": st.dictionaries(words, blocks, max_size=3),
+        "allocations": st.lists(allocations, max_size=2),
+    },
+)
+
+
+def laid(overlay, graph=None):
+    """The graph with an overlay in JSON, which is YAML, laid over it, and what was found."""
+    graph, sink = graph or parse_text(PLANT + MODEL), Sink()
+    made = overlay_of(json.dumps(overlay, ensure_ascii=False), sink)
+    assert made is not None, [found.message for found in sink]
+    graph.store(Refinement, [made])
+    Overlay().run(graph, sink)
+    assert verify(graph) == []
+    return graph, sink
+
+
+def shuffled(value, random):
+    """The same overlay with its entries in another order; parameters keep theirs."""
+    if isinstance(value, dict):
+        keys = random.sample(list(value), len(value))
+        kept = {"parameters"}
+        return {k: value[k] if k in kept else shuffled(value[k], random) for k in keys}
+    if isinstance(value, list):
+        return [shuffled(one, random) for one in random.sample(value, len(value))]
+    return value
+
+
+def without_places(graph: Graph) -> str:
+    for element in graph:
+        element.ordinal = 0
+    return print_text(graph)
+
+
+def findings(sink):
+    return sorted((found.rule.code, found.message) for found in sink)
+
+
+@given(overlays)
+def test_an_overlay_twice_is_the_same_as_once(overlay):
+    graph, _ = laid(overlay)
+    once = print_text(graph)
+    Overlay().run(graph, Sink())
+    assert print_text(graph) == once
+
+
+@given(overlays, st.integers(0, 1 << 30))
+def test_the_order_of_entries_does_not_matter(overlay, seed):
+    one, other = laid(overlay), laid(shuffled(overlay, Random(seed)))
+    assert without_places(one[0]) == without_places(other[0])
+    assert findings(one[1]) == findings(other[1])
+
+
+@given(overlays)
+def test_every_finding_has_its_place(overlay):
+    for found in laid(overlay)[1]:
+        assert found.subject.place is not None
+        assert found.subject.place.file in ("plant.overlay.yaml", "gate.uml")
+
+
+@given(st.text(max_size=60))
+def test_any_text_is_an_overlay_or_is_told(text):
+    sink = Sink()
+    made = overlay_of("overlay: 1\n" + text, sink)
+    assert (made is None) == bool(len(sink))
+
+
+@given(st.binary(max_size=60))
+def test_any_bytes_are_an_overlay_or_are_told(data):
+    from sysmlc.overlay import read
+    from sysmlc.sources import Source
+
+    sink = Sink()
+    made = read(Source("p.overlay.yaml", data), sink)
+    assert (made is None) == bool(len(sink))
+
+
+@given(structures(), overlays, st.randoms(use_true_random=False))
+def test_an_overlay_of_a_random_model_is_no_fault(graph, overlay, random):
+    ids = [element.id for element in graph] or ["none"]
+    text = json.dumps(overlay, ensure_ascii=False)
+    for word in WORDS:
+        text = text.replace(json.dumps(word), json.dumps(random.choice(ids), ensure_ascii=False))
+    sink = Sink()
+    made = overlay_of(text, sink)
+    if made is None:
+        assert [found.rule.code for found in sink] == ["SM323"] * len(sink)
+        return
+    graph.store(Refinement, [made])
+    Overlay().run(graph, sink)
+    assert verify(graph) == []
+    once = print_text(graph)
+    Overlay().run(graph, sink)
+    assert print_text(graph) == once
