@@ -166,9 +166,16 @@ class Finder:
             kind = other[0].kind.value
             self.report(rules.WRONG_SORT, term, word=term.text, sort=sort.title, kind=kind)
         else:
-            advice = did_you_mean(path or term.text, self.known(sort))
+            advice = self._absent(term) or did_you_mean(path or term.text, self.known(sort))
             self.report(rules.NO_MATCH, term, word=term.text, sort=sort.title, advice=advice)
         return None
+
+    def _absent(self, term: Term) -> str:
+        """That the file which a word names was not read, if so."""
+        file, sign, _ = term.text.partition("#")
+        name = beside(self.refinement.file, file)
+        is_there = not sign or any(element.source == name for element in self.graph)
+        return "" if is_there else f"the file '{file}' is not part of the compile unit"
 
     def _listed(self, found: Iterable[Element]) -> str:
         words = [f"{self.path(one)} ({one.id})" for one in found]
