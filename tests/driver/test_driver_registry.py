@@ -1,6 +1,11 @@
 """Which back ends run when none is named."""
 
-from sysmlc.driver import backend_names, load_backends, select_backends
+import tomllib
+from pathlib import Path
+
+from sysmlc.driver import backend_names, load_backends, registry, select_backends
+
+_PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 
 def test_without_a_name_the_default_back_ends_run():
@@ -11,3 +16,9 @@ def test_without_a_name_the_default_back_ends_run():
 def test_a_back_end_that_is_no_default_is_added_in_its_place():
     names = [one.name for one in select_backends(["+graph"])]
     assert names == sorted(["graph", *(one.name for one in select_backends([]))])
+
+
+def test_the_project_file_names_the_back_ends_that_ship():
+    project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
+    named = project["entry-points"][registry.GROUP]
+    assert named == {name: f"{module}:BACKEND" for name, module in registry._BACKENDS.items()}

@@ -37,6 +37,7 @@ _BACKENDS = {
         "ir",
         "reqtable",
         "uml",
+        "sysml",
         "aml",
     )
 }
