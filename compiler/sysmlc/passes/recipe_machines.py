@@ -7,7 +7,7 @@ from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, optional, value
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
-from sysmlc.recipe.plant import Plant
+from sysmlc.recipe.plant import is_of_plant
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ def _is_of_plant(context: Context, supplier: Element) -> bool:
     """Whether it says where in the plant a service runs: the pass ``platform`` reads that."""
     if context.level(supplier) == "machine":
         return False
-    return supplier.kind is Kind.OPERATION or Plant(context.graph).holds(supplier)
+    return supplier.kind is Kind.OPERATION or is_of_plant(context.graph, supplier)
 
 
 def _by_association(context: Context, client: Element) -> Iterator[Relation]:

@@ -28,6 +28,12 @@ class PlantElement:
     owner: str
 
 
+def is_of_plant(graph: Graph, element: Element) -> bool:
+    """Whether it is in an instance hierarchy, or in a library of classes of AutomationML."""
+    root = [element, *graph.ancestors(element)][-1]
+    return root.subkind == HIERARCHY or root.subkind in LIBRARIES
+
+
 class Plant:
     """The plant of a unit; without instance hierarchies it is empty."""
 
@@ -36,14 +42,10 @@ class Plant:
         tops = [one for one in graph.roots() if one.kind is Kind.PACKAGE]
         self._hierarchies = [one for one in tops if one.subkind == HIERARCHY]
         self._families: dict[str, frozenset[str]] = {}
+        self._kin: dict[str, list[Element]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._hierarchies)
-
-    def holds(self, element: Element) -> bool:
-        """Whether it is of the plant: in a hierarchy or in a library of classes."""
-        root = [element, *self.graph.ancestors(element)][-1]
-        return root.subkind == HIERARCHY or root.subkind in LIBRARIES
 
     @cached_property
     def elements(self) -> dict[str, PlantElement]:
@@ -79,10 +81,10 @@ class Plant:
     def _by_graph_id(self) -> dict[str, list[PlantElement]]:
         found: dict[str, list[PlantElement]] = {}
         for one in self.elements.values():
-            for element in (one.element, one.part):
-                if element is not None:
-                    found.setdefault(element.id, []).append(one)
-        return {id: list(dict.fromkeys(several)) for id, several in found.items()}
+            found.setdefault(one.element.id, []).append(one)
+            if one.part is not None and one.part is not one.element:
+                found.setdefault(one.part.id, []).append(one)
+        return found
 
     @cached_property
     def _by_block(self) -> dict[str, list[PlantElement]]:
@@ -119,10 +121,13 @@ class Plant:
 
     def kin(self, block: Element) -> list[Element]:
         """The block, what it specialises, the role classes that these realise; nearest first."""
-        classes = [block, *query.generals(self.graph, block)]
-        roles = [role for one in classes for role in self.graph.targets(one, Edge.REALIZES)]
-        above = [up for role in roles for up in (role, *query.generals(self.graph, role))]
-        return list(dict.fromkeys([*classes, *above]))
+        known = self._kin.get(block.id)
+        if known is None:
+            classes = [block, *query.generals(self.graph, block)]
+            roles = [role for one in classes for role in self.graph.targets(one, Edge.REALIZES)]
+            above = [up for role in roles for up in (role, *query.generals(self.graph, role))]
+            known = self._kin[block.id] = list(dict.fromkeys([*classes, *above]))
+        return known
 
     def name_of(self, one: PlantElement) -> str:
         """Qualified name in the hierarchy, in the words of the plant."""

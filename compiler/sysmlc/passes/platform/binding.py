@@ -7,7 +7,7 @@ from sysmlc.passes.platform import rules
 from sysmlc.passes.platform.context import Context
 from sysmlc.passes.platform.statements import allocations, of_machine
 from sysmlc.recipe.model import Machine
-from sysmlc.recipe.plant import PlantElement
+from sysmlc.recipe.plant import PlantElement, is_of_plant
 from sysmlc.recipe.platform import Binding
 
 _SHOWN = 4
@@ -38,7 +38,7 @@ def _statements(context: Context, machine: Machine) -> Iterator[tuple[PlantEleme
     """Elements that are said to be the machine, what is said most directly first."""
     graph = context.graph
     element = graph[machine.element]
-    if context.plant and context.plant.holds(element):
+    if context.plant and is_of_plant(graph, element):
         yield from ((one, "itself", element.id) for one in context.plant.meant_by(element))
     by_id = context.plant.with_id(machine.aml_id) if machine.aml_id else None
     if by_id is not None:

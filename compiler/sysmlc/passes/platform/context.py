@@ -1,6 +1,6 @@
 """What the pass ``platform`` asks of recipes, plant and graph."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -42,11 +42,15 @@ class Context:
         found = {one.id: one for model in self.models for one in model.services}
         return {id: found[id] for id in sorted(found) if found[id].element in self.graph}
 
-    def users(self, what: str) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Machines or services, the recipes that use each, and its element."""
-        for id, one in (self.machines if what == "machines" else self.services).items():
-            uses = (m.recipe.id for m in self.models if id in {o.id for o in getattr(m, what)})
-            yield id, tuple(sorted(uses)), one.element
+    def machine_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
+        """Machines, the recipes that use each, and its element."""
+        uses = _uses((one.id, model.recipe.id) for model in self.models for one in model.machines)
+        return ((id, uses[id], one.element) for id, one in self.machines.items())
+
+    def service_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
+        """Services, the recipes that use each, and its element."""
+        uses = _uses((one.id, model.recipe.id) for model in self.models for one in model.services)
+        return ((id, uses[id], one.element) for id, one in self.services.items())
 
     def has_plant(self) -> bool:
         """Whether a plant is described, or a machine is said to be something outside recipes."""
@@ -89,3 +93,10 @@ class Context:
         near = clause.removeprefix("did you mean '").removesuffix("'?")
         several = [f"'{self.plant.name_of(one)}' (id {one.id})" for one in names[near][:3]]
         return f"did you mean {' or '.join(several)}?"
+
+
+def _uses(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
+    found: dict[str, set[str]] = {}
+    for id, recipe in pairs:
+        found.setdefault(id, set()).add(recipe)
+    return {id: tuple(sorted(recipes)) for id, recipes in found.items()}

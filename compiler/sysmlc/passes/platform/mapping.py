@@ -31,8 +31,8 @@ def _platform(context: Context, bound: Sequence[Binding], offered: Sequence[Offe
         bindings=tuple(sorted(bound, key=lambda one: (one.machine, one.plant))),
         offers=tuple(sorted(offered, key=lambda one: (one.service, one.machine, one.plant))),
         unused=tuple(_unused(context, used)),
-        machines=tuple(context.users("machines")),
-        services=tuple(context.users("services")),
+        machines=tuple(context.machine_uses()),
+        services=tuple(context.service_uses()),
     )
 
 

@@ -45,8 +45,14 @@ def _of(context: Context, service: Service, at: dict[str, PlantElement]) -> list
     said = list(_said(context, service))
     made: list[Offer] = []
     differing: list[_Differing] = []
+    of_block: dict[str, _Answer] = {}
     for place in places:
-        one, why = _operation(context, service, place.element, said)
+        block = place.element.block
+        if block is None:
+            continue
+        if block.id not in of_block:
+            of_block[block.id] = _operation(context, service, block, said)
+        one, why = of_block[block.id]
         if one is not None:
             context.found[place.element.id] = place.element
             id = place.element.id
@@ -85,21 +91,18 @@ def _said(context: Context, service: Service) -> Iterator[_Found]:
 
 
 _Differing = tuple[_Place, Element, str]
+_Answer = tuple[_Found | None, tuple[Element, str] | None]
 
 
-def _operation(
-    context: Context, service: Service, at: PlantElement, said: list[_Found]
-) -> tuple[_Found | None, tuple[Element, str] | None]:
-    """The operation of an element that offers the service, or why the one of its name does not."""
-    if at.block is None:
-        return None, None
-    kin = context.plant.family(at.block)
+def _operation(context: Context, service: Service, block: Element, said: list[_Found]) -> _Answer:
+    """The operation of a block that offers the service, or why the one of its name does not."""
+    kin = context.plant.family(block)
     for one in said:
         if one.operation.owner in kin:
             return one, None
     element = context.graph[service.element]
     why: tuple[Element, str] | None = None
-    for operation in _operations(context, at.block):
+    for operation in _operations(context, block):
         if element.name and operation.name == element.name:
             problem = difference(context.graph, element, operation, context.is_machine)
             if not problem:
