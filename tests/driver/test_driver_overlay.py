@@ -256,3 +256,14 @@ def test_without_an_overlay_no_yaml_reader_is_loaded(folder):
     run = [sys.executable, "-c", script]
     done = subprocess.run(run, cwd=folder, capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "False"
+
+
+def test_the_overlay_of_the_documentation_refines_the_example(tmp_path):
+    root = resources.path("metamodels").parent
+    page = (root / "docs" / "refine-a-plant.md").read_text()
+    shown = page.partition("<!-- overlay -->\n```yaml\n")[2].partition("```")[0]
+    plant = write(tmp_path, "baygate.aml", (root / "examples/baygate/baygate.aml").read_text())
+    write(tmp_path, "baygate.overlay.yaml", shown)
+    made = build(plant)
+    assert [one for one in made.diagnostics if one.severity != "info"] == []
+    assert len(items(made)) == 3
