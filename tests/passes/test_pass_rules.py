@@ -13,7 +13,7 @@ MODULES = {
     "resolve": (*range(150, 160), 166, 167),
     "inherit": range(200, 210),
     "classify": range(210, 260),
-    "ports": range(300, 310),
+    "ports": (*range(121, 123), *range(300, 310)),
     "flows": range(310, 320),
     "behaviours": range(400, 410),
     "interactions": range(440, 450),

@@ -356,3 +356,32 @@ Package line "Line"
         "quick": "Line::Gate.pull in",
     }
     assert {id: component_name(graph, graph[id]) for id in expected} == expected
+
+
+def plants(port):
+    ports = "".join(port.format(n=n, file=file) for n, file in enumerate("a" * 10 + "b"))
+    documents = "".join(f'Document {f} "{f}" subkind="caex" @{f}.aml:0\n' for f in "ab")
+    directed = 'Class d "D" @a.aml:98\n  Port d.p "p" direction="in" @a.aml:99\n    -> typed-by c\n'
+    _, sink = refined(f'{documents}Class c "C" @a.aml:97\n{ports}{directed}', "ports")
+    return [f"{one.rule.code}: {one.message}" for one in sink], [one.subject.id for one in sink]
+
+
+LISTED = ", ".join(f"'C::p{n}'" for n in range(8))
+
+
+def test_ports_of_plants_without_types_are_gathered_file_by_file():
+    assert plants('  Port p{n} "p{n}" direction="in" @{file}.aml:{n}\n') == (
+        [
+            f"SM122: 10 of 11 ports of 'a.aml' have no type: {LISTED} and 2 more",
+            "SM122: 1 of 1 ports of 'b.aml' have no type: 'C::p10'",
+        ],
+        ["p0", "p10"],
+    )
+
+
+def test_ports_of_plants_without_direction_are_told_where_others_have_one():
+    port = '  Port p{n} "p{n}" @{file}.aml:{n}\n    -> typed-by c\n'
+    assert plants(port) == (
+        [f"SM121: 10 of 11 ports of 'a.aml' have no direction: {LISTED} and 2 more"],
+        ["p0"],
+    )

@@ -24,6 +24,7 @@ from sysmlc.ir.query import (
     tag,
     type_of,
 )
+from sysmlc.passes import plant_ports
 from sysmlc.passes.port_rules import (
     BAD_MULTIPLICITY,
     EMPTY_MULTIPLICITY,
@@ -62,11 +63,15 @@ class Ports:
                 graph.set(port, direction=_direction(graph, port))
         for port in ports:
             graph.set(port, direction=port.attrs.get("direction") or _redefined(graph, port))
-        for port in ports:
-            _check_type(graph, sink, port)
+        plants = plant_ports.files(graph)
+        ours = [port for port in ports if port.source not in plants]
+        for port in ours:
+            if not _is_typed(graph, port):
+                sink.report(UNTYPED_PORT, graph.subject(port), port=graph.qualified_name(port))
         for feature in graph.of_kind(Kind.PORT, Kind.PROPERTY, Kind.FLOW_PROPERTY, Kind.PARAMETER):
             _check_multiplicity(graph, sink, feature)
-        _report_undirected(graph, sink, ports)
+        _report_undirected(graph, sink, ours)
+        _report_plants(graph, sink, [port for port in ports if port.source in plants])
 
 
 def _give_type(graph: Graph, port: Element) -> None:
@@ -185,11 +190,20 @@ def _redefined(graph: Graph, port: Element) -> str | None:
 # -- rules -------------------------------------------------------------------------------------
 
 
-def _check_type(graph: Graph, sink: Sink, port: Element) -> None:
+def _is_typed(graph: Graph, port: Element) -> bool:
+    """Whether it has a type, or what is missing is told already."""
     unresolved = port.attrs.get("unresolved") or ()
     broken = isinstance(unresolved, tuple) and Edge.TYPED_BY.value in unresolved
-    if graph.target(port, Edge.TYPED_BY) is None and not broken and not port.attrs.get("external"):
-        sink.report(UNTYPED_PORT, graph.subject(port), port=graph.qualified_name(port))
+    has_type = graph.target(port, Edge.TYPED_BY) is not None
+    return has_type or broken or bool(port.attrs.get("external"))
+
+
+def _report_plants(graph: Graph, sink: Sink, ports: list[Element]) -> None:
+    own = [port for port in ports if not port.attrs.get("external")]
+    untyped = [port for port in own if not _is_typed(graph, port)]
+    plant_ports.report(graph, sink, plant_ports.UNTYPED, untyped, own)
+    undirected = plant_ports.undirected(graph, own)
+    plant_ports.report(graph, sink, plant_ports.UNDIRECTED, undirected, own)
 
 
 def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
@@ -211,11 +225,7 @@ def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
 
 def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     blocks: dict[str, list[Element]] = {}
-    # AutomationML leaves directions open by design; an overlay adds them.
-    plants = {one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex"}
     for port in ports:
-        if port.source in plants:
-            continue
         if port.owner is not None and "direction" not in port.attrs:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
