@@ -2,7 +2,8 @@
 
 import pytest
 
-from sysmlc.diagnostics import Severity, Sink, catalogue
+from sysmlc.diagnostics import Severity, Sink
+from sysmlc.driver import full_catalogue
 from sysmlc.ir import Graph, parse_text, verify
 from sysmlc.ir.text import print_text
 from sysmlc.passes.recipe import Recipe
@@ -12,7 +13,7 @@ from sysmlc.recipe.model import MaterialUse, Mode, Model, Range
 
 RULES = [
     rule
-    for rule in catalogue().values()
+    for rule in full_catalogue().values()
     if "SM601" <= rule.code <= "SM622" and rule.code != "SM621"
 ]
 
@@ -113,7 +114,7 @@ def test_a_stereotype_that_specialises_the_profile_counts_and_a_namesake_does_no
 
 
 def test_an_equal_name_only_suggests():
-    rule = catalogue()["SM619"]
+    rule = full_catalogue()["SM619"]
     found = model(rule.wrong)
     assert {task.implementation for task in found.recipe.tasks} == {""}
 

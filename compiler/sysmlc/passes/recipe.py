@@ -6,13 +6,10 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.passes.recipe_context import Context
-from sysmlc.passes.recipe_model import recipe_model
-from sysmlc.passes.recipe_remarks import remark
-from sysmlc.passes.recipe_steps import activity_nodes
-from sysmlc.passes.recipe_tags import check_tags
-from sysmlc.recipe.model import Model
-from sysmlc.recipe.validate import validate
+from sysmlc.passes.recipe_context import Context, activity_nodes
+
+_MODELS = "sysmlc.recipe.model"
+"""The module of the recipe models."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +31,25 @@ class Recipe:
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the recipe models of the graph."""
         context = Context(graph, dict(self.levels))
-        models = [recipe_model(context, one) for one in recipes(context)]
-        models.sort(key=lambda model: model.recipe.id)
+        found = list(recipes(context))
+        if found or graph.has_derived(_MODELS):
+            self._store(context, found, sink)
+
+    def _store(self, context: Context, found: list[Element], sink: Sink) -> None:
+        # Most models have no recipes: what makes and checks them takes 0.03 s to import.
+        from sysmlc.passes.recipe_model import recipe_model
+        from sysmlc.passes.recipe_remarks import remark
+        from sysmlc.passes.recipe_tags import check_tags
+        from sysmlc.recipe.model import Model
+        from sysmlc.recipe.validate import validate
+
+        models = sorted((recipe_model(context, one) for one in found), key=lambda m: m.recipe.id)
         if models:
             check_tags(context, sink)
         for model in models:
             remark(context, model, sink)
-            validate(model, sink, lambda id: _subject(graph, id), self.tolerance)
-        graph.store(Model, models)
+            validate(model, sink, lambda id: _subject(context.graph, id), self.tolerance)
+        context.graph.store(Model, models)
 
 
 def recipes(context: Context) -> Iterator[Element]:

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.recipe.model import Range
+
+if TYPE_CHECKING:
+    from sysmlc.recipe.model import Range
 
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
@@ -19,6 +22,16 @@ LEVELS = {
     "Material": "material",
 }
 SERVICES = ("machine service", "infrastructure service")
+_NODES = frozenset(
+    [
+        Kind.ACTION,
+        Kind.CONTROL,
+        Kind.STRUCTURED,
+        Kind.OBJECT_NODE,
+        Kind.DATA_STORE,
+        Kind.ACTIVITY_PARAMETER,
+    ]
+)
 CALL_KINDS = ("call", "read", "write", "subscribe")
 MATERIAL_USES = ("consumed", "produced", "carried")
 
@@ -37,12 +50,15 @@ class Context:
 
     def own_level(self, element: Element) -> str:
         """Level that the options, ``classify`` or a stereotype give the element itself."""
-        chosen = self.levels.get(element.id) or self.levels.get(self.name(element))
-        if chosen:
-            return chosen
+        if self.levels:
+            chosen = self.levels.get(element.id) or self.levels.get(self.name(element))
+            if chosen:
+                return chosen
         found = str(element.attrs.get("level", ""))
         if found in LEVELS.values():
             return found
+        if not query.applications(self.graph, element):
+            return ""
         applied = (name for name in LEVELS if self.applied(element, name))
         return next((LEVELS[name] for name in applied), "")
 
@@ -116,6 +132,11 @@ class Context:
         return self._segments[element.id]
 
 
+def activity_nodes(context: Context, activity: Element) -> list[Element]:
+    """Nodes that the activity owns directly; what a structured node owns stays inside it."""
+    return [one for one in context.graph.owned(activity) if one.kind in _NODES]
+
+
 @dataclass(frozen=True, slots=True)
 class Tags:
     """Tagged values as the types that the profile gives them; None or empty when absent."""
@@ -167,8 +188,10 @@ class Tags:
         text = self.text(name)
         return text if text in MATERIAL_USES else None
 
-    def range(self, low: str, high: str) -> Range | None:
+    def range(self, low: str, high: str) -> "Range | None":
         """Two numbers; one of them stands for both."""
+        from sysmlc.recipe.model import Range
+
         values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
         return Range(values[0], values[-1]) if values else None
 

@@ -5,12 +5,11 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import read
 from sysmlc.passes.recipe_steps import (
     activity_flows,
-    activity_nodes,
     flow_ends,
     nodes_of,
     step_kind,

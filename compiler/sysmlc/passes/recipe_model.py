@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
 
 from sysmlc.ir import Element
-from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_machines import machine, material
 from sysmlc.passes.recipe_services import function, service
-from sysmlc.passes.recipe_steps import activity_flows, activity_nodes, step_kind
+from sysmlc.passes.recipe_steps import activity_flows, step_kind
 from sysmlc.passes.recipe_tasks import (
     Step,
     material_of,

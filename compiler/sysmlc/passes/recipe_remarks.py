@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
-from sysmlc.passes.recipe_context import Context
-from sysmlc.passes.recipe_steps import activity_nodes, by_position, step_kind
+from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_steps import by_position, step_kind
 from sysmlc.passes.recipe_tasks import steps
 from sysmlc.recipe import samples
 from sysmlc.recipe.model import Model

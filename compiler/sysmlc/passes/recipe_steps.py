@@ -125,13 +125,6 @@ _MAKERS: dict[str, _Maker] = {
 }
 
 
-def activity_nodes(context: Context, activity: Element) -> list[Element]:
-    """Nodes that the activity owns directly; what a structured node owns stays inside it."""
-    kinds = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED, Kind.OBJECT_NODE, Kind.DATA_STORE)
-    owned = context.graph.owned(activity)
-    return [one for one in owned if one.kind in kinds or one.kind is Kind.ACTIVITY_PARAMETER]
-
-
 def activity_flows(context: Context, activity: Element) -> list[Element]:
     """Control flows and object flows of the activity."""
     kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)

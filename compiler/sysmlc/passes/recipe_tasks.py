@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe_context import Context, number
+from sysmlc.passes.recipe_context import Context, activity_nodes, number
 from sysmlc.passes.recipe_expressions import optional
 from sysmlc.passes.recipe_machines import (
     Relation,
@@ -13,7 +13,7 @@ from sysmlc.passes.recipe_machines import (
     machine_of,
     modes,
 )
-from sysmlc.passes.recipe_steps import activity_flows, activity_nodes, flow_ends
+from sysmlc.passes.recipe_steps import activity_flows, flow_ends
 from sysmlc.recipe.model import MaterialUse, Task
 
 

@@ -2,16 +2,17 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.recipe.document import document
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output, json_text
 from sysmlc.recipe import samples
-from sysmlc.recipe.model import Model
+
+if TYPE_CHECKING:
+    from sysmlc.recipe.model import Model
 
 EMPTY_RECIPE = rule(
     "SM621",
@@ -35,6 +36,11 @@ class RecipeBackend:
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add one file a recipe; its trace names every element that it tells of."""
+        if not graph.has_derived("sysmlc.recipe.model"):
+            return
+        from sysmlc.backends.recipe.document import document
+        from sysmlc.recipe.model import Model
+
         models = graph.derived(Model)
         names = file_names(model.recipe.id for model in models)
         for model in models:
@@ -52,7 +58,7 @@ class _Traced(Protocol):
     def element(self) -> str: ...
 
 
-def _trace(model: Model) -> Iterator[str]:
+def _trace(model: "Model") -> Iterator[str]:
     graphs = (*model.service_graphs, *model.function_graphs)
     parts: tuple[Iterable[_Traced], ...] = (
         (model.recipe, *model.recipe.tasks),
