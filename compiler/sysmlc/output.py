@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from json.encoder import encode_basestring
 from pathlib import Path
-from secrets import token_hex
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +83,7 @@ def write_if_changed(target: Path, text: str) -> bool:
 def write(target: Path | str, data: bytes) -> None:
     """Make the file, or replace it, in one step: no reader sees half of it."""
     folder = os.path.dirname(target)  # noqa: PTH120
-    temporary = os.path.join(folder, f".sysmlc-{token_hex(8)}")  # noqa: PTH118
+    temporary = os.path.join(folder, f".sysmlc-{os.urandom(8).hex()}")  # noqa: PTH118
     handle = _opened(temporary, folder)
     try:
         with os.fdopen(handle, "wb") as stream:

@@ -72,12 +72,12 @@ def command(
 
 def _check_command_word(models: tuple[Path, ...]) -> None:
     """``sysmlc chekc plant.uml``: no file was meant."""
-    from difflib import get_close_matches
-
     from sysmlc.cli.group import COMMANDS
 
     word = str(models[0]) if models else ""
     if word.isalpha() and not Path(word).exists():
+        from difflib import get_close_matches
+
         near = get_close_matches(word, COMMANDS, n=1, cutoff=0.6)
         if near:
             raise click.UsageError(f"no command or file '{word}'; did you mean '{near[0]}'?")

@@ -8,7 +8,6 @@ from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
 from sysmlc.backends.plantuml import (
     act,
-    author,
     bdd,
     ibd,
     missing,
@@ -65,6 +64,8 @@ class PlantUml:
             sd_remarks.report(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
+            from sysmlc.backends.plantuml import author
+
             _write(graph, list(author.diagrams(graph, sink)), author.FOLDER, output, sink, options)
 
 

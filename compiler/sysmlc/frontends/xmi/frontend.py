@@ -12,7 +12,6 @@ from sysmlc.frontends.xmi import (
     behaviour,
     dangling,
     detect,
-    drawings,
     enterprise_architect,
     enterprise_architect_profiles,
     links,
@@ -28,7 +27,6 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
-from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Fault, Source, SourceError
 
 
@@ -77,12 +75,17 @@ class XmiFrontend:
 
     def companions(self, name: str) -> Sequence[str]:
         """Papyrus' notation file, MagicDraw's entries with shapes."""
+        from sysmlc.frontends.xmi import drawings
+
         return drawings.companions(name)
 
     def drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
         """Keep the diagrams of authors for the pass ``views``."""
+        from sysmlc.frontends.xmi import drawings
+        from sysmlc.ir.drawing import Drawing
+
         ordered = sorted(sources, key=lambda source: source.name)
         models = [source for source in ordered if not is_snapshot(source)]
         graph.store(Drawing, [*graph.derived(Drawing), *drawings.read(models, beside, sink)])

@@ -1,15 +1,11 @@
 """Requirements: their id and text in every dialect, and what must hold between them."""
 
-from html.parser import HTMLParser
-
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
 from sysmlc.passes.classify.requirement_rules import COPY_DIFFERS, NO_ID, REPEATED_ID
 
 _KINDS = (*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION)
-_BLOCKS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul", "ol", "table"])
-_SILENT = frozenset(["head", "style", "script"])
 
 
 def give_requirement(graph: Graph, requirement: Element) -> None:
@@ -25,32 +21,9 @@ def readable(text: str) -> str:
     """The text itself, or the words of an HTML document: MagicDraw keeps formatted text so."""
     if not text.lstrip()[:6].lower().startswith("<html"):
         return text
-    words = _Words()
-    words.feed(text)
-    words.close()
-    rows = (" ".join(row.split()) for row in "".join(words.found).splitlines())
-    return "\n".join(row for row in rows if row)
+    from sysmlc.passes.classify.formatted import words
 
-
-class _Words(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__(convert_charrefs=True)
-        self.found: list[str] = []
-        self._silent = 0
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self._silent += tag in _SILENT
-        if tag in _BLOCKS:
-            self.found.append("\n")
-
-    def handle_endtag(self, tag: str) -> None:
-        self._silent = max(0, self._silent - (tag in _SILENT))
-        if tag in _BLOCKS:
-            self.found.append("\n")
-
-    def handle_data(self, data: str) -> None:
-        if not self._silent:
-            self.found.append(data.replace("\n", " "))
+    return words(text)
 
 
 # -- rules -------------------------------------------------------------------------------------
