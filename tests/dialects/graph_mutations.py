@@ -124,13 +124,27 @@ class Mutation:
             lambda one: one.name and any(graph.targets(one, edge) for edge in ENDS)
         )
         if chosen is None:
-            return False
+            return self._reconnect()
         edge = next(edge for edge in reversed(ENDS) if graph.targets(chosen, edge))
         now = graph.targets(chosen, edge)
         other = self._choose(lambda one: one.name and one.kind is now[0].kind and one not in now)
         if other is None:
             return False
         graph.replace_targets(edge, chosen, [other, *now[1:]])
+        return self._tell("rewired", chosen.name, "ends")
+
+    def _reconnect(self) -> bool:
+        """Another port at the end of a connector."""
+        graph = self._graph
+        chosen = self._choose(lambda one: one.kind is Kind.CONNECTOR and one.name)
+        roles = (
+            [] if chosen is None else [(e, graph.target(e, Edge.ROLE)) for e in graph.owned(chosen)]
+        )
+        found = [(end, role) for end, role in roles if role is not None]
+        other = self._choose(lambda one: one.kind is Kind.PORT and one not in [r for _, r in found])
+        if not found or other is None:
+            return False
+        graph.replace_targets(Edge.ROLE, found[0][0], [other])
         return self._tell("rewired", chosen.name, "ends")
 
     def _value(self) -> bool:

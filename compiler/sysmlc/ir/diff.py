@@ -1,6 +1,6 @@
-"""Difference of two graphs in the modeller's words.
+"""Exact difference of two graphs, for who checks a front end, a back end or a round trip.
 
-Elements are matched by id. When ids, sources and traces are to be ignored, they are matched by
+What changed in a model, for its authors, is told by ``ir.compare``. Elements are matched by id. When ids, sources and traces are to be ignored, they are matched by
 qualified name, kind and position among their equals: what two dialects of one model share.
 """
 
