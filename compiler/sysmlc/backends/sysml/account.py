@@ -1,5 +1,7 @@
 """What of the model the text does not say: elements, edges and attributes that nobody wrote."""
 
+from collections.abc import Mapping
+
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.rules import (
     NAME_LEFT_OUT,
@@ -38,10 +40,16 @@ _NO_NAMES = {
 }
 
 
-def account(book: Book) -> None:
-    """Note all that is not said: first elements, then edges and attributes of those that are."""
+def account(book: Book, dropped: Mapping[str, str]) -> None:
+    """Note all that is not said: first elements, then edges and attributes of those that are.
+
+    ``dropped`` says by id what elements refer to that has no name.
+    """
     for element in book.graph:
-        if element.attrs.get("external"):
+        if element.attrs.get("external") or _is_below(book, element, dropped):
+            continue
+        if element.id in dropped:
+            book.lost(element, dropped[element.id])
             continue
         if _is_unsaid(book, element):
             book.losses.note(UNSAID_KIND, element, kind=str(element.kind))
@@ -49,6 +57,10 @@ def account(book: Book) -> None:
             _name(book, element)
             _attributes(book, element)
     _edges(book)
+
+
+def _is_below(book: Book, element: Element, dropped: Mapping[str, str]) -> bool:
+    return bool(dropped) and any(one.id in dropped for one in book.graph.ancestors(element))
 
 
 def _is_unsaid(book: Book, element: Element) -> bool:

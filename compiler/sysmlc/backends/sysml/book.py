@@ -33,8 +33,10 @@ class Book:
     """What verification cases verify, by the entry's identity."""
     prepared: dict[int, list[Line]] = field(default_factory=dict)
     """What is written before its turn, by the entry's identity."""
-    dropped: set[str] = field(default_factory=set)
-    """Ids of elements that cannot be written."""
+    declared: set[int] = field(default_factory=set)
+    """Identities of attributes that the text needs and that are written after the members."""
+    dropped: dict[str, str] = field(default_factory=dict)
+    """What elements refer to without a name, so that they cannot be written; by their ids."""
     public: frozenset[str] = frozenset()
     """Ids of elements that are written as public because the text refers to them."""
     caex: frozenset[str] = frozenset()
@@ -67,8 +69,7 @@ class Book:
     def drop(self, entry: Entry, what: str) -> list[Line]:
         """A member that cannot be written: nothing may refer to it."""
         if entry.element is not None:
-            self.lost(entry.element, what)
-            self.dropped.add(entry.element.id)
+            self.dropped[entry.element.id] = what
         return []
 
     def approximated(self, element: Element, said: str, written: str) -> None:
@@ -108,7 +109,7 @@ class Book:
         made = self.plan.new(Shape("attribute"), space, free, None)
         space.visible = None
         self.beside(space, f"attribute {quoted(free)} : {self.library(space, type_)}")
-        self.plan.added[id(made)] = type_
+        self.declared.add(id(made))
         return quoted(free)
 
     def members(self, entry: Entry) -> list[Line]:
@@ -118,6 +119,8 @@ class Book:
 
     def member(self, entry: Entry) -> list[Line]:
         """One member."""
+        if id(entry) in self.declared:
+            return []
         if entry.element is None:
             return self.writers[""](self, entry)
         write = self.writers.get(str(entry.element.kind))

@@ -40,7 +40,8 @@ def constraint(book: Book, entry: Entry) -> list[Line]:
     words = [*visibility(book, element), *marked, "constraint", name]
     body = annotations.of(book, entry) + book.members(entry)
     body += [Line("", text=[result])] if result else opaque_lines(book, entry, element)
-    lines = [Line(" ".join(one for one in words if one), body)]
+    head = " ".join(one for one in words if one)
+    lines = [Line(head, body, is_short=len(body) == 1)]
     return lines + _about(book, entry, element)
 
 

@@ -35,13 +35,13 @@ def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
     to have no place.
     """
     public: frozenset[str] = frozenset()
-    dropped: frozenset[str] = frozenset()
+    dropped: dict[str, str] = {}
     while True:
-        book, lines = _written(graph, public, dropped)
-        if public >= book.plan.shown and dropped >= book.dropped:
+        book, lines = _written(graph, public, frozenset(dropped))
+        if public >= book.plan.shown and dropped.keys() >= book.dropped.keys():
             break
         public, dropped = public | book.plan.shown, dropped | book.dropped
-    account(book)
+    account(book, dropped)
     book.losses.report(sink)
     return printed(lines), book.uses_library
 

@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.words import quoted, string
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import type_of
 
 
@@ -35,20 +35,24 @@ def message(book: Book, entry: Entry) -> list[Line]:
     assert element is not None
     ends = [_end(book, entry, element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
     head = f"message {quoted(entry.name)}"
-    for one in book.graph.targets(element, Edge.CALLS):
-        other = book.plan.entry(one)
-        if other is not None and other.shape.is_definition:
-            name = book.name(entry.parent, element, Edge.CALLS, one)
-            head += f" of {name}"
-        elif other is not None:
-            head += f" of {quoted(other.name)} : {book.ours(entry.parent, 'Call')}"
-        break
+    head += _payload(book, entry, element)
     if None not in ends:
         head += f" from {ends[0]} to {ends[1]}"
     elif any(one is not None for one in ends):
         book.approximated(element, "a message with one end", "a message without ends")
     _say_ends(book, element)
     return [Line(head, _facts(book, entry, element) + contents(book, entry))]
+
+
+def _payload(book: Book, entry: Entry, element: Element) -> str:
+    """What is transferred: the signal, or the call of an operation."""
+    target = book.graph.target(element, Edge.CALLS)
+    other = book.plan.entry(target)
+    if target is None or other is None:
+        return ""
+    if other.shape.is_definition:
+        return f" of {book.name(entry.parent, element, Edge.CALLS, target)}"
+    return f" of {book.ours(entry.parent, 'Call')}"
 
 
 def _end(book: Book, entry: Entry, element: Element, edge: Edge) -> str | None:
@@ -62,12 +66,17 @@ def _say_ends(book: Book, element: Element) -> None:
 
 
 def _facts(book: Book, entry: Entry, element: Element) -> list[Line]:
-    facts = {key: element.attrs.get(key) for key in ("message_kind",)}
     given = element.attrs.get("arguments")
     texts = given if isinstance(given, tuple) else ()
     lines = [Line(f"attribute argument{n} = {string(str(one))}") for n, one in enumerate(texts, 1)]
-    name = element.subkind or facts["message_kind"]
-    return [annotations.ours(book, entry, "Kind", {"name": name}), *lines] if name else lines
+    target = book.graph.target(element, Edge.CALLS)
+    called = book.plan.entry(target)
+    is_operation = called is not None and not called.shape.is_definition and target is not None
+    facts: dict[str, AttrValue] = {
+        "name": element.subkind or element.attrs.get("message_kind"),
+        "calls": book.graph.qualified_name(target) if is_operation and target else None,
+    }
+    return [annotations.ours(book, entry, "Kind", facts), *lines] if any(facts.values()) else lines
 
 
 def fragment(book: Book, entry: Entry) -> list[Line]:
@@ -80,7 +89,7 @@ def fragment(book: Book, entry: Entry) -> list[Line]:
     if guard is not None and str(guard) != "else":
         book.approximated(element, "the guard of an operand", "a constraint in it")
         text = condition(book, entry, element, str(guard))
-        body.append(Line("assert constraint", [Line("", text=[text])]))
+        body.append(Line("assert constraint", [Line("", text=[text])], is_short=True))
     for one in book.graph.targets(element, Edge.CALLS):
         other = book.plan.entry(one)
         name = book.name(entry, element, Edge.CALLS, one)

@@ -26,6 +26,8 @@ class Line:
     @property
     def inline(self) -> str | None:
         """The whole member in one line, or None when it is not meant to be, or too long."""
+        if not self.head and len(self.text) == 1 and not self.text[0].startswith("/*"):
+            return self.text[0]
         if self.text or self.tail or "\n" in self.head:
             return None
         if not self.body:

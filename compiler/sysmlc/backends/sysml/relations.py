@@ -106,8 +106,7 @@ def _plain(book: Book, entry: Entry) -> list[Line]:
     assert element is not None
     clients, suppliers = _ends(book, entry)
     if not clients or not suppliers:
-        book.dropped.add(element.id)
-        return []
+        return book.drop(entry, "client or supplier")
     word = _KEYWORDS.get(element.role) or _SUBKINDS.get(element.subkind)
     if element.role == "refine":
         mark = f"#{book.library(entry.parent, 'ModelingMetadata::refinement')} "

@@ -48,8 +48,8 @@ APPROXIMATED = rule(
     Severity.INFO,
     "{said} is written as {written} ({count} in the text)",
     why="SysML v2 says it in another way, from which it cannot be read back the same.",
-    wrong='Package p "Plant"\n  Class a "A" subkind="device"\n',
-    right='Package p "Plant"\n  Class a "A"\n',
+    wrong='Package p "Plant"\n  Enumeration a "A"\n    -> specializes b\n  Enumeration b "B"\n',
+    right='Package p "Plant"\n  DataType a "A"\n    -> specializes b\n  DataType b "B"\n',
 )
 TEXT_AS_NAME = rule(
     "SM735",

@@ -1,0 +1,47 @@
+"""Writes graphs as SysML v2 text, for the tests of the back end ``sysml``."""
+
+from sysmlc import resources
+from sysmlc.backends.sysml.backend import LIBRARY
+from sysmlc.backends.sysml.document import document
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.xmi import FRONTEND
+from sysmlc.ir import Graph, parse_text
+from sysmlc.passes import pipeline
+from sysmlc.sources import Source
+
+PASSES = ("resolve", "inherit", "classify", "ports")
+
+
+def read(data, name="model.uml"):
+    """The graph of an XMI document, classified."""
+    graph, sink = Graph(), Sink()
+    FRONTEND.read([Source(name, data)], graph, sink, Coverage())
+    pipeline.pipeline(PASSES).run(graph, sink)
+    return graph
+
+
+def refined(text):
+    """The graph that a text form means, classified."""
+    graph = parse_text(text)
+    pipeline.pipeline(PASSES).run(graph, Sink())
+    return graph
+
+
+def written(graph):
+    """The files, by name, and what they do not say: codes and messages."""
+    sink = Sink()
+    text, uses_library = document(graph, sink)
+    files = {"model.sysml": text}
+    if uses_library:
+        files[LIBRARY] = resources.text("metamodels", LIBRARY)
+    return files, [f"{found.rule.code} {found.message}" for found in sink]
+
+
+def text_of(model):
+    """The text of a small model in text form."""
+    return written(refined(model))[0]["model.sysml"]
+
+
+def lines_of(model):
+    """The lines of a small model, without indentation and empty lines."""
+    return [line.strip() for line in text_of(model).splitlines() if line.strip()]
