@@ -98,7 +98,7 @@ class Finder:
         return self._other_ids.get(plain(text))
 
     def _along(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
-        level = [one for one in self.roots() if one.name == names[0]]
+        level = [one for one in self.roots() if one.name == names[0] and all(names)]
         for name in names[1:]:
             inside = [one for top in level for one in self._inside(top, name)]
             level = list(dict.fromkeys(inside))

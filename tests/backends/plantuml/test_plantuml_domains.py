@@ -1,0 +1,184 @@
+"""Physical things and information are told apart; ports stand where their lines run on."""
+
+import re
+
+import pytest
+from drawing import emitted
+
+from sysmlc.backends.plantuml.connections import Connection, Path
+from sysmlc.backends.plantuml.domains import styled
+from sysmlc.backends.plantuml.sides import sides
+from sysmlc.diagnostics import Sink
+from sysmlc.ir.text import parse_text
+from sysmlc.passes import pipeline
+
+CELL = """\
+Package cell "Cell"
+  Class pallet "Pallet" role="block" {pallet}
+  Class tag "Tag" role="block" {tag}
+  Class track "Track" role="interface block"
+  Class stop "Stop" role="block"
+    Port stop.out "out"
+      -> typed-by track
+    Port stop.tag "tag"
+      -> typed-by track
+  Class belt "Belt" role="block"
+    Port belt.in "in"
+      -> typed-by track
+    Port belt.tag "tag"
+      -> typed-by track
+  Class line "Line" role="block"
+    Property st "st" aggregation="composite" role="part"
+      -> typed-by stop
+    Property bt "bt" aggregation="composite" role="part"
+      -> typed-by belt
+    Connector l1 "l1"
+      -> end l1.a l1.b
+      ConnectorEnd l1.a
+        -> role stop.out
+        -> path st
+      ConnectorEnd l1.b
+        -> role belt.in
+        -> path bt
+    Connector l2 "l2"
+      -> end l2.a l2.b
+      ConnectorEnd l2.a
+        -> role stop.tag
+        -> path st
+      ConnectorEnd l2.b
+        -> role belt.tag
+        -> path bt
+  ItemFlow f1
+    -> flow-source stop.out
+    -> flow-target belt.in
+    -> realizing l1
+    -> conveys pallet
+  ItemFlow f2
+    -> flow-source {source}
+    -> flow-target {target}
+    -> realizing l2
+    -> conveys tag
+"""
+PHYSICAL, INFORMATION = 'domain="physical"', 'domain="information"'
+
+
+def drawn(pallet=PHYSICAL, tag=INFORMATION, source="stop.tag", target="belt.tag"):
+    """The internal block diagram of the line."""
+    graph = parse_text(CELL.format(pallet=pallet, tag=tag, source=source, target=target))
+    pipeline.run(graph, Sink(), until="flows")
+    files, _ = emitted(graph)
+    (text,) = (one.text for one in files if one.path.endswith("Line.ibd.puml"))
+    return text
+
+
+def arrows(text):
+    return {m[2]: m[1] for m in re.finditer(r"^\w+ (\S+) \w+ : (l\d)\\n", text, re.MULTILINE)}
+
+
+def test_each_domain_has_its_line_and_its_colour():
+    text = drawn()
+    assert arrows(text) == {"l1": "-[$physical_line]->", "l2": "-[$information_line]->"}
+    assert r"l1\n<color:$physical>Pallet</color>" in text
+    assert r"l2\n<color:$information>Tag</color>" in text
+
+
+def test_colours_are_told_apart_by_the_colour_blind_and_lines_without_colour():
+    text = drawn()
+    assert '!$physical = "#0072B2"' in text
+    assert '!$information = "#D55E00"' in text
+    assert '!$information_line = $information + ",dashed,thickness=2"' in text
+    assert '!$physical_line = $physical + ",thickness=2"' in text
+
+
+@pytest.mark.parametrize(
+    ("pallet", "tag", "listed"),
+    [
+        (PHYSICAL, INFORMATION, ["physical", "information"]),
+        (INFORMATION, PHYSICAL, ["physical", "information"]),
+        (PHYSICAL, "", ["physical"]),
+        ("", INFORMATION, ["information"]),
+    ],
+)
+def test_the_legend_lists_what_there_is(pallet, tag, listed):
+    legend = drawn(pallet, tag).partition("legend bottom right\n")[2].partition("endlegend")[0]
+    assert re.findall(r"<color:\$(\w+)>", legend) == listed
+
+
+def test_without_domains_nothing_is_added():
+    text = drawn("", "")
+    assert "legend bottom" not in text
+    assert "$" not in text
+    assert arrows(text) == {"l1": "-->", "l2": "-->"}
+
+
+def test_a_flow_back_has_its_head_at_the_first_end():
+    assert arrows(drawn(source="belt.tag", target="stop.tag"))["l2"] == "<-[$information_line]-"
+
+
+def test_a_flow_both_ways_has_two_heads_and_is_told_once():
+    text = drawn(source="stop.tag belt.tag", target="belt.tag stop.tag")
+    assert arrows(text)["l2"] == "<-[$information_line]->"
+    assert text.count(">Tag<") == 1
+
+
+def test_two_domains_over_one_connector_keep_their_colours_and_the_line_has_none():
+    graph = parse_text(
+        CELL.format(pallet=PHYSICAL, tag=INFORMATION, source="stop.out", target="belt.in").replace(
+            "-> realizing l2", "-> realizing l1"
+        )
+    )
+    pipeline.run(graph, Sink(), until="flows")
+    files, _ = emitted(graph)
+    (text,) = (one.text for one in files if one.path.endswith("Line.ibd.puml"))
+    assert arrows(text)["l1"] == "-->"
+    assert r"l1\n<color:$physical>Pallet</color>\n<color:$information>Tag</color>" in text
+
+
+@pytest.mark.parametrize(
+    ("arrow", "domain", "expected"),
+    [
+        ("--", "physical", "-[$physical_line]-"),
+        ("..>", "information", ".[$information_line].>"),
+        ("-[dashed]-", "physical", "-[dashed]-"),
+        ("-->", "", "-->"),
+        ("-->", "digital", "-->"),
+    ],
+)
+def test_arrows_are_styled_by_domain(arrow, domain, expected):
+    assert styled(arrow, domain) == expected
+
+
+# -- sides -------------------------------------------------------------------------------------
+
+
+def link(first, second, arrow="--"):
+    ends = [Path(tuple(e.split(".")[:-1]), (), e.split(".")[-1]) for e in (first, second)]
+    return Connection(*ends, arrow)
+
+
+@pytest.mark.parametrize(
+    ("links", "right"),
+    [
+        ([link("a.p", "b.q")], {"a.p"}),
+        ([link("a.p", "b.q", "<--")], {"b.q"}),
+        ([link("in", "a.p"), link("a.q", "out")], {"a.q", "out"}),
+        (
+            [link("in", "a.i", "-->"), link("a.o", "b.i", "-->"), link("b.x", "x")],
+            {"a.o", "b.x", "x"},
+        ),
+        ([link("a.p", "b.q"), link("b.r", "a.s")], {"a.p", "b.r"}),
+        ([link("a.p", "a.q")], {"a.p"}),
+    ],
+)
+def test_ports_stand_on_the_side_to_which_their_lines_run(links, right):
+    found = {".".join(key) for key, form in sides(links).items() if form == "portout"}
+    assert found == right
+
+
+def test_ports_of_nested_parts_stay_where_the_layout_can_cope():
+    assert sides([link("a.b.p", "c.q")]) == {}
+
+
+@pytest.mark.plantuml
+def test_plantuml_draws_it(plantuml):
+    assert len(plantuml.render({"line": drawn()})) == 1
