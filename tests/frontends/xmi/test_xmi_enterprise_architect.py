@@ -84,6 +84,53 @@ def test_notes_of_features_parameters_connectors_and_ends():
     }
 
 
+def constraint(values):
+    return about("EAID_G", f"<constraints><constraint {values}/></constraints>")
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ('name="speed &lt; 3" type="OCL"', 'body="speed < 3" language="OCL"'),
+        (
+            'name="slow" type="Invariant" notes="speed is low"',
+            'body="speed is low" subkind="invariant"',
+        ),
+        ('name="open" type="Pre-condition"', 'body="open" subkind="precondition"'),
+        (
+            'name="open" type="Post-condition" status="Approved"',
+            'body="open" subkind="postcondition"',
+        ),
+        ('name="by hand" type="Process"', 'body="by hand" tag.type="Process"'),
+    ],
+)
+def test_constraints_of_the_extension_are_constraints(values, told):
+    reading = ea(extension=constraint(values))
+    (found,) = [e for e in reading.graph if e.kind == "Constraint"]
+    assert found.owner == "EAID_G"
+    assert " ".join(f'{key}="{value}"' for key, value in sorted(found.attrs.items())) == told
+    assert found.name == ("slow" if "notes" in values else "")
+    assert (reading.findings, reading.totals["mapped"]) == ([], 5)
+
+
+@pytest.mark.parametrize("said", ['name="slow"', 'name="other"', ""])
+def test_a_constraint_that_the_model_has_too_is_one(said):
+    model = GATE.replace(
+        "{}",
+        f'<ownedRule xmi:type="uml:Constraint" xmi:id="r" {said}><specification'
+        ' xmi:type="uml:OpaqueExpression" body="v &lt; 3"/></ownedRule>',
+    )
+    extension = constraint('name="slow" type="Invariant" notes="v &lt; 3"')
+    assert [e.id for e in ea(model, extension).graph if e.kind == "Constraint"] == ["r"]
+
+
+def test_a_constraint_without_a_word_or_an_element_is_notation():
+    for extension in (constraint('type="OCL"'), constraint('name="x"').replace("EAID_G", "none")):
+        reading = ea(extension=extension)
+        assert [e for e in reading.graph if e.kind == "Constraint"] == []
+        assert reading.totals["mapped"] == 3
+
+
 def test_tagged_values_without_a_stereotype_belong_to_the_element():
     tags = '<tags><tag xmi:id="t" name="Mass" value="12 kg"/><tag xmi:id="u" name="Empty"/></tags>'
     assert ea(extension=about("EAID_G", tags)).graph["EAID_G"].attrs == {"tag.Mass": "12 kg"}

@@ -1,7 +1,7 @@
 """What Enterprise Architect keeps beside the model: notes, tagged values, stereotypes.
 
-Its extension repeats most of the model. Read are notes (as comments), tagged values without a
-stereotype, and stereotypes without an application; the rest is notation.
+Its extension repeats most of the model. Read are notes (as comments), constraints, tagged values
+without a stereotype, and stereotypes without an application; the rest is notation.
 """
 
 import re
@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.enterprise_architect_constraints import constraints
 from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of, qualified
 from sysmlc.frontends.xmi.profiles import mangled
 from sysmlc.ir import Edge, Element, Kind
@@ -128,6 +129,7 @@ def _place(context: Context, row: int) -> tuple[int, str]:
 
 
 _DETAILS: dict[str, Callable[[Context, Element, int], None]] = {
+    "constraints": constraints,
     "properties": _note,
     "documentation": _note,
     "tags": _tags,
