@@ -323,20 +323,20 @@ def test_an_open_side_is_an_info():
     assert reading.to("Plant::cell::l", "client") == ["Plant::cell::a::out"]
 
 
-def test_links_of_a_class_are_its_own_and_are_not_repeated_by_its_instances():
+@pytest.mark.parametrize("is_class_first", [True, False])
+def test_links_of_a_class_are_its_own_and_are_not_repeated_by_its_instances(is_class_first):
     inside = (
         '<InternalElement Name="a" ID="{0}a"><ExternalInterface Name="p" ID="{0}p"/>'
         '</InternalElement><InternalElement Name="b" ID="{0}b"><ExternalInterface Name="q" '
         'ID="{0}q"/></InternalElement>'
         '<InternalLink Name="l" RefPartnerSideA="{0}p" RefPartnerSideB="{0}q"/>'
     )
-    reading = Read(
-        classes(f'<SystemUnitClass Name="C">{inside.format("c")}</SystemUnitClass>')
-        + plant(
-            '<InternalElement Name="x" ID="x" RefBaseSystemUnitPath="Lib/C">'
-            f"{inside.format('x')}</InternalElement>"
-        )
+    of_class = classes(f'<SystemUnitClass Name="C">{inside.format("c")}</SystemUnitClass>')
+    of_plant = plant(
+        '<InternalElement Name="x" ID="x" RefBaseSystemUnitPath="Lib/C">'
+        f"{inside.format('x')}</InternalElement>"
     )
+    reading = Read(of_class + of_plant if is_class_first else of_plant + of_class)
     connectors = [c for c in reading.graph if c.kind.value == "Connector"]
     assert [reading.graph.qualified_name(c) for c in connectors] == ["Lib::C::l"]
 

@@ -9,6 +9,7 @@ from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.frontends.caex import measures, rules
+from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
@@ -41,7 +42,8 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
     for document in context.documents:
         _count(document, coverage.file(document.name))
         lost: dict[str, list[Node]] = {}
-        for row, verdict in enumerate(document.verdicts):
+        unread = None in document.verdicts
+        for row, verdict in enumerate(document.verdicts) if unread else ():
             if verdict is None:
                 lost.setdefault(document.tags[row], []).append(document.node(row))
         unordered = map(document.node, _unordered(document))
@@ -59,8 +61,9 @@ def _count(document: Document, counts: FileCoverage) -> None:
     found = Counter(zip(document.tags, verdicts, strict=True))
     for (tag, verdict), number in found.items():
         counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
-    for tag, column in document.texts.items():
-        for verdict, number in Counter(map(verdicts.__getitem__, column)).items() if tag else ():
+    for tag in FOLDED:
+        column = document.texts[tag]
+        for verdict, number in Counter(map(verdicts.__getitem__, column)).items():
             counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
 
 
@@ -69,9 +72,10 @@ def _unordered(document: Document) -> list[int]:
     tags, ends, parents = document.tags, document.ends, document.parents
     if ORDER.keys() >= set(tags[1:]):
         following = [*tags, ""]
-        pairs = list(zip(tags, map(following.__getitem__, ends), strict=True))
-        wrong = {p for p in set(pairs) if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
-        rows = (row for row, pair in enumerate(pairs) if pair in wrong)
+        pairs = set(zip(tags, map(following.__getitem__, ends), strict=True))
+        wrong = {p for p in pairs if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
+        found = zip(tags, map(following.__getitem__, ends), strict=True)
+        rows = (row for row, pair in enumerate(found) if pair in wrong)
         return sorted({parents[row] for row in rows if parents[ends[row]] == parents[row]})
     ranks = [ORDER.get(tag, -1) for tag in tags]
     highest: dict[int, int] = {}

@@ -32,12 +32,21 @@ _STRUCTURE = frozenset(
 """Elements that hold no text of their own."""
 
 
-class _Local(dict[str, str]):
-    """Local name of each tag, found once."""
+_Texts = dict[int, str]
 
-    def __missing__(self, tag: str) -> str:
-        self[tag] = name = tag.rpartition(SEPARATOR)[2]
-        return name
+
+class _Kinds(dict[str, _Texts | None]):
+    """What text each tag has: none, one that is folded, or (the column of) its own."""
+
+    def __init__(self, texts: dict[str, _Texts]) -> None:
+        super().__init__()
+        self._texts = texts
+
+    def __missing__(self, tag: str) -> _Texts | None:
+        name = tag.rpartition(SEPARATOR)[2]
+        own = None if name in _STRUCTURE else self._texts[""]
+        self[tag] = kind = self._texts.get(name, own) if name else own
+        return kind
 
 
 def fill(document: "Document", source: Source) -> None:
@@ -46,6 +55,8 @@ def fill(document: "Document", source: Source) -> None:
     try:
         _handle(document, source, made)
         parse(source, made)
+        local = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
+        document.tags = [local[tag] for tag in document.tags]
     finally:
         # The handlers know the parser and the columns: nothing else ends this circle.
         made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
@@ -59,11 +70,11 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
     """
     tags, ends, texts = document.tags, document.ends, document.texts
     stack = [-1]
-    local = _Local()
+    kinds = _Kinds(texts)
     deepest = DEFAULT_LIMITS.depth
     own = texts[""]
     ordinal = -1
-    folding: dict[int, str] | None = None
+    folding: _Texts | None = None
     depth = 0
     add_tag, add_attributes = tags.append, document.attributes.append
     add_parent, add_ordinal = document.parents.append, document.ordinals.append
@@ -72,24 +83,22 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
     def start(tag: str, values: dict[str, str]) -> None:
         nonlocal ordinal, folding, depth
         ordinal += 1
-        name = local[tag]
-        if name not in _STRUCTURE:
+        above = stack[-1]
+        kind = kinds[tag]
+        if kind is not None:
             made.CharacterDataHandler = text
             made.EndElementHandler = end_of_text
-            above = stack[-1]
-            if not values and name in texts and folding is None and above >= 0:
-                column = texts[name]
-                if above not in column:
-                    folding, depth = column, len(stack)
-                    column[above] = ""
-                    return
-        row = len(tags)
-        add_tag(name)
+            is_folded = not values and kind is not own and folding is None
+            if is_folded and above >= 0 and above not in kind:
+                folding, depth = kind, len(stack)
+                kind[above] = ""
+                return
+        push(len(tags))
+        add_tag(tag)
         add_attributes(values)
-        add_parent(stack[-1])
+        add_parent(above)
         add_ordinal(ordinal)
         add_end(0)
-        push(row)
         if len(stack) > deepest:
             too_deep(source, made)
 
@@ -110,7 +119,7 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
     def text(data: str) -> None:
         row = stack[-1]
         column = folding if folding is not None and len(stack) == depth else own
-        column[row] = column.get(row, "") + data
+        column[row] = column[row] + data if column.get(row) else data
 
     made.StartElementHandler = start
     made.EndElementHandler = end

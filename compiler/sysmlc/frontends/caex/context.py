@@ -49,8 +49,8 @@ class Context:
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
         self.references: dict[str, bool] = {}
         """Whether texts in the place of class paths are ids."""
-        self.shown: dict[Type, Kind | None] = {}
-        """Facet or Group for the roles that mean one."""
+        self.shown: dict[tuple[Document, str], Kind | None] = {}
+        """Facet or Group for the paths of roles that mean one."""
         self._found: dict[tuple[Document, Family, str], Type] = {}
         self._shared: set[tuple[str, str]] = set()
         self._know_roots()

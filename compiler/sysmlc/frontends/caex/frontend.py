@@ -85,9 +85,8 @@ def _lower(context: Context) -> None:
     mirrors.finish(context)
     roles.lower(context, sites)
     mappings.lower(context, sites)
-    drawn = Links(context, sites)
+    Links(context, sites).lower()
     for document in context.documents:
-        drawn.lower(document)
         metadata.lower(context, document)
     libraries.set_apart(context)
 

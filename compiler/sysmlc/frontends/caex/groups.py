@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import own
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.site import Site
@@ -17,14 +17,22 @@ _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
 
 def kind_of(context: Context, site: Site) -> Kind | None:
     """Facet or Group when the element plays that role, by inheritance and never by name."""
-    for role in roles_of(context, site):
-        if role not in context.shown:
-            kinds = (kind for name, kind in _KINDS.items() if role.conforms(*BASE_ROLE, name))
-            context.shown[role] = next(kinds, None)
-        kind = context.shown[role]
+    document = site.document
+    for row in site.roles:
+        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "")
+        key = (document, path)
+        kind = context.shown[key] if key in context.shown else _look_up(context, document, path)
         if kind is not None:
             return kind
     return None
+
+
+def _look_up(context: Context, document: Document, path: str) -> Kind | None:
+    role = context.look_up(path.strip(), Family.ROLE, document) if path.strip() else None
+    is_known = isinstance(role, Type)
+    kinds = (kind for name, kind in _KINDS.items() if is_known and role.conforms(*BASE_ROLE, name))
+    kind = context.shown[document, path] = next(kinds, None)
+    return kind
 
 
 def roles_of(context: Context, site: Site) -> Iterator[Type]:

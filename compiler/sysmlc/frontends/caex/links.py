@@ -28,14 +28,22 @@ class Links:
         self._from: list[str] = []
         self._to: list[Element | None] = []
 
-    def lower(self, document: Document) -> None:
-        """Add a connector for each link of a file; those of classes come first."""
-        for row, tag in enumerate(document.tags):
-            if tag == "InternalLink":
-                self._link(row, document)
+    def lower(self) -> None:
+        """Add a connector for each link; those of classes first, as instances repeat them."""
+        for are_instances in (False, True):
+            for document in self._context.documents:
+                for row in document.children(0):
+                    if (document.tags[row] == "InstanceHierarchy") is are_instances:
+                        self._lower_below(row, document)
         self._context.graph.connect_all(self._edges, self._from, self._to)
         for column in (self._edges, self._from, self._to):
             column.clear()
+
+    def _lower_below(self, top: int, document: Document) -> None:
+        tags = document.tags
+        for row in range(top, document.ends[top]):
+            if tags[row] == "InternalLink":
+                self._link(row, document)
 
     def _link(self, row: int, document: Document) -> None:
         document.verdicts[row] = Verdict.MAPPED
@@ -98,23 +106,18 @@ class Links:
     def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
         graph, above = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
-        edge, start, target = self._edges.append, self._from.append, self._to.append
         for side, (port, site) in zip(SIDES, ends, strict=True):
             id = f"{above}#{side}"
             made = graph.new(id, Kind.CONNECTOR_END, "", above, ordinal, source)
             if made is None:
                 id = f"{id}~{ordinal}"
                 made = graph.add(Element(id, Kind.CONNECTOR_END, "", above, ordinal, source))
-            edge(Edge.END)
-            start(above)
-            target(made)
-            edge(Edge.ROLE)
-            start(id)
-            target(graph[port])
-            for step in self._steps_to(site)[0 if crosses else 1 :]:
-                edge(Edge.PATH)
-                start(id)
-                target(step)
+            steps = self._steps_to(site)[0 if crosses else 1 :]
+            self._edges += (Edge.END, Edge.ROLE)
+            self._edges += [Edge.PATH] * len(steps)
+            self._from.append(above)
+            self._from += [id] * (1 + len(steps))
+            self._to += (made, graph[port], *steps)
 
     def _steps_to(self, site: Site) -> list[Element | None]:
         """The Instance at the top (if any), and the parts that lead down to an element."""

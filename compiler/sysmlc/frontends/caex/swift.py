@@ -84,7 +84,7 @@ class Swift:
             plan = self._plans[declared] = _Plan(context, declared)
         tags, attributes, verdicts = document.tags, document.attributes, document.verdicts
         known_attributes, ends = plan.attributes, document.ends
-        values_of, odd = document.texts["Value"], self._odd
+        values_of = document.texts["Value"]
         for row in site.members:
             tag, values = tags[row], attributes[row]
             name = values.get("Name", "")
@@ -95,7 +95,7 @@ class Swift:
                     is_read = self._plain.attribute(site.own or own(context, site), row)
                 elif ends[row] > row + 1:
                     is_read = self._structure(site, row, known)
-                elif (values == known.template and row not in odd) or self._repeats(row, known):
+                elif self._repeats(row, values, known):
                     is_read = True
                     verdicts[row] = Verdict.MAPPED
                     text = values_of.get(row)
@@ -120,12 +120,14 @@ class Swift:
             site.interface_ids.append((port, id))
         return True
 
-    def _repeats(self, row: int, known: _Known) -> bool:
+    def _repeats(self, row: int, values: dict[str, str], known: _Known) -> bool:
         """Whether a row says what the class says, but for its value and rows inside."""
         if row in self._odd:
             return False
         document = self._document
-        values = document.attributes[row]
+        if values == known.template:
+            document.attributes[row] = known.template
+            return True
         stated = (
             values.get("Unit"),
             values.get("AttributeDataType"),
@@ -148,7 +150,7 @@ class Swift:
         found = []
         while waiting:
             row, one, path = waiting.pop()
-            if not self._repeats(row, one):
+            if not self._repeats(row, attributes[row], one):
                 return False
             found.append((row, one, path))
             for child in document.children(row):
