@@ -1,6 +1,8 @@
 """References as a front end found them, before they are edges."""
 
-from collections.abc import Iterator
+from bisect import bisect
+from collections.abc import Collection, Iterator
+from itertools import compress
 from typing import NamedTuple
 
 from sysmlc.ir.element import Element
@@ -37,11 +39,18 @@ class References:
 
     __slots__ = ("edges", "ordinals", "said", "sources", "targets")
 
-    def __init__(self) -> None:
-        self.edges: list[Edge] = []
-        self.sources: list[End] = []
-        self.targets: list[End] = []
-        self.ordinals: list[int] = []
+    def __init__(
+        self,
+        edges: list[Edge] | None = None,
+        sources: list[End] | None = None,
+        targets: list[End] | None = None,
+        ordinals: list[int] | None = None,
+    ) -> None:
+        """References of these columns, which are taken over."""
+        self.edges = [] if edges is None else edges
+        self.sources = [] if sources is None else sources
+        self.targets = [] if targets is None else targets
+        self.ordinals = [] if ordinals is None else ordinals
         self.said: dict[int, tuple[Kind, str]] = {}
         """What is known of external targets, by the number of the reference."""
 
@@ -67,18 +76,39 @@ class References:
         self.targets.append(target)
         self.ordinals.append(ordinal)
 
-    def extend(
-        self,
-        edges: list[Edge],
-        sources: list[End],
-        targets: list[End],
-        ordinals: list[int],
-    ) -> None:
-        """Add references to elements that are there, column by column."""
-        self.edges += edges
-        self.sources += sources
-        self.targets += targets
-        self.ordinals += ordinals
+    def __setitem__(self, number: int, reference: Reference) -> None:
+        edge, source, target, kind, name, ordinal = reference
+        if name or kind is not Kind.CLASS:
+            self.said[number] = (kind, name)
+        self.edges[number], self.ordinals[number] = edge, ordinal
+        self.sources[number], self.targets[number] = source, target
+
+    def _take(self, others: "References") -> None:
+        self.edges, self.sources = others.edges, others.sources
+        self.targets, self.ordinals = others.targets, others.ordinals
+        self.said = others.said
+
+    def turn(self, number: int) -> None:
+        """Let the reference lead from its target to its source."""
+        sources, targets = self.sources, self.targets
+        sources[number], targets[number] = targets[number], sources[number]
+
+    def extend(self, others: "References", without: Collection[int] = ()) -> None:
+        """Add all others but those with the numbers ``without``; the others may be taken over."""
+        if not self.edges and not without:
+            self._take(others)
+            return
+        lost, start = sorted(without), len(self.edges)
+        for number, said in others.said.items():
+            if number not in without:
+                self.said[start + number - bisect(lost, number)] = said
+        is_kept = bytearray(b"\1") * len(others)
+        for number in lost:
+            is_kept[number] = 0
+        self.edges += compress(others.edges, is_kept)
+        self.sources += compress(others.sources, is_kept)
+        self.targets += compress(others.targets, is_kept)
+        self.ordinals += compress(others.ordinals, is_kept)
 
     def forget_elements(self) -> None:
         """Know all ends by their ids alone: elements may leave the graph."""

@@ -22,6 +22,9 @@ _IRREGULAR = "MDFoundation:MDExtension"
 
 _SPECIAL = _DRAWINGS | {_IRREGULAR}
 
+_NOTHING: dict[str, str] = {}
+"""Attributes of rows that have none; nobody changes attributes."""
+
 _TOP = [-1]
 
 _Start = Callable[[str, dict[str, str]], None]
@@ -71,7 +74,8 @@ class _Filling:
         if self._prefixes is not None:
             self._handle_root(self._prefixes, start)
         parse(self._source, self._made)
-        self._document.ordinals = _ordinals(len(self._document.tags), self.breaks)
+        if self.breaks:
+            self._document.ordinals = _ordinals(len(self._document.tags), self.breaks)
 
     def _handle_root(self, prefixes: Prefixes, start: _Start) -> None:
         def root(tag: str, values: dict[str, str]) -> None:
@@ -85,21 +89,27 @@ class _Filling:
         ends = self._document.ends
         add_tag, add_attributes = tags.append, self._document.attributes.append
         add_parent, add_end = self._document.parents.append, ends.append
+        add_ordinal = self._document.ordinals.append
         push, pop = stack.append, stack.pop
         deepest = DEFAULT_LIMITS.depth
+        following = len(tags)
 
         def start(tag: str, values: dict[str, str]) -> None:
-            row = len(tags)
+            # Columns share their numbers: a number of its own is four times its place in a list.
+            nonlocal following
+            row = following
+            following = row + 1
+            add_ordinal(row)
             add_tag(tag)
-            add_attributes(values)
+            add_attributes(values or _NOTHING)
             add_parent(stack[-1])
-            add_end(0)
+            add_end(row)
             push(row)
             if tag in _SPECIAL or len(stack) > deepest:
                 self._special(tag)
 
         def end(_tag: str) -> None:
-            ends[pop()] = len(tags)
+            ends[pop()] = following
 
         def text(data: str) -> None:
             if not data.isspace():

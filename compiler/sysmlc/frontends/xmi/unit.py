@@ -11,7 +11,7 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.identity import is_unmistakable
-from sysmlc.ir.reference import End, id_of
+from sysmlc.ir.reference import End, References, id_of
 
 NOWHERE = -1
 """The row of what is not in the file; no element is below it."""
@@ -107,12 +107,12 @@ class Links:
         self.found.append(NOWHERE)
         self.rows.append(link.row)
 
-    def runs(self) -> Iterator[tuple[int, int, Lowered]]:
-        """First and last number of each run of links in one file."""
+    def runs(self) -> Iterator[tuple[range, Lowered]]:
+        """Numbers of each run of links in one file."""
         last = (len(self.edges), None)
         for (start, lowered), (end, _) in pairwise([*self.files, last]):
             if lowered is not None:
-                yield start, end, lowered
+                yield range(start, end), lowered
 
     def clear(self) -> None:
         """Forget all links."""
@@ -225,34 +225,35 @@ class Unit:
 
     def flush(self) -> None:
         """Give all references to the graph, in the order in which they were found."""
-        for start, end, lowered in self.links.runs():
-            self._flush(start, end, lowered)
+        for numbers, lowered in self.links.runs():
+            self._flush(numbers, lowered)
         self.links.clear()
 
-    def _flush(self, start: int, end: int, lowered: Lowered) -> None:
+    def _flush(self, numbers: range, lowered: Lowered) -> None:
         """Column by column for all links at once, but for those that have to be looked at."""
-        links, pending = self.links, self.graph.pending
-        edges, sources = links.edges[start:end], links.sources[start:end]
-        held = cast("list[End]", [*lowered.own, ""])
-        targets = list(map(held.__getitem__, links.found[start:end]))
-        ordinals = list(map(lowered.document.ordinals.__getitem__, links.rows[start:end]))
-        others = set(compress(range(start, end), map(not_, targets)))
-        others |= links.rare.keys() & range(start, end)
-        for number in links.backwards.intersection(range(start, end)) - others:
-            at = number - start
-            sources[at], targets[at] = targets[at], sources[at]
-        done = 0
+        links, run = self.links, slice(numbers.start, numbers.stop)
+        lowered.own.append(None)
+        targets = cast("list[End]", list(map(lowered.own.__getitem__, links.found[run])))
+        lowered.own.pop()
+        ordinals = list(map(lowered.document.ordinals.__getitem__, links.rows[run]))
+        found = References(links.edges[run], links.sources[run], targets, ordinals)
+        others = set(compress(numbers, map(not_, targets))) | (links.rare.keys() & numbers)
+        for number in links.backwards.intersection(numbers) - others:
+            found.turn(number - numbers.start)
+        lost = set()
         for number in sorted(others):
-            run = slice(done, number - start)
-            pending.extend(edges[run], sources[run], targets[run], ordinals[run])
-            self._refer(links[number])
-            done = number - start + 1
-        pending.extend(edges[done:], sources[done:], targets[done:], ordinals[done:])
+            reference = self._resolved(links[number])
+            if reference is None:
+                lost.add(number - numbers.start)
+            else:
+                found[number - numbers.start] = reference
+        self.graph.pending.extend(found, lost)
 
-    def _refer(self, link: Link) -> None:
+    def _resolved(self, link: Link) -> Reference | None:
         target = self.target_id(link.lowered, link.target, link.is_href)
-        if target is not None and not self._is_loose(link, target):
-            self.graph.refer(self._reference(link, target))
+        if target is None or self._is_loose(link, target):
+            return None
+        return self._reference(link, target)
 
     def _is_loose(self, link: Link, target: str) -> bool:
         """Whether it leads nowhere inside what a tool keeps beside the model."""
