@@ -1,6 +1,6 @@
 """The libraries of a generated plant: devices, stations, and what types them."""
 
-from aml_words import attribute, element, interface, link, position
+from aml_words import WAYS, attribute, element, interface, link, position, way
 
 BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
 _BASE_INTERFACE = "AutomationMLInterfaceClassLib/AutomationMLBaseInterface"
@@ -80,14 +80,17 @@ def _device(name: str) -> str:
     base, own, interfaces = _DEVICES[name]
     path = f' RefBaseClassPath="Devices/{base}"' if base else ""
     inside = "".join(map(declared, own))
-    inside += "".join(interface(one, f"class-{name}-{one}") for one in interfaces)
+    inside += "".join(
+        interface(one, f"class-{name}-{one}", inside=way(WAYS[one])) for one in interfaces
+    )
     inside += _supported(role(name))
     return f'<SystemUnitClass Name="{name}"{path}>\n{inside}</SystemUnitClass>\n'
 
 
 def _station(name: str) -> str:
     inside = declared("delay", "50") + position("0", "0")
-    inside += "".join(interface(one, f"class-{name}-{one}") for one in STATION_PORTS)
+    for one in STATION_PORTS:
+        inside += interface(one, f"class-{name}-{one}", inside=way(WAYS[one]))
     links = ""
     for part, device in zip(PARTS, STATIONS[name], strict=True):
         id = f"class-{name}-{part}"

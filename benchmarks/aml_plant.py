@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from random import Random
 
 import aml_classes as classes
-from aml_words import attribute, element, interface, link, new_id, position, requirement
+from aml_words import attribute, element, interface, link, new_id, position, requirement, way
 
 HEAD = """<?xml version="1.0" encoding="utf-8"?>
 <CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">
@@ -109,7 +109,7 @@ def _cabinet(name: str, chance: Random) -> _Made:
     """A cabinet with racks, modules and channels, none of which has a class."""
     ports = {f"X{k}": new_id(chance) for k in range(1, 2 * _STATION_COUNT + 1)}
     inside = attribute("protection", "xs:string", "", "IP54")
-    inside += "".join(interface(one, id, "net") for one, id in ports.items())
+    inside += "".join(interface(one, id, "net", way("InOut")) for one, id in ports.items())
     inside += "".join(_rack(f"Rack{k}", chance) for k in (1, 2)) + requirement("Roles/Cabinet")
     id = new_id(chance)
     return _Made(element(name, id, "", inside), id, ports)
@@ -129,8 +129,8 @@ def _module(name: str, slot: int, chance: Random) -> str:
         ("firmware", "xs:string", "", f"V{chance.randint(1, 4)}.{chance.randint(0, 9)}"),
     )
     inside = "".join(attribute(*value) for value in values)
-    way = attribute("Direction", "xs:string", "", chance.choice(("In", "Out")))
-    inside += interface("signal", new_id(chance), inside=way) + requirement("Roles/Module")
+    inside += interface("signal", new_id(chance), inside=way(chance.choice(("In", "Out"))))
+    inside += requirement("Roles/Module")
     return element(name, new_id(chance), "", inside)
 
 

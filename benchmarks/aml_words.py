@@ -11,6 +11,9 @@ INTERFACES = {
 }
 """Names of interfaces, and the class of each."""
 
+WAYS = {"net": "InOut", "command": "In", "signal": "Out", "infeed": "In", "outfeed": "Out"}
+"""Which way things go through the interfaces that classes declare."""
+
 
 def attribute(name: str, data_type: str, unit: str = "", value: str = "", type_: str = "") -> str:
     """An attribute; ``type_`` is a class of the library Quantities."""
@@ -32,6 +35,11 @@ def interface(name: str, id: str, class_name: str = "", inside: str = "") -> str
     path = INTERFACES[class_name or name]
     head = f'<ExternalInterface Name="{name}" ID="{id}" RefBaseClassPath="{path}"'
     return f"{head}>\n{inside}</ExternalInterface>\n" if inside else f"{head}/>\n"
+
+
+def way(direction: str) -> str:
+    """The attribute of an interface that says which way things go."""
+    return attribute("Direction", "xs:string", "", direction)
 
 
 def link(name: str, one: str, other: str) -> str:
