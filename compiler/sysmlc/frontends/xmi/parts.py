@@ -13,9 +13,9 @@ def is_part(context: Context, row: int, feature: str) -> bool:
     names them: those are not the model's own.
     """
     document = context.document
-    is_contained = feature == "packagedElement" or feature.startswith(("owned", "nested"))
-    is_bare = document.ends[row] == row + 1
-    return is_contained and is_bare and "href" in document.attributes[row]
+    if feature != "packagedElement" and not feature.startswith(("owned", "nested")):
+        return False
+    return document.ends[row] == row + 1 and "href" in document.attributes[row]
 
 
 def join(context: Context) -> None:

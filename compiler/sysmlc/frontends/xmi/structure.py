@@ -75,7 +75,7 @@ def reference(context: Context, row: int, feature: str) -> int:
     """A child with ``xmi:idref`` or ``href`` stands for what it refers to."""
     document = context.document
     end = context.subtree(row, Verdict.MAPPED)
-    for child in document.children(row):
+    for child in document.children(row) if end > row + 1 else ():
         context.subtree(child, Verdict.IGNORED_NOTATION)
     parent = document.parents[row]
     owner = context.owner(row)
@@ -99,11 +99,12 @@ def reference(context: Context, row: int, feature: str) -> int:
 def _refer(context: Context, owner: Element, row: int, feature: str, href: str) -> None:
     target = href or context.document.idref(row)
     edge = v.SPECIAL.get((owner.kind, feature)) or v.REFERENCES.get(feature)
-    backwards = v.REVERSED.get((owner.kind, feature))
     if edge is not None:
-        context.link(edge, owner.id, target, row, feature, bool(href))
-    elif backwards is not None:
-        context.link(backwards, owner.id, target, row, feature, bool(href), is_reversed=True)
+        context.link(edge, owner, target, row, feature, bool(href))
+        return
+    backwards = v.REVERSED.get((owner.kind, feature))
+    if backwards is not None:
+        context.link(backwards, owner, target, row, feature, bool(href), is_reversed=True)
     elif feature in v.CONDITIONS:
         context.conditions([target], feature)
     elif feature in v.REDUNDANT:
