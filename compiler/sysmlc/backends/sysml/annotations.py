@@ -11,7 +11,7 @@ from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.words import quoted, string
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
-_STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias"})
+_STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
 _SUBKINDS = (
     Kind.CLASS,
     Kind.COMPONENT,
@@ -25,6 +25,8 @@ _SUBKINDS = (
     Kind.CONSTRAINT,
 )
 """Kinds whose subkind no keyword of SysML v2 says."""
+_ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
+"""Kinds of what flows; the domain of flows and connectors follows from it."""
 _PLAIN_TYPES = frozenset(
     {"xs:double", "xs:string", "xs:boolean", "xs:integer", "xs:int", "xs:float", "xs:decimal", ""}
 )
@@ -95,9 +97,10 @@ def _flat(value: AttrValue) -> AttrValue:
 
 
 def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
-    if not _is_told(element) or element.source in book.caex:
-        return []
-    return [ours(book, entry, "Kind", {"name": element.subkind})]
+    is_named = _is_told(element) and element.source not in book.caex
+    domain = element.attrs.get("domain") if element.kind in _ITEMS else None
+    facts = {"name": element.subkind if is_named else None, "domain": domain}
+    return [ours(book, entry, "Kind", facts)] if any(facts.values()) else []
 
 
 def _partitions(book: Book, entry: Entry, element: Element) -> list[Line]:

@@ -91,4 +91,4 @@ def _is_large(line: Line) -> bool:
     """Whether an empty line sets the member apart: it takes several lines."""
     if not line.body or line.inline is not None:
         return False
-    return len(line.body) > 1 or not line.body[0].is_short
+    return len(line.body) > 1 or line.body[0].inline is None or not line.body[0].is_short
