@@ -163,7 +163,7 @@ class Machine:
 
     def contains(self, state: str, vertex: str) -> bool:
         """Whether the vertex lies strictly inside the state."""
-        return state in self.above(vertex)
+        return bool(self.vertices[state].regions) and state in self.above(vertex)
 
     def main_region(self, source: str, target: str, kind: str) -> str:
         """The region that a transition changes: what is active in it is left, then the target

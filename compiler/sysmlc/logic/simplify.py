@@ -7,7 +7,7 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import evaluation, value_of
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 
 _LIMIT = 4096
 """Valuations tried; beyond them the answer is that a formula may be true and may be false."""
@@ -135,6 +135,8 @@ def _apart(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
 
 def _has_model(formula: Formula, found: Mapping[Var, Domain]) -> bool:
     """Whether some of all values make the formula true."""
+    if len(found) == 1:
+        return any(_solutions(formula, variable, domain) for variable, domain in found.items())
     now = {one.name: domain for one, domain in found.items() if not one.primed}
     then = {one.name: domain for one, domain in found.items() if one.primed}
     truth = evaluation(formula)
@@ -150,6 +152,22 @@ def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
     if not is_satisfiable(formula, known):
         return f.FALSE
     return formula if is_satisfiable(f.negate(formula), known) else f.TRUE
+
+
+@lru_cache(_REMEMBERED)
+def _solutions(formula: Formula, variable: Var, domain: Domain) -> frozenset[Literal]:
+    """The values of its only variable that make the formula true."""
+    match formula:
+        case Apply(Op.NOT, (inner,)):
+            return frozenset(domains.values(domain)) - _solutions(inner, variable, domain)
+        case Apply(Op.AND, args):
+            return frozenset.intersection(*(_solutions(one, variable, domain) for one in args))
+        case Apply(Op.OR, args):
+            return frozenset.union(*(_solutions(one, variable, domain) for one in args))
+        case _:
+            truth = evaluation(formula)
+            rows = ((value, {variable.name: value}) for value in domains.values(domain))
+            return frozenset(value for value, row in rows if truth(row, row))
 
 
 # -- tidying -----------------------------------------------------------------------------------
