@@ -1,7 +1,8 @@
 """Exact difference of two graphs, for who checks a front end, a back end or a round trip.
 
-What changed in a model, for its authors, is told by ``ir.compare``. Elements are matched by id. When ids, sources and traces are to be ignored, they are matched by
-qualified name, kind and position among their equals: what two dialects of one model share.
+What changed in a model, for its authors, is told by ``ir.compare``. Here elements are matched by
+id. When ids, sources and traces are to be ignored, they are matched by qualified name, kind and
+position among their equals: what two dialects of one model share.
 """
 
 from collections import Counter

@@ -8,12 +8,20 @@ from sysmlc.ir.compare.change import Change, Ref, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import Fact
 from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
+from sysmlc.ir.compare.plants import (
+    holders,
+    is_own_class,
+    is_part_instance,
+    is_told_of_another,
+    own_classes,
+    represented,
+)
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
 from sysmlc.ir.compare.titles import exactly, title, whole, word
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.kinds import Kind
 
 _Said = list[tuple[tuple[Token, Token], Fact]]
 
@@ -70,34 +78,32 @@ def _pairs(pairs: Pairs) -> Iterator[tuple[Element, Element]]:
 def _only(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
     known = pairs.new_of if side is pairs.old else pairs.old_of
     for owner, children in side.things.items():
-        if owner is not None and owner not in known:
-            continue
-        for child in children:
-            if (
-                child.id not in known
-                and not is_external(child)
-                and not _follows(side, child, known)
-            ):
-                yield _alone(side, child, what, known)
+        if owner is None or owner in known or _is_transparent(side, side.graph[owner], known):
+            for child in children:
+                if not (child.id in known or is_external(child) or _follows(side, child, known)):
+                    yield _alone(side, child, what, known)
+
+
+def _is_transparent(side: Side, owner: Element, known: Collection[str]) -> bool:
+    """Whether what it owns is told by itself: a new class of an InternalElement that is not new."""
+    is_new = owner.id not in known and is_own_class(owner)
+    return is_new and any(one.id in known for one in holders(side, owner))
 
 
 def _follows(side: Side, element: Element, known: Collection[str]) -> bool:
     """Whether it is there only because of something else that is told.
 
-    The values of a part come and go with the part, what a message does at its ends with the
-    message.
+    What a message does at its ends comes and goes with the message.
     """
-    if element.kind is Kind.INSTANCE and element.subkind == "part":
-        parts = side.out.get(element.id, {}).get(Edge.REPRESENTS, [])
-        return any(part.id not in known for part in parts)
     if element.kind is Kind.OCCURRENCE:
         into = side.into.get(element.id, ())
         return any(one.kind is Kind.MESSAGE and one.id not in known for _, one in into)
-    return False
+    return is_told_of_another(side, element, known)
 
 
 def _alone(side: Side, element: Element, what: What, known: Collection[str]) -> Change:
-    contents = sum(one.id not in known for one in side.below(element)) - 1
+    tops = [element, *own_classes(side, element)]
+    contents = sum(one.id not in known for top in tops for one in side.below(top)) - len(tops)
     ref = _ref(side, element)
     is_old = what is What.REMOVED
     return Change(
@@ -124,7 +130,7 @@ def _owner(side: Side, element: Element) -> str:
 
 
 def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) -> Iterator[Change]:
-    if old.name != new.name:
+    if old.name != new.name and not _is_renamed_with(pairs, old, new):
         yield _change(pairs, old, new, What.RENAMED, "name", old.name, new.name)
     if old.kind is not new.kind:
         yield _change(pairs, old, new, What.RETYPED, "kind", str(old.kind), str(new.kind))
@@ -135,7 +141,32 @@ def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) 
     said = [found for found in _differing(pairs, old, new) if not found[0] & set(ignore)]
     telling = [found for found in said if not found[0] & IMPLIED]
     for _, what, label, before, after in telling or said:
+        if what is What.RETYPED and _is_part_retyped(pairs, new):
+            continue
         yield _change(pairs, old, new, what, label, before, after)
+
+
+def _is_renamed_with(pairs: Pairs, old: Element, new: Element) -> bool:
+    """Whether the name is that of an InternalElement, which is told of its part or instance."""
+    if is_own_class(old) and is_own_class(new):
+        return any(one.id in pairs.old_of for one in holders(pairs.new, new))
+    part = _part_of(pairs, new)
+    return part is not None and pairs.old_of[part.id].name != part.name
+
+
+def _is_part_retyped(pairs: Pairs, new: Element) -> bool:
+    """Whether the same is told of the part whose values it holds."""
+    part = _part_of(pairs, new)
+    if part is None:
+        return False
+    said = _differing(pairs, pairs.old_of[part.id], part)
+    return any(what is What.RETYPED for _, what, *_ in said)
+
+
+def _part_of(pairs: Pairs, new: Element) -> Element | None:
+    """The part, in both models, whose values an element holds."""
+    part = represented(pairs.new, new) if is_part_instance(new) else None
+    return part if part is not None and part.id in pairs.old_of else None
 
 
 def _is_moved(pairs: Pairs, old: Element, new: Element) -> bool:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from sysmlc.ir.compare.change import What
 from sysmlc.ir.compare.content import ENDS, NOT_CONTENT, TYPES, WIRES, WORDS
+from sysmlc.ir.compare.plants import declared, is_own_class, is_part_instance
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.titles import dotted, relation, shown, steps, stereotype, told
 from sysmlc.ir.element import AttrValue, Element
@@ -66,17 +67,20 @@ def _resolved(side: Side, name: str, raw: AttrValue) -> Value:
 
 def _edges(side: Side, element: Element, edges: dict[Edge, list[Element]]) -> Iterator[Fact]:
     for edge, targets in edges.items():
-        if edge in ENDS:
+        if edge in ENDS or (edge is Edge.REPRESENTS and is_part_instance(element)):
+            continue
+        if edge is Edge.SPECIALIZES and is_own_class(element):
             continue
         if edge is Edge.PATH:
             yield Fact((edge,), tuple(targets), str(edge), What.REWIRED, dotted, element)
             continue
         for one in targets:
             if one.id not in side.hidden or one.owner != element.id:
-                yield Fact((edge,), one, _LABELS.get(edge, str(edge)), _kind(edge))
+                value = declared(side, one) if edge in _LABELS else one
+                yield Fact((edge,), value, _LABELS.get(edge, str(edge)), _kind(edge))
     if not edges.keys().isdisjoint(ENDS):
-        value = tuple(tuple(edges.get(edge, ())) for edge in ENDS)
-        yield Fact(FROM_TO, value, "ends", What.REWIRED, relation, element)
+        ends = tuple(tuple(edges.get(edge, ())) for edge in ENDS)
+        yield Fact(FROM_TO, ends, "ends", What.REWIRED, relation, element)
 
 
 _LABELS = {Edge.TYPED_BY: "type", Edge.INSTANCE_OF: "type"}

@@ -4,8 +4,11 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.ir.compare.content import is_external
 from sysmlc.ir.compare.facts import BETWEEN, Fact, facts
+from sysmlc.ir.compare.plants import other_id
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
+from sysmlc.ir.kinds import Kind
+from sysmlc.ir.query import CLASSIFIERS
 
 Token = object
 """What a value is for both sides: equal tokens are equal values."""
@@ -115,8 +118,22 @@ def by_id(pairs: Pairs) -> None:
     ]
     if _are_stable(pairs, common):
         for old, new in common:
-            if _naming(old) == _naming(new) or not is_external(old):
+            if _are_of_a_kind(old, new) and (old.name == new.name or not is_external(old)):
                 pairs.put(old, new)
+        _by_other_id(pairs)
+
+
+def _are_of_a_kind(old: Element, new: Element) -> bool:
+    """A class may become a component; what has the id of a part may not be an instance now."""
+    return old.kind is new.kind or (old.kind in CLASSIFIERS and new.kind in CLASSIFIERS)
+
+
+def _by_other_id(pairs: Pairs) -> None:
+    for old in pairs.old.graph.of_kind(Kind.INSTANCE):
+        new = pairs.new.graph.get(other_id(old))
+        is_free = new is not None and old.id not in pairs.new_of and new.id not in pairs.old_of
+        if is_free and new is not None and new.kind is Kind.INSTANCE:
+            pairs.put(old, new)
 
 
 def _are_stable(pairs: Pairs, common: list[tuple[Element, Element]]) -> bool:
