@@ -7,18 +7,15 @@ from collections import Counter
 
 import pytest
 from lxml import etree
+from plants import baygate, refined, sources, units
 
 from sysmlc.backends.aml.document import documents
-from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.caex import FRONTEND
-from sysmlc.ir import Graph
+from sysmlc.diagnostics import Sink
 from sysmlc.ir.diff import diff
-from sysmlc.passes import pipeline
 from sysmlc.sources import Source, SourceError, load
 
 pytestmark = pytest.mark.corpus
 
-PASSES = ("resolve", "inherit", "classify", "ports")
 IGNORED = {"id", "source", "trace"}
 NEWER = "the file is CAEX 3.0 now"
 WRITER = "CAEX 3.0 wants to know who wrote it (SM746)"
@@ -27,13 +24,6 @@ REASONS = {
     ("attribute", "version: None -> '3.0'"): NEWER,
     ("added", "Metadata SourceDocumentInformation"): WRITER,
 }
-
-
-def refined(sources):
-    graph, sink = Graph(), Sink()
-    FRONTEND.read(sources, graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
-    return graph
 
 
 def written(graph):
@@ -49,29 +39,6 @@ def read_back(texts):
 @pytest.fixture(scope="module")
 def schema(corpus):
     return etree.XMLSchema(etree.parse(corpus / "aml" / "schema" / "CAEX_ClassModel_V.3.0.xsd"))
-
-
-def dev(corpus):
-    return sorted((corpus / "aml" / "dev").iterdir())
-
-
-def baygate(corpus):
-    folder = corpus / "aml" / "baygate"
-    units = {name: [folder / name] for name in ("BayGate.aml", "BayGate.amlx")}
-    units["BayGate_caex215.aml"] = [folder / "BayGate_caex215.aml"]
-    libraries = sorted((folder / "libs").iterdir())
-    units["BayGate_extlibs.aml"] = [folder / "BayGate_extlibs.aml", *libraries]
-    return units
-
-
-def sources(corpus, paths):
-    top = corpus / "aml" / "baygate"
-    names = [str(p.relative_to(top)) if p.is_relative_to(top) else p.name for p in paths]
-    return [one for p, name in zip(paths, names, strict=True) for one in load(p, name)]
-
-
-def units(corpus):
-    return baygate(corpus) | {path.name: [path] for path in dev(corpus)}
 
 
 def test_every_difference_has_a_reason(corpus, schema, golden):

@@ -12,6 +12,7 @@ from sysmlc.passes.base import Pass
 
 NAMES = (
     "resolve",
+    "kept",
     "overlay",
     "inherit",
     "classify",

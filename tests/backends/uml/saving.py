@@ -9,7 +9,7 @@ from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
-PASSES = ("resolve", "inherit", "classify")
+PASSES = ("resolve", "kept", "inherit", "classify")
 
 
 def read(data, name="model.uml"):

@@ -10,6 +10,8 @@ from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.rules import UNSAID_EDGE, Losses
 from sysmlc.ir import Edge, Element, Graph
 
+_EDGES = frozenset(edge.value for edge in Edge)
+
 
 @dataclass(slots=True)
 class Book:
@@ -66,6 +68,8 @@ class Book:
 
     def lost(self, holder: Element, edge: str, target: Element) -> None:
         """A relation that UML cannot say."""
+        if self.losses.kept is not None and edge in _EDGES:
+            self.losses.kept.edge(edge, holder, target)
         kinds = {"kind": str(holder.kind), "target": str(target.kind)}
         self.losses.note(UNSAID_EDGE, holder, edge=edge, **kinds)
 

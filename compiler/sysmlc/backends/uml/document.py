@@ -6,6 +6,7 @@ from sysmlc.backends.uml import attributes, events, relations
 from sysmlc.backends.uml.book import Book
 from sysmlc.backends.uml.hrefs import is_outside
 from sysmlc.backends.uml.identity import part_id
+from sysmlc.backends.uml.kept import Kept, is_plant
 from sysmlc.backends.uml.metaclasses import APPROXIMATED as RESTATED
 from sysmlc.backends.uml.metaclasses import UNSAID, metaclass_of
 from sysmlc.backends.uml.node import Node, printed
@@ -49,6 +50,9 @@ def document(graph: Graph, sink: Sink) -> str:
     """The graph as XMI; what UML cannot say is reported."""
     losses = Losses(graph)
     book = Book(graph, losses)
+    if is_plant(graph):
+        losses.kept = Kept(graph, book.ids)
+        losses.kept.libraries()
     root = Node("xmi:XMI")
     for top in graph.roots():
         _nodes(book, top)
@@ -60,6 +64,7 @@ def document(graph: Graph, sink: Sink) -> str:
     stereotypes = Stereotypes(book, root)
     stereotypes.write()
     _profiles(book, stereotypes)
+    _keep(book)
     spaces = _NAMESPACES | stereotypes.namespaces
     root.attributes = {"xmi:version": "20131001"}
     root.attributes |= {f"xmlns:{prefix}": spaces[prefix] for prefix in spaces}
@@ -133,6 +138,8 @@ def _name(book: Book, element: Element, node: Node) -> None:
     if element.kind in _UNNAMED:
         feature = book.graph.target(element, Edge.INSTANCE_OF)
         if feature is not None and feature.name == element.name:
+            if book.losses.kept is not None:
+                book.losses.kept.attribute(element, "name")
             return
         facts = {"attribute": "name", "kind": str(element.kind)}
         book.losses.note(UNSAID_ATTRIBUTE, element, **facts)
@@ -217,6 +224,21 @@ def _roles(book: Book, collaboration: Element) -> None:
     book.refer(collaboration, book.node(collaboration), "collaborationRole", roles, "role")
 
 
+def _keep(book: Book) -> None:
+    """Add the comment for what UML cannot say of a plant."""
+    kept = book.losses.kept
+    if kept is None:
+        return
+    top = next((one for one in book.tops if one.tag == "uml:Package"), None)
+    if top is None:
+        top = Node("uml:Package", {"xmi:id": part_id("kept", "package"), "name": "AutomationML"})
+        book.tops.insert(0, top)
+        kept.made.append(top.id)
+    comment = Node("ownedComment", {"xmi:type": "uml:Comment", "xmi:id": part_id(top.id, "kept")})
+    comment.add(Node("body", text=kept.text()))
+    top.children.insert(0, comment)
+
+
 # -- profiles ----------------------------------------------------------------------------------
 
 
@@ -261,6 +283,8 @@ def _apply(book: Book, root: Element, package: str) -> None:
     """Apply a package of SysML 1.6, unless the model does already."""
     href = _PROFILE + package.replace("PortsAnd", "Ports_u0026")
     node = book.node(root)
+    if book.losses.kept is not None:
+        book.losses.kept.applied.append(node.id)
     known = (one.attributes.get("href") for part in node.children for one in part.children)
     if href in known:
         return

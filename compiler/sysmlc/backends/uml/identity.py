@@ -19,8 +19,13 @@ def xml_ids(graph: Graph) -> dict[str, str]:
     return known
 
 
+_ADDED = re.compile(r"#(class|part|type|values|unit|quantity|document|required|[AB])(~\d+)?$")
+"""Ends of the ids of what a front end adds to an element: words, which are no ids alone."""
+
+
 def _free(id: str, taken: set[str]) -> str:
-    for candidate in (id.rpartition("#")[2], f"_{id}"):
+    last = "" if _ADDED.search(id) else id.rpartition("#")[2]
+    for candidate in (last, f"_{id}"):
         if _NCNAME.fullmatch(candidate) and candidate not in taken:
             return candidate
     return part_id(id, "id")

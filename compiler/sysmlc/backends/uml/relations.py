@@ -181,6 +181,9 @@ def _relation(book: Book, element: Element, edge: Edge, target: Element) -> None
         book.tops.append(made)
     if stereotype:
         book.relations.append((stereotype, made.id))
+    if book.losses.kept is not None:
+        book.losses.kept.made.append(made.id)
+        book.losses.kept.edge(edge.value, element, target)
     facts = {"said": f"'{edge}' from {element.kind}", "written": metaclass}
     book.losses.note(APPROXIMATED, element, **facts)
 
@@ -211,6 +214,9 @@ def _slot_values(book: Book, element: Element, targets: _Targets) -> None:
 
 def _path(book: Book, element: Element, targets: _Targets) -> None:
     """The last part of the path holds the port; a nested path is told by its stereotype."""
+    if book.losses.kept is not None:
+        for target in targets:
+            book.losses.kept.edge("path", element, target)
     role = book.graph.target(element, Edge.ROLE)
     last = targets[-1]
     if role is None or role.kind is Kind.PORT or last is role or len(targets) == 1:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from sysmlc.backends.uml.kept import Kept
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 
@@ -64,6 +65,17 @@ ILLEGAL = rule(
     wrong='Package p "Pl\\u0001ant"\n',
     right='Package p "Plant"\n',
 )
+KEPT = rule(
+    "SM726",
+    "uml-kept",
+    Severity.INFO,
+    "UML has no words for {count} facts of the plant: a comment keeps them for the way back",
+    why="AutomationML has units, roles, facets, documents and ids of its own. Tools show the "
+    "comment and leave it alone; sysmlc reads it, so that the plant comes back whole.",
+    wrong='Document "a.aml#" "a.aml" subkind="caex"\nPackage p "Plant"\n  Facet f "Control"\n',
+    right=_GATE,
+)
+_UNSAID = frozenset({UNSAID_KIND, UNSAID_EDGE, UNSAID_ATTRIBUTE})
 
 
 @dataclass(slots=True)
@@ -71,18 +83,49 @@ class Losses:
     """Counts losses by rule and facts; each is reported once, at the first element."""
 
     graph: Graph
+    kept: Kept | None = None
+    """What a plant keeps for the way back; of other models nothing is kept."""
     _found: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
         default_factory=dict
     )
 
     def note(self, loss: Rule, element: Element, **facts: str) -> None:
         """One more element with this loss."""
+        if self.kept is not None:
+            self._keep(self.kept, loss, element, facts)
         key = (loss.code, tuple(sorted(facts.items())))
         _, first, count = self._found.get(key, (loss, element, 0))
         self._found[key] = (loss, first, count + 1)
 
+    def _keep(self, kept: Kept, loss: Rule, element: Element, facts: dict[str, str]) -> None:
+        if loss is UNSAID_ATTRIBUTE:
+            kept.attribute(element, facts["attribute"])
+        elif loss is UNSAID_KIND:
+            kept.whole(element)
+        elif loss is MOVED:
+            kept.owner(element)
+        elif loss is APPROXIMATED:
+            kept.attribute(element, "subkind")
+
     def report(self, sink: Sink) -> None:
         """Report what was counted."""
-        for (_, facts), (lost, first, count) in self._found.items():
+        found = dict(self._found)
+        if self.kept is not None:
+            self._report_kept(sink)
+            found = {key: one for key, one in found.items() if one[0] not in _UNSAID}
+        for (_, facts), (lost, first, count) in found.items():
             told: dict[str, object] = {"count": count, **dict(facts)}
             sink.report(lost, self.graph.subject(first), notes=(), help="", **told)
+
+    def _report_kept(self, sink: Sink) -> None:
+        """One finding for all that is kept; its notes say what."""
+        kept = [(facts, one) for (_, facts), one in self._found.items() if one[0] in _UNSAID]
+        if not kept:
+            return
+        notes = []
+        for facts, (lost, _, count) in kept:
+            told: dict[str, object] = {"count": count, **dict(facts)}
+            notes.append(lost.phrase.format(**told).replace(" left out of the saved model", ""))
+        first = self.graph.subject(kept[0][1][1])
+        total = sum(count for _, (_, _, count) in kept)
+        sink.report(KEPT, first, notes=tuple(notes), count=total)

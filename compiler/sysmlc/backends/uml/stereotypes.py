@@ -205,6 +205,9 @@ class Stereotypes:
     def _role(self, element: Element, name: str) -> None:
         book = self._book
         id = part_id(element.id, f"stereotype {name}")
+        if book.losses.kept is not None:
+            book.losses.kept.made.append(id)
+            book.losses.kept.attribute(element, "role")
         node = self._node(sysml.NAMESPACE + self._package(name), name, id)
         metaclass = book.node(element).metaclass or _root_type(book.node(element))
         fits = (metaclass, *_GENERALS.get(metaclass, ()))

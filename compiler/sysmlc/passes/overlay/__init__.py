@@ -19,7 +19,7 @@ class Overlay:
     """
 
     name: ClassVar[str] = "overlay"
-    after: ClassVar[tuple[str, ...]] = ("resolve",)
+    after: ClassVar[tuple[str, ...]] = ("resolve", "kept")
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Add in place and report; see the class."""

@@ -1,0 +1,153 @@
+"""Plants of AutomationML that are saved as UML: a comment keeps what UML cannot say."""
+
+import json
+
+import jsonschema
+import pytest
+from lxml import etree
+from saving import PASSES, read, refined, round_trip, saved
+
+from dialects.papyrus import XMI
+from sysmlc import resources
+from sysmlc.backends.uml.document import document
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.caex import FRONTEND
+from sysmlc.frontends.xmi import FRONTEND as XMI_FRONTEND
+from sysmlc.ir import Edge, Graph, parse_text
+from sysmlc.ir.kept import PREFIX
+from sysmlc.passes import pipeline
+from sysmlc.passes.kept import UNREADABLE
+from sysmlc.sources import Source
+
+PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">
+<SourceDocumentInformation OriginName="us" OriginID="u" OriginVersion="1"
+ LastWritingDateTime="2024-01-01T00:00:00Z"/>
+<InstanceHierarchy Name="Plant"><Version>3</Version>
+  <InternalElement Name="line" ID="1line" RefBaseSystemUnitPath="Lib/Line">
+    <ExternalInterface Name="in" ID="line-in" RefBaseClassPath="Ports/Port"/>
+    <InternalElement Name="belt" ID="belt" RefBaseSystemUnitPath="Lib/Belt">
+      <Attribute Name="speed"><Value>2.5</Value></Attribute>
+      <ExternalInterface Name="out" ID="belt-out" RefBaseClassPath="Ports/Port"/>
+    </InternalElement>
+    <InternalElement Name="again" ID="again" RefBaseSystemUnitPath="belt"/>
+    <InternalLink Name="l" RefPartnerSideA="line-in" RefPartnerSideB="belt-out"/>
+    <InternalLink Name="open" RefPartnerSideA="line-in" RefPartnerSideB=""/>
+  </InternalElement>
+</InstanceHierarchy>
+<InterfaceClassLib Name="Ports"><InterfaceClass Name="Port"
+ RefBaseClassPath="AutomationMLInterfaceClassLib/AutomationMLBaseInterface"/></InterfaceClassLib>
+<RoleClassLib Name="Roles"><RoleClass Name="Mover"
+ RefBaseClassPath="AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Resource"/></RoleClassLib>
+<SystemUnitClassLib Name="Lib">
+  <SystemUnitClass Name="Belt">
+    <Attribute Name="speed" AttributeDataType="xs:double" Unit="m/s">
+      <RefSemantic CorrespondingAttributePath="IRDI:speed"/></Attribute>
+    <ExternalInterface Name="out" ID="b-out" RefBaseClassPath="Ports/Port"/>
+    <SupportedRoleClass RefRoleClassPath="Roles/Mover"/>
+  </SystemUnitClass>
+  <SystemUnitClass Name="Line">
+    <ExternalInterface Name="in" ID="l-in" RefBaseClassPath="Ports/Port"/>
+    <InternalElement Name="belt" ID="l-belt" RefBaseSystemUnitPath="Lib/Belt"/>
+  </SystemUnitClass>
+</SystemUnitClassLib>
+</CAEXFile>"""
+
+
+@pytest.fixture(scope="module")
+def plant():
+    graph, sink = Graph(), Sink()
+    FRONTEND.read([Source("plant.aml", PLANT.encode())], graph, sink, Coverage())
+    pipeline.pipeline(PASSES).run(graph, sink)
+    return graph
+
+
+def test_a_plant_comes_back_whole(plant):
+    assert len(plant) > 40
+    _, back, changes = round_trip(plant)
+    assert changes == []
+    belt = next(one for one in back if one.name == "speed" and "data_type" in one.attrs)
+    assert (belt.attrs["unit"], belt.attrs["semantics"]) == ("m/s", ("IRDI:speed",))
+
+
+def test_the_comment_is_told_once_with_what_it_keeps(plant):
+    sink = Sink()
+    document(plant, sink)
+    (told,) = [found for found in sink if found.rule.code == "SM726"]
+    assert "UML has no place for Document (1)" in told.notes
+    assert {found.rule.code for found in sink} <= {"SM723", "SM724", "SM726"}
+
+
+def comment(text):
+    (found,) = [
+        one for one in etree.fromstring(text.encode()).iter("body") if one.text.startswith(PREFIX)
+    ]
+    return found.text.removeprefix(PREFIX)
+
+
+def test_the_comment_follows_its_schema(plant):
+    record = json.loads(comment(saved(plant)[0]))
+    schema = json.loads(resources.text("metamodels", "sysmlc-kept.schema.json"))
+    jsonschema.validate(record, schema)
+    assert record["elements"] and record["edges"] and record["made"]  # noqa: PT018
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(record | {"elements": [["a"]]}, schema)
+
+
+def test_what_is_changed_in_another_tool_stays_changed(plant):
+    text, _ = saved(plant)
+    assert ' name="Belt"' in text
+    back = read(text.replace(' name="Belt"', ' name="Conveyor"').encode())
+    names = {one.name for one in back}
+    assert "Conveyor" in names
+    assert "Belt" not in names
+    assert len(back) == len(plant)
+
+
+def test_what_another_tool_removed_is_passed_over(plant):
+    text, _ = saved(plant)
+    tree = etree.fromstring(text.encode())
+    (belt,) = tree.xpath("//packagedElement[@name='Belt']")
+    id = belt.get(f"{{{XMI}}}id")
+    belt.getparent().remove(belt)
+    for one in tree.xpath(f"//*[@client='{id}' or @type='{id}' or @classifier='{id}']"):
+        one.getparent().remove(one)
+    back = read(etree.tostring(tree))
+    assert [one for one in back if one.name == "Belt"] == []
+    assert [one for one in back if one.attrs.get("body", "").startswith(PREFIX)] == []
+
+
+def test_a_model_of_uml_keeps_no_comment():
+    text, told = saved(refined('Package p "Plant"\n  Facet f "Control"\n'))
+    assert PREFIX not in text
+    assert [one[:5] for one in told] == ["SM720"]
+
+
+@pytest.mark.parametrize(
+    "body", ["{", "[]", '{"elements": 1}', '{"elements": [["a", "Gone", "", null, null]]}']
+)
+def test_a_comment_that_was_changed_is_told_and_stays(body, plant):
+    text, _ = saved(plant)
+    old = comment(text)
+    escaped = old.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    assert escaped in text
+    graph, sink = Graph(), Sink()
+    data = text.replace(escaped, body).encode()
+    XMI_FRONTEND.read([Source("model.uml", data)], graph, sink, Coverage())
+    pipeline.pipeline(PASSES).run(graph, sink)
+    assert "SM189" in [found.rule.code for found in sink]
+    assert [one for one in graph if str(one.attrs.get("body", "")).startswith(PREFIX)]
+
+
+@pytest.mark.parametrize(("text", "codes"), [("wrong", ["SM189"]), ("right", [])])
+def test_the_rule_reports_its_wrong_model_and_not_its_right_one(text, codes):
+    graph, sink = parse_text(getattr(UNREADABLE, text)), Sink()
+    pipeline.pipeline(PASSES).run(graph, sink)
+    assert [found.rule.code for found in sink] == codes
+
+
+def test_relations_keep_their_order(plant):
+    _, back, _ = round_trip(plant)
+    for one in back:
+        if one.name == "l" and one.kind.value == "Connector":
+            paths = [back.targets(end, Edge.PATH) for end in back.targets(one, Edge.END)]
+            assert [[step.name for step in path] for path in paths] == [[], ["belt"]]
