@@ -15,6 +15,8 @@ def test_a_rule_is_explained(rule):
     assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", rule.name)
     assert not rule.phrase.endswith(".")
     assert rule.why.endswith((".", ".)"))
+    assert not rule.help[:1].isupper()
+    assert not rule.help.endswith(".")
     is_ours = rule.code in {"SM900", "SM901"}
     assert is_ours or (rule.wrong and rule.right)
     assert rule.wrong != rule.right or is_ours

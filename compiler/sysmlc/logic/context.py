@@ -28,8 +28,7 @@ ASSUMED_RANGE = rule(
     Severity.INFO,
     "property '{name}' has no range; {range} is assumed",
     why="Contracts have finite domains: an Integer needs a least and a greatest value.",
-    help="Constrain it ({name} >= {low} and {name} <= {high}) or give it a value type with a "
-    "range.",
+    help="constrain it ({name} >= {low} and {name} <= {high}) or give it a value type with a range",
     wrong=machine(arrow("a", "b", "start", "size > 2")),
     right=machine(arrow("a", "b", "start", "level > 2")),
 )
@@ -40,7 +39,7 @@ DEFAULT_OUTSIDE = rule(
     Severity.ERROR,
     "default value '{default}' of property '{name}' is none of {domain}",
     why="The property cannot start with it.",
-    help="Correct the default value or the range.",
+    help="correct the default value or the range",
     wrong=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=33", 1),
     right=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=3", 1),
 )

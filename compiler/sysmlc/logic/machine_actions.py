@@ -41,7 +41,7 @@ NOT_UNDERSTOOD = rule(
     Severity.WARNING,
     "{what} '{text}' is not understood: {reason}; the environment decides it as '{variable}'",
     why="Only expressions over properties with finite domains can be part of a contract.",
-    help="Write an expression over the properties of the owner.",
+    help="write an expression over the properties of the owner",
     wrong=_guarded("when it is ready"),
     right=_guarded("ready"),
 )
@@ -51,7 +51,7 @@ UNKNOWN_NAME = rule(
     Severity.ERROR,
     "{what} '{text}' names '{name}', which is no property of {context}",
     why="A name in an expression is a property of the classifier that owns the behaviour.",
-    help="Correct the name or add the property.",
+    help="correct the name or add the property",
     wrong=_guarded("redy"),
     right=_guarded("ready"),
 )
@@ -70,7 +70,7 @@ OUT_OF_DOMAIN = rule(
     Severity.ERROR,
     "{what} '{text}': {reason}",
     why="The value can never be taken, so that the expression does not say what was meant.",
-    help="Correct the value or the range of the property.",
+    help="correct the value or the range of the property",
     wrong=_guarded("level == 99"),
     right=_guarded("level == 9"),
 )
@@ -80,7 +80,7 @@ NOT_ASSIGNABLE = rule(
     Severity.ERROR,
     "'{text}' assigns to '{name}', which is no changeable property with finite values of {context}",
     why="A state machine changes properties of the classifier that owns it.",
-    help="Correct the name, give the property a finite type, or make it changeable.",
+    help="correct the name, give the property a finite type, or make it changeable",
     wrong=_doing("fixed := 4"),
     right=_doing("level := 4"),
 )

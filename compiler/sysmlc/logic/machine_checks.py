@@ -47,7 +47,7 @@ PSEUDO_CYCLE = rule(
     Severity.ERROR,
     "pseudostate '{vertex}' leads back to itself without a state between",
     why="A step would never end.",
-    help="Put a state into the cycle.",
+    help="put a state into the cycle",
     wrong=machine(
         *(choice("x"), choice("y")),
         *(arrow("a", "x", "start"), arrow("x", "y"), arrow("y", "x", guard="ready")),
@@ -75,7 +75,7 @@ RACE = rule(
     "'{first}' and '{second}' of orthogonal regions can both assign '{variable}' in one step; "
     "the component gets no contract",
     why="Nothing in the diagram orders the two assignments.",
-    help="Assign the property in one region only, or on different events.",
+    help="assign the property in one region only, or on different events",
     wrong=_two_regions("start", "start"),
     right=_two_regions("start", "stop"),
 )
@@ -86,7 +86,7 @@ CROSSING = rule(
     "'{first}' leaves an orthogonal state while '{second}' can be taken in another of its "
     "regions; the component gets no contract",
     why="Nothing in the diagram says which of the two is taken.",
-    help="Draw the transition from the border of the orthogonal state, or use another event.",
+    help="draw the transition from the border of the orthogonal state, or use another event",
     wrong=_leaving("start"),
     right=_leaving("stop"),
 )
@@ -98,7 +98,7 @@ STRAY = rule(
     "transition '{transition}' leads {where}; the component gets no contract",
     why="A transition stays in its machine and does not jump between regions of the machine; "
     "an initial transition stays in its region (UML 2.5.1, 14.5.8 and 14.5.11).",
-    help="Let the transition end at a vertex that it may reach.",
+    help="let the transition end at a vertex that it may reach",
     wrong=machine_of(
         samples.region("r", samples.state("a"), arrow("i", "a"), arrow("a", "b", "start")),
         samples.region("q", samples.state("b"), arrow("qi", "b")),

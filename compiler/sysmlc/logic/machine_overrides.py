@@ -23,8 +23,8 @@ OVERRIDDEN = rule(
     "is taken",
     why="One step takes one transition from nested states, the innermost. What time, a change or "
     "a completion triggers inside can come with the event, and events are not kept for later.",
-    help="If the event must never be lost, let it be repeated until it is answered, or trigger "
-    "the inner transition by an event as well.",
+    help="if the event must never be lost, let it be repeated until it is answered, or trigger "
+    "the inner transition by an event as well",
     wrong=_nested(arrow("d", "e", after="after 2 s")),
     right=_nested(arrow("d", "e", "start")),
 )

@@ -41,7 +41,7 @@ NONDETERMINISTIC = rule(
     "transitions {transitions} that leave '{vertex}' can be enabled at once",
     why="The diagram leaves open which one is taken; the contract keeps that open, and "
     "output '{pick}' says what was chosen.",
-    help="Make the guards exclude one another.",
+    help="make the guards exclude one another",
     wrong=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "level > 2")),
     right=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "not ready")),
 )

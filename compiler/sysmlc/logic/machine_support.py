@@ -11,7 +11,7 @@ NOT_DERIVED = rule(
     "{what} of state machine '{machine}' is not derived; the component gets no contract",
     why="A contract that leaves part of the diagram out would promise what the diagram does "
     "not say.",
-    help="Draw it with states, choices and junctions, or leave the machine without contract.",
+    help="draw it with states, choices and junctions, or leave the machine without contract",
     wrong=machine(choice("h", "deep-history"), arrow("a", "h", "start"), arrow("h", "b")),
     right=machine(choice("h", "junction"), arrow("a", "h", "start"), arrow("h", "b")),
 )
@@ -21,7 +21,7 @@ NO_INITIAL = rule(
     Severity.ERROR,
     "region '{region}' of '{owner}' has no initial pseudostate with one transition",
     why="Nothing says in which state the region starts.",
-    help="Add an initial pseudostate and a transition from it.",
+    help="add an initial pseudostate and a transition from it",
     wrong='StateMachine m "M"\n  Region r "r"\n    State a "A"\n',
     right='StateMachine m "M"\n  Region r "r"\n    Pseudostate i subkind="initial"\n'
     '    State a "A"\n    Transition t\n      -> flow-source i\n      -> flow-target a\n',

@@ -20,7 +20,7 @@ OPAQUE_TIME = rule(
     "time '{text}' is no constant relative time; the environment says when it comes, as "
     "'{variable}'",
     why="A contract counts a duration in steps, so that it has to be a number.",
-    help="Write a number, or a number with a unit (after 5 s), and mark the event as relative.",
+    help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
     wrong=_waiting("after cooling"),
     right=_waiting("after 5 s"),
 )

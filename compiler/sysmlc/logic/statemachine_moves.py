@@ -39,7 +39,7 @@ SATURATES = rule(
     Severity.WARNING,
     "{transition} can take '{variable}' out of its range; it stops at the bound",
     why="The contract has finite domains: a value beyond them is taken as the nearest bound.",
-    help="Guard the transition, or give the property a wider range.",
+    help="guard the transition, or give the property a wider range",
     wrong=machine(arrow("a", "b", "start", effect="level := level + 1")),
     right=machine(arrow("a", "b", "start", "level < 9", "level := level + 1")),
 )
@@ -50,7 +50,7 @@ BLOCKED = rule(
     "{transition}: the guards of '{vertex}' do not cover all cases; in the others the "
     "transition is not taken",
     why="UML calls a choice without an enabled way out ill-formed (2.5.1, 14.2.3.7).",
-    help="Add a transition with the guard else.",
+    help="add a transition with the guard else",
     wrong=machine(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
     right=machine(
         *(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
@@ -64,7 +64,7 @@ TOO_LARGE = rule(
     "{transition} has more than {limit} ways through choices and inner states; the component "
     "gets no contract",
     why="A contract of that size helps nobody.",
-    help="Split the machine.",
+    help="split the machine",
     wrong=machine(
         *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(9))),
         *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(8) for g in ("ready", "not ready")),

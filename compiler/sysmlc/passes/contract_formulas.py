@@ -38,7 +38,7 @@ NOT_A_FORMULA = rule(
     Severity.ERROR,
     "the formula of '{constraint}' is not understood: {reason}",
     why="What it demands would be missing in the contract.",
-    help="Write LTL (G F X U or [] <> X U) over the variables of the contract: {variables}.",
+    help="write LTL (G F X U or [] <> X U) over the variables of the contract: {variables}",
     wrong=_MACHINE.replace("{body}", '"[](Statte=On)"'),
     right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )
@@ -48,7 +48,7 @@ NO_CONTRACT = rule(
     Severity.WARNING,
     "'{constraint}' is a formula about '{component}', which has no behaviour with a contract",
     why="A formula in temporal logic speaks of the variables of a behaviour.",
-    help="Give '{component}' a classifier behaviour, or move the formula to what has one.",
+    help="give '{component}' a classifier behaviour, or move the formula to what has one",
     wrong='Class c "Lamp"\n  Constraint k "Lit" language="LTL" body="[](<>on)"\n',
     right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )

@@ -23,7 +23,7 @@ SAME_COMPONENT = rule(
     Severity.WARNING,
     "{count} behaviours are the component '{component}'; a number tells their contracts apart",
     why="A contract is found by the name of its component.",
-    help="Give the behaviours or their owners different names.",
+    help="give the behaviours or their owners different names",
     wrong='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
     '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
     "        -> flow-source ai\n        -> flow-target as\n"

@@ -20,7 +20,7 @@ TOO_LARGE = rule(
     "the contract of '{component}' compares more values than a SPIN formula can list; "
     "'{file}' is not written",
     why="SPIN's formulas know no arithmetic: every comparison is written out over all values.",
-    help="Give the properties smaller ranges.",
+    help="give the properties smaller ranges",
     wrong="guard [actual < target], both in 0..100000",
     right="guard [actual < target], both in 0..15",
 )
@@ -30,7 +30,7 @@ BAD_TEMPLATE = rule(
     Severity.ERROR,
     "template contract.md.j2 cannot be used: {fault}",
     why="The template of the folder given by --templates replaces ours.",
-    help="Correct it, or take our templates/contracts/contract.md.j2 as a start.",
+    help="correct it, or take our templates/contracts/contract.md.j2 as a start",
     wrong="{% for row in %}",
     right="{% for row in rows %} ... {% endfor %}",
 )

@@ -34,7 +34,7 @@ BAD_TEMPLATE = rule(
     Severity.ERROR,
     "the template requirements.md.j2 cannot be used: {fault}",
     why="A template of yours replaces the shipped one of the same name; it has a fault.",
-    help="Compare it with templates/reqtable of sysmlc.",
+    help="compare it with templates/reqtable of sysmlc",
     wrong="{{ page.titel }}",
     right="{{ page.title }}",
 )
