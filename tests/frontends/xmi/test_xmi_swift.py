@@ -56,6 +56,9 @@ ODDITIES = """
   <ownedAttribute xmi:id="r" name="r" type="u" subsettedProperty="p q"/>
   <ownedOperation xmi:id="o" name="o" method="a" precondition="k"/>
   <ownedRule xmi:id="k" constrainedElement="c a"/>
+  <ownedRule xmi:id="l"><constrainedElement xmi:idref="a" href="x.uml#b"/>
+    <constrainedElement xmi:idref="c"><x/></constrainedElement>
+    <constrainedElement xmi:idref="gone"/><constraint xmi:idref="k"/></ownedRule>
 </packagedElement>
 <packagedElement xmi:type="uml:Activity" xmi:id="y" name="Y" node="n" partition="z">
   <group xmi:type="uml:ActivityPartition" xmi:id="z" node="n n2"/>

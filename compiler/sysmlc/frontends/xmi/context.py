@@ -313,9 +313,8 @@ class Context:
             id = id_of(source)
             links.append(Link(edge, id, holder, target, row, feature, is_href, is_reversed))
             return
-        if is_reversed:
-            links.backwards.add(len(links.edges))
-        links.add(edge, element, target, document.ids.get(target, NOWHERE), row)
+        add = links.add_reversed if is_reversed else links.add
+        add(edge, element, target, document.ids.get(target, NOWHERE), row)
 
     def listed(
         self,
@@ -333,10 +332,9 @@ class Context:
         if not found or NOWHERE in found or len(found) > DEFAULT_LIMITS.references:
             self.attribute(element, row, name, value)
         elif edge is not None:
+            add = links.add_reversed if is_reversed else links.add
             for target, at in zip(targets, found, strict=True):
-                if is_reversed:
-                    links.backwards.add(len(links.edges))
-                links.add(edge, element, target, at, row)
+                add(edge, element, target, at, row)
 
     def approximate(self, row: int, lost: str) -> None:
         """The row is in the graph without part of its meaning."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.shapes import plan_of, reader_of
 from sysmlc.frontends.xmi.structure import reference
@@ -110,8 +111,26 @@ class Swift:
 
 
 def _refer(context: Context, row: int) -> None:
-    reference(context, row, context.document.features[row])
+    """A row that names another element: nearly all are an edge between two of the same file."""
+    document, own, feature = context.document, context.lowered.own, context.document.features[row]
+    owner, target = own[document.parents[row]], document.idref(row)
+    at = None if "href" in document.attributes[row] else document.ids.get(target)
+    if owner is None or at is None or document.ends[row] != row + 1 or feature in _OWNING:
+        reference(context, row, feature)
+        return
+    edge = v.SPECIAL.get((owner.kind, feature)) if feature in v.AMBIGUOUS else None
+    edge = edge or v.REFERENCES.get(feature)
+    backwards = v.REVERSED.get((owner.kind, feature)) if edge is None else None
+    if edge is None and backwards is None:
+        reference(context, row, feature)
+    elif edge is not None:
+        context.unit.links.add(edge, owner, target, at, row)
+    elif backwards is not None:
+        context.unit.links.add_reversed(backwards, owner, target, at, row)
 
+
+_OWNING = frozenset({"packagedElement", "nestedPackage"})
+"""Features of what an element owns, which are no references even if they look so."""
 
 _TAKEN: dict[str, str] = {}
 """Attributes of rows that nobody looks at again: what is taken need not be kept in memory."""

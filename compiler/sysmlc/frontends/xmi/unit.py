@@ -98,6 +98,11 @@ class Links:
         self.found.append(at)
         self.rows.append(row)
 
+    def add_reversed(self, edge: Edge, source: Element, target: str, at: int, row: int) -> None:
+        """Add a link that leads from what the local id means to the element."""
+        self.backwards.add(len(self.edges))
+        self.add(edge, source, target, at, row)
+
     def append(self, link: Link) -> None:
         """Add a link, whatever it is."""
         self.rare[len(self.edges)] = link
