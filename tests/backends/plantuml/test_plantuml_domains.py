@@ -148,6 +148,39 @@ def test_arrows_are_styled_by_domain(arrow, domain, expected):
     assert styled(arrow, domain) == expected
 
 
+HALL = """\
+Package hall "Hall" subkind="instance-hierarchy"
+  Class press "Press" role="block"
+    Port press.out "out"
+  Class rack "Rack" role="block"
+    Port rack.in "in"
+    Property rack.size "size" role="value"
+  Instance p1 "p1"
+    -> instance-of press
+  Instance r1 "r1"
+    -> instance-of rack
+    Slot r1.size "size" value=4
+      -> instance-of rack.size
+  Connector across "across"
+    -> end across.a across.b
+    ConnectorEnd across.a
+      -> role press.out
+      -> path p1
+    ConnectorEnd across.b
+      -> role rack.in
+      -> path r1
+"""
+
+
+def test_links_between_the_instances_of_a_hierarchy_are_drawn_in_its_diagram():
+    files, sink = emitted(parse_text(HALL))
+    (text,) = (one.text for one in files if one.path == "diagrams/Hall.ibd.puml")
+    assert 'rectangle "**p1 : Press**" as p1_1 <<part>> {\nportout ' in text
+    assert r'rectangle "**r1 : Rack**\n<size:10>size = 4</size>" as r1_1 <<part>> {' in text
+    assert "out_1 -- in_1 : across\n" in text
+    assert [found.message for found in sink if "Connector" in found.message] == []
+
+
 # -- sides -------------------------------------------------------------------------------------
 
 

@@ -7,6 +7,7 @@ from sysmlc.backends.plantuml import ibd, labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author_choice import Choice
 from sysmlc.backends.plantuml.connections import Connection, Path, connections
+from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -46,7 +47,7 @@ class _Drawing:
         drawn = tuple(self._lines())
         has_ports = any(self._is_port(path) for path in self.paths)
         domains = ibd.domains_of(self.used)
-        return InternalView(frame, drawn, has_ports, tuple(ibd.guides(frame, drawn)), domains)
+        return InternalView(frame, drawn, has_ports, tuple(guides(frame, drawn)), domains)
 
     # -- parts ---------------------------------------------------------------------------------
 

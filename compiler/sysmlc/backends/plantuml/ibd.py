@@ -1,12 +1,16 @@
-"""Internal block diagrams: one for each block with connectors or item flows between its parts."""
+"""Internal block diagrams: one for each block with connectors or item flows between its parts.
 
-from collections.abc import Iterator, Sequence
+An instance, and a hierarchy of AutomationML whose instances are linked, have one too.
+"""
+
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.connections import Connection, Path, connections
 from sysmlc.backends.plantuml.domains import in_order
+from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.sides import sides
 from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
@@ -19,11 +23,14 @@ FORMS = {"in": "portin", "out": "portout"}
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 _DRAWN_ROLES = frozenset(["part", "reference"])
 _PORT_WIDTH = 24
+_TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
+"""What leads from a part to its type, and from an instance that is drawn like one."""
 
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All internal block diagrams, in the order of the model."""
-    for block in graph.of_kind(*_CLASSES, Kind.INSTANCE):
+    hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
+    for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
         found = connections(graph, block)
         if found and not block.attrs.get("external"):
             yield from _of_block(graph, block, found)
@@ -135,7 +142,9 @@ class _Drawing:
 
     def __post_init__(self) -> None:
         self.sides = sides(self.connections)
+        self.instances |= {(top.id,): top for top in self.tops if top.kind is Kind.INSTANCE}
         waiting: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
+        waiting += self.instances.items()
         for path, owner in waiting:
             for inner in self.graph.owned(owner):
                 part = self.graph.target(inner, Edge.REPRESENTS)
@@ -161,14 +170,14 @@ class _Drawing:
     def _part(self, path: tuple[str, ...], part: Element) -> PartView:
         alias = self.aliases.make(_key(path), part.name, "part")
         inner = tuple(self._part((*path, item.id), item) for item in self._inner(path))
-        type_ = self.graph.target(part, Edge.TYPED_BY)
+        type_ = self.graph.target(part, _TYPE[part.kind is Kind.INSTANCE])
         instance = self.instances.get(path)
         slots = [] if instance is None else _slots(self.graph, instance)
         rows = _rows(self.graph, slots)
         values = () if instance is None else (instance.id, *(slot.id for slot in slots))
         return PartView(
             alias,
-            stack([small(plain(self._words(part))), *bold(labels.typed(self.graph, part)), *rows]),
+            stack([small(plain(self._words(part))), *bold(_named(self.graph, part)), *rows]),
             _style(part),
             tuple(self._ports(path, type_)),
             inner,
@@ -245,6 +254,10 @@ class _Drawing:
         return self.aliases[_key(key) if key else "frame"]
 
 
+def _named(graph: Graph, part: Element) -> str:
+    return _title(graph, part) if part.kind is Kind.INSTANCE else labels.typed(graph, part)
+
+
 def _slots(graph: Graph, instance: Element) -> list[Element]:
     return [one for one in graph.owned(instance) if one.kind is Kind.SLOT]
 
@@ -272,40 +285,16 @@ def domains_of(drawn: list[Connection]) -> tuple[str, ...]:
     return in_order(domain for one in drawn for _, domain in one.carried)
 
 
-def guides(part: PartView, drawn: Sequence[Line]) -> Iterator[Line]:
-    """Invisible lines that keep ports on the border: dot ranks what is inside between them.
-
-    PlantUML puts the ports of a side on one rank, so that the first of each side is enough. A
-    part that has a line to that side needs none; one more would only make lines cross.
-    """
-    joined = {frozenset((line.source, line.target)) for line in drawn}
-    yield from _guides(part, joined)
-
-
-def _guides(part: PartView, joined: set[frozenset[str]]) -> Iterator[Line]:
-    left = [port.alias for port in part.ports if port.form != "portout"]
-    right = [port.alias for port in part.ports if port.form == "portout"]
-    for inner in part.parts:
-        into = next((port.alias for port in inner.ports if port.form != "portout"), inner.alias)
-        out = next((port.alias for port in inner.ports if port.form == "portout"), into)
-        own = [inner.alias, *(port.alias for port in inner.ports)]
-        if left and not _are_joined(left, own, joined):
-            yield Line(left[0], "-[hidden]->", into)
-        if right and not _are_joined(own, right, joined):
-            yield Line(out, "-[hidden]---->", right[0])
-        yield from _guides(inner, joined)
-
-
-def _are_joined(some: list[str], others: list[str], joined: set[frozenset[str]]) -> bool:
-    return any(frozenset((one, other)) in joined for one in some for other in others)
-
-
 def _key(path: tuple[str, ...]) -> str:
     return "\x1f".join(("part", *path))
 
 
 def _style(part: Element) -> str:
-    is_shared = not part.role and part.attrs.get("aggregation") != "composite"
+    is_shared = (
+        not part.role
+        and part.kind is not Kind.INSTANCE
+        and part.attrs.get("aggregation") != "composite"
+    )
     return "reference" if is_shared or part.role == "reference" else "part"
 
 
