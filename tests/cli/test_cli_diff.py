@@ -154,6 +154,13 @@ def test_what_is_wrong_inside_a_model_is_no_hindrance(plants):
     assert "dependency link: retyped, kind: Connector => Dependency" in done.stdout
 
 
+def test_a_plant_that_is_saved_in_another_format_is_the_same_plant(plants):
+    done = plants.sysmlc("new.aml", "-o", "saved", "--emit", "uml,aml")
+    assert done.exit_code == 0
+    for other in ("saved/uml/new.uml", "saved/aml/new.aml"):
+        assert plants.sysmlc("diff", "new.aml", other).stdout == "no differences\n"
+
+
 def test_overlays_count_when_both_have_one(plants):
     overlay = "overlay: 1\nblocks:\n  Lib/Gate:\n    operations:\n      readId:\n"
     plants.write("old.overlay.yaml", overlay)

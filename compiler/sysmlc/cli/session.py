@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from sysmlc.driver import Compilation, Opened, Outcome, Request
     from sysmlc.sources.schema import Schemas
 
+_AS_WRITTEN = frozenset({"resolve", "kept"})
+"""Passes that add nothing to what the authors wrote."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
@@ -148,7 +150,7 @@ def compile_unit(
 def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Compilation":
     """Read files as they are written: references resolved, nothing refined."""
     request = _request(files, config, settings)
-    passes = tuple(one for one in request.pipeline() if one.name == "resolve")
+    passes = tuple(one for one in request.pipeline() if one.name in _AS_WRITTEN)
     return _compile(replace(request, passes=passes), settings)
 
 

@@ -138,12 +138,19 @@ def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) 
         there, here = _owner(pairs.old, old), _owner(pairs.new, new)
         yield _change(pairs, old, new, What.MOVED, "owner", there, here)
     yield from _reordered(pairs, old, new)
-    said = [found for found in _differing(pairs, old, new) if not found[0] & set(ignore)]
+    differing = _differing(pairs, old, new)
+    said = [one for one in differing if not one[0] & set(ignore) and not _is_unsaid(one)]
     telling = [found for found in said if not found[0] & IMPLIED]
     for _, what, label, before, after in telling or said:
         if what is What.RETYPED and _is_part_retyped(pairs, new):
             continue
         yield _change(pairs, old, new, what, label, before, after)
+
+
+def _is_unsaid(found: "_Differing") -> bool:
+    """Whether it is a role that only one of the two formats says: the other implies it."""
+    names, _, _, before, after = found
+    return names == {"role"} and not (before and after)
 
 
 def _is_renamed_with(pairs: Pairs, old: Element, new: Element) -> bool:
