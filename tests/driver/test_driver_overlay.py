@@ -267,3 +267,11 @@ def test_the_overlay_of_the_documentation_refines_the_example(tmp_path):
     made = build(plant)
     assert [one for one in made.diagnostics if one.severity != "info"] == []
     assert len(items(made)) == 3
+
+
+def test_a_flow_both_ways_is_two_flows_in_sysml_v2_and_one_in_uml(folder):
+    write(folder, "line.overlay.yaml", FLOW.replace("to: bt", "both-ways: true"))
+    made = build(folder / "line.ir", emit=("sysml", "uml"))
+    texts = {one.path.partition("/")[0]: one.text for one in made.written()}
+    assert len([line for line in texts["sysml"].splitlines() if "flow of" in line]) == 2
+    assert texts["uml"].count("uml:InformationFlow") == 1

@@ -200,6 +200,12 @@ def flow_target(graph: Graph, flow: Element) -> Element | None:
     return graph.target(flow, Edge.FLOW_TARGET)
 
 
+def runs_both_ways(graph: Graph, flow: Element) -> bool:
+    """Whether an item flow leads from either of its ends to the other."""
+    sources = {one.id for one in graph.targets(flow, Edge.FLOW_SOURCE)}
+    return len(sources) > 1 and sources == {t.id for t in graph.targets(flow, Edge.FLOW_TARGET)}
+
+
 def incoming(graph: Graph, node: Element, *kinds: Kind) -> list[Element]:
     """Flows (of these kinds) or transitions that end at the node."""
     return _of(graph.sources(node, Edge.FLOW_TARGET), kinds)

@@ -8,6 +8,7 @@ from sysmlc.backends.plantuml.domains import coloured, styled
 from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.backends.plantuml.text import keyword_label, label, stack
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import runs_both_ways
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +167,7 @@ def _way(graph: Graph, flow: Element, first: Path, second: Path) -> str:
     """
     sources = {item.id for item in graph.targets(flow, Edge.FLOW_SOURCE)}
     targets = {item.id for item in graph.targets(flow, Edge.FLOW_TARGET)}
-    if len(sources) > 1 and sources == targets:
+    if runs_both_ways(graph, flow):
         return "⇄"
     forward = _fits(graph, first, sources) + _fits(graph, second, targets)
     back = _fits(graph, second, sources) + _fits(graph, first, targets)

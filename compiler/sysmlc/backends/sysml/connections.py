@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.references import chain
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import conforms, flow_directions, role_of, type_of
+from sysmlc.ir.query import conforms, flow_directions, role_of, runs_both_ways, type_of
 
 
 def connector(book: Book, entry: Entry) -> list[Line]:
@@ -121,7 +121,8 @@ def _pairs(book: Book, entry: Entry, flow: Element) -> list[tuple[str | None, st
             first, last = _directed(book, ends, source, target)
             at = book.plan.entry(realizing)
             if at is not None and _is_around(entry, at):
-                found.append((_at(book, entry, first, item), _at(book, entry, last, item)))
+                pair = (_at(book, entry, first, item), _at(book, entry, last, item))
+                found += [pair, pair[::-1]] if runs_both_ways(graph, flow) else [pair]
     if found or source is None or target is None:
         return found
     steps = [book.plan.entry(one) for one in (source, target)]
