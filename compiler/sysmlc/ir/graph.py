@@ -98,7 +98,7 @@ class Graph:
 
     def has_several(self, edge: Edge) -> bool:
         """Whether any element has more than one edge of this kind."""
-        return any(not isinstance(targets, Element) for targets in self._out[edge].values())
+        return not {Element}.issuperset(map(type, self._out[edge].values()))
 
     def edges(self, *kinds: Edge) -> Iterator[tuple[Edge, str, str]]:
         """All edges of these kinds (of every kind when none is given) as (kind, from, to)."""

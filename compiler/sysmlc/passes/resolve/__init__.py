@@ -117,9 +117,11 @@ def _elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, _Use]:
 def _attributes(graph: Graph) -> Iterator[_Use]:
     for holder_kind, named in _ATTRIBUTES.items():
         for element in graph.of_kind(holder_kind):
-            for name, kind in named.items() if element.attrs else ():
-                for id in ids_in(element.attrs.get(name)):
-                    yield _Use(element, id, kind, attribute=name)
+            attrs = element.attrs
+            if attrs and not attrs.keys().isdisjoint(named):
+                for name, kind in named.items():
+                    for id in ids_in(attrs.get(name)):
+                        yield _Use(element, id, kind, attribute=name)
 
 
 # -- finding -----------------------------------------------------------------------------------
