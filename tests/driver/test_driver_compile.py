@@ -166,6 +166,18 @@ def test_a_file_that_may_not_be_opened_stops_us(plant, monkeypatch):
     assert (codes(made), made.exit_code()) == (["SM179"], 2)
 
 
+def test_a_file_that_is_being_saved_is_not_compiled_and_compiled_when_it_is_whole(
+    plant, monkeypatch
+):
+    stamps = [(0, 1), (0, 2), (0, 3), (0, 4)]
+    monkeypatch.setattr(whole, "_PAUSE", 0)
+    with monkeypatch.context() as writing:
+        writing.setattr(whole, "_seen", lambda _: stamps.pop(0))
+        made = compiled(plant)
+    assert (codes(made), made.exit_code(), made.is_complete) == (["SM127"], 2, False)
+    assert compiled(plant).exit_code() == 0
+
+
 def test_a_damaged_file_names_the_line(tmp_path):
     file = tmp_path / "plant.ir"
     file.write_text('Package pkg "Plant"\n  Klass gate "Gate"\n')
