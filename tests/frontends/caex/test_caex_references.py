@@ -1,7 +1,7 @@
 """Class paths, aliases and ids: how a reference finds what it means (rules 1 to 6)."""
 
 import pytest
-from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles
+from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
 BRACKETS = classes(
     '<SystemUnitClass Name="B/2"><SystemUnitClass Name="T.1"/></SystemUnitClass>'
@@ -266,4 +266,53 @@ def test_role_requirements_without_a_path_are_no_role():
     )
     reading = Read(aml_2(body))
     assert reading.to("Plant::x", "realizes", "Class") == []
+    assert reading.findings == []
+
+
+# -- what instances repeat ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("port", "attribute", "findings"),
+    [
+        ("Interfaces/P", "Types/T", []),
+        ("Interfaces/P", "", []),
+        ("Interfaces/Q", "Types/T", ["'Plant::x::p' refers to the class 'Interfaces/Q'"]),
+        ("Interfaces/P", "Types/U", ["'Plant::x::a' refers to the class 'Types/U'"]),
+    ],
+)
+def test_a_class_that_only_an_instance_names_in_vain_is_told_at_its_place(
+    port, attribute, findings
+):
+    """And nothing is missing to the class, which names the right one."""
+    reading = Read(
+        interfaces('<InterfaceClass Name="P"/>')
+        + types('<AttributeType Name="T"/>')
+        + classes(
+            '<SystemUnitClass Name="C"><Attribute Name="a" RefAttributeType="Types/T"/>'
+            '<ExternalInterface Name="p" RefBaseClassPath="Interfaces/P"/></SystemUnitClass>'
+        )
+        + plant(
+            '<InternalElement Name="x" ID="1" RefBaseSystemUnitPath="Lib/C">'
+            f'<Attribute Name="a" RefAttributeType="{attribute}"/>'
+            f'<ExternalInterface Name="p" RefBaseClassPath="{port}"/></InternalElement>'
+        )
+    )
+    assert reading.findings == [f"SM130: {text}, which does not exist" for text in findings]
+    assert "unresolved" not in reading.one("Lib::C::p").attrs
+    assert reading.to("Plant::x", "instance-of", "Instance") == ["Lib::C"]
+
+
+def test_of_two_declarations_of_an_alias_the_first_counts():
+    reading = Read(
+        aml(
+            '<ExternalReference Path="../libs/base.aml" Alias="Al"/>'
+            '<ExternalReference Path="../libs/other.aml" Alias="Al"/>'
+            + roles('<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/>'),
+            "plant/main.aml",
+        ),
+        BASE,
+    )
+    assert reading.to("Roles::Gate", "specializes") == ["Shared::Base"]
+    assert len(reading.all("Al", "Import")) == 2
     assert reading.findings == []

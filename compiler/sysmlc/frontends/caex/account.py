@@ -145,9 +145,10 @@ def _report_missing(context: Context, sources: Sequence[Source]) -> None:
 
 def _mark(context: Context, node: Node) -> None:
     """Name the edge that is missing, so that later rules do not complain of what follows."""
-    holders = (context.graph.get(one.element) for one in (node, *node.above()))
-    holder = next((one for one in holders if one is not None), None)
-    if holder is not None:
+    holders = ((context.graph.get(one.element), one) for one in (node, *node.above()))
+    holder, place = next((pair for pair in holders if pair[0] is not None), (None, node))
+    # What an instance repeats is the element of its class, to which nothing is missing.
+    if holder is not None and holder.ordinal == place.ordinal:
         known = holder.attrs.get("unresolved")
         names = {str(name) for name in known} if isinstance(known, tuple) else set()
         names.add(_EDGES.get(node.tag, Edge.SPECIALIZES).value)

@@ -1,7 +1,7 @@
 """Attributes and interfaces of internal elements: those of their class, and new ones."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, features, ports, special
+from sysmlc.frontends.caex import documents, features, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
@@ -9,11 +9,17 @@ from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member
-from sysmlc.frontends.caex.vocabulary import value_of
+from sysmlc.frontends.caex.vocabulary import Family, value_of
 from sysmlc.ir import Edge, Element, Kind
 
 REPEATED = frozenset({"Constraint", "RefSemantic"})
 """What a repeated attribute holds that says what its class says."""
+
+_CLASSES = {
+    "Attribute": ("RefAttributeType", Family.ATTRIBUTE),
+    "ExternalInterface": ("RefBaseClassPath", Family.INTERFACE),
+}
+"""Members of internal elements: the attribute that names their class."""
 
 _Path = tuple[str, ...]
 """Ids of the features that an inner one lies in, outermost first."""
@@ -71,6 +77,7 @@ def _attribute(context: Context, site: Site, node: Node) -> None:
     while waiting:
         one, member, path = waiting.pop()
         one.verdict = Verdict.MAPPED
+        check_class(context, one, site)
         _value(context, site, one, member, path)
         _description(context, site, one, member, path)
         for child in one.children:
@@ -79,6 +86,14 @@ def _attribute(context: Context, site: Site, node: Node) -> None:
                 waiting.append((child, inner, (*path, member.id)))
             elif child.tag in REPEATED:
                 mark(child)
+
+
+def check_class(context: Context, node: Node, site: Site) -> None:
+    """Note that a class leads nowhere which an instance names; that of its class counts."""
+    attribute, family = _CLASSES[node.tag]
+    path = node.attributes.get(attribute, "").strip()
+    if path and not mirrors.is_mirror(context, node):
+        context.type(path, family, site.document, node)
 
 
 def _value(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
@@ -122,6 +137,7 @@ def _interface(context: Context, site: Site, node: Node) -> None:
     while waiting:
         one, member, path = waiting.pop()
         one.verdict, one.element = Verdict.MAPPED, member.id
+        check_class(context, one, site)
         _port_values(context, site, one, member, path)
         id = one.attributes.get("ID")
         if id:

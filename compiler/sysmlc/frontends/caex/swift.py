@@ -13,7 +13,7 @@ from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import reader_of
+from sysmlc.frontends.caex.vocabulary import Family, reader_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _Stated = tuple[str | None, ...]
@@ -113,6 +113,9 @@ class Swift:
             return self._plain.interface(site.own or own(self._context, site), row)
         if document.ends[row] > row + 1:
             return False
+        path = document.attributes[row].get("RefBaseClassPath")
+        if path and self._context.known(path, Family.INTERFACE, document) is None:
+            return False
         document.verdicts[row] = Verdict.MAPPED
         document.elements[row] = port
         id = document.attributes[row].get("ID")
@@ -134,8 +137,10 @@ class Swift:
             values.get("RefAttributeType"),
         )
         if stated not in known.alike:
-            node = document.node(row)
-            if says_more(self._context.types, document, node, known.member):
+            node, context = document.node(row), self._context
+            path = (stated[2] or "").strip()
+            leads = not path or isinstance(context.look_up(path, Family.ATTRIBUTE, document), Type)
+            if not leads or says_more(context.types, document, node, known.member):
                 return False
             known.alike.add(stated)
         if "ID" not in values:
