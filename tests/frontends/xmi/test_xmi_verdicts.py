@@ -149,6 +149,19 @@ def test_files_are_recognised_by_content(text, score):
     assert FRONTEND.detect(source(text, "any.thing")) == score
 
 
+def test_a_text_that_is_no_feature_of_uml_is_kept_and_told_at_its_place():
+    owned = '<ownedAttribute xmi:id="p" name="speed">{}</ownedAttribute>'
+    model = f'<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">{owned}</packagedElement>'
+    reading = read(papyrus(model.format("<unit>mm/s</unit>")))
+    assert reading.findings == [
+        "stray-text: 'M::C::speed' has a text 'unit', which is no feature of UML"
+    ]
+    assert [(f.subject.id, f.subject.place.ordinal) for f in reading.sink] == [("p", 4)]
+    assert reading.graph["p"].attrs["unit"] == "mm/s"
+    for known in ("<isReadOnly>true</isReadOnly>", "<visibility>private</visibility>"):
+        assert read(papyrus(model.format(known))).findings == []
+
+
 def test_drawings_are_counted_but_not_kept():
     reading = read(
         source(

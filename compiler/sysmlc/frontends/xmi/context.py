@@ -267,7 +267,14 @@ class Context:
         elif feature in ("body", "language") and feature in owner.attrs:
             self.opaque[owner.id] = (owner, self.document.parents[row])
         else:
+            if not naming.is_known(feature):
+                self._report_stray(row, feature)
             self.attribute(owner, row, feature, value)
+
+    def _report_stray(self, row: int, feature: str) -> None:
+        name = self.qualified_name(self.document.parents[row])
+        subject = Subject(name, self.gids[row], self.place(row))
+        self.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
 
     def link(
         self,

@@ -1,5 +1,7 @@
 """Tables: the features of UML that name elements, whatever becomes of them."""
 
+import re
+
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES
 
 SAID_ELSEWHERE = REDUNDANT | {
@@ -102,3 +104,49 @@ ASKED_LATER = frozenset(
     }
 )
 """Kept ids that the pass ``resolve`` looks for itself, and reports."""
+
+ATTRIBUTES = frozenset(
+    {
+        "URI",
+        "aggregation",
+        "alias",
+        "allowSubstitutable",
+        "body",
+        "concurrency",
+        "content",
+        "default",
+        "deploymentLocation",
+        "direction",
+        "effect",
+        "executionLocation",
+        "fileName",
+        "firstEvent",
+        "format",
+        "interactionOperator",
+        "kind",
+        "language",
+        "location",
+        "lower",
+        "messageKind",
+        "messageSort",
+        "mode",
+        "mustIsolate",
+        "name",
+        "ordering",
+        "qualifiedName",
+        "setting",
+        "symbol",
+        "upper",
+        "value",
+        "viewpoint",
+        "visibility",
+    }
+)
+"""Features of UML 2.5.1 that have values; truth values have names as ``isAbstract``."""
+
+_FLAG = re.compile(r"is[A-Z]")
+
+
+def is_known(feature: str) -> bool:
+    """Whether UML has a feature of this name."""
+    return feature in ATTRIBUTES or feature in NAMING or _FLAG.match(feature) is not None

@@ -88,6 +88,16 @@ BAD_BOUND = rule(
     wrong="<upperValue xmi:type='uml:LiteralString' value='many'/>",
     right="<upperValue xmi:type='uml:LiteralUnlimitedNatural' value='*'/>",
 )
+STRAY_TEXT = rule(
+    "SM123",
+    "stray-text",
+    Severity.WARNING,
+    "'{element}' has a text '{feature}', which is no feature of UML",
+    why="The graph keeps the text as an attribute of the element, but nothing is made of it.",
+    help="look whether the name is spelt as UML does; else remove it",
+    wrong="<ownedAttribute name='speed'><unit>mm/s</unit></ownedAttribute>",
+    right="<ownedAttribute><name>speed</name></ownedAttribute>",
+)
 DANGLING_OPPOSITE = rule(
     "SM116",
     "dangling-opposite",
