@@ -109,6 +109,11 @@ def test_an_overlay_elsewhere_is_named(folder):
     assert [one.path for one in made.inputs] == ["line.ir", "refined/flows.yaml"]
 
 
+def test_an_overlay_may_stand_among_the_models(folder):
+    other = write(folder, "refined/flows.overlay.yaml", FLOW)
+    assert items(build(folder / "line.ir", other)) == ["Plant::<ItemFlow>"]
+
+
 def test_an_overlay_that_is_found_and_named_counts_once(folder):
     beside = write(folder, "line.overlay.yaml", FLOW)
     made = build(folder / "line.ir", overlays=[beside])

@@ -183,6 +183,27 @@ def test_a_behaviour_becomes_the_classifier_behaviour_of_the_block():
     assert component_name(graph, graph["handle"]) == "Plant::Gate"
 
 
+def test_a_state_machine_is_a_behaviour_too():
+    machine = 'Package m "M" @gate.uml:9\n  StateMachine states "States" @gate.uml:10\n'
+    text = GATE + "    behavior: gate.uml#M::States\n"
+    graph, sink = laid_over(text, model=PLANT + machine)
+    assert codes(sink) == []
+    assert graph.targets(graph["gate"], Edge.CLASSIFIER_BEHAVIOR) == [graph["states"]]
+
+
+def test_an_activity_that_lost_its_file_is_told_so():
+    (found,) = laid_over(GATE + "    behavior: gone.uml#Gate::Handle\n")[1]
+    assert found.rule.code == "SM324"
+    assert found.help == "the file 'gone.uml' is not part of the compile unit"
+
+
+def test_of_many_lost_entries_the_first_are_answered_with_the_nearest_name():
+    rows = "".join(f"  Plant/Switch/p_swl{n}: {{direction: in}}\n" for n in range(30))
+    found = list(laid_over("overlay: 1\nports:\n" + rows)[1])
+    assert [one.rule.code for one in found] == ["SM324"] * 30
+    assert sum(one.help == "did you mean 'Plant/Switch/p_swIn'?" for one in found) == 20
+
+
 def test_a_call_means_an_operation_of_the_block_or_of_a_part():
     graph, sink = laid_over(
         HANDLED + "  Plant/Switch: {operations: {getIn: }}\n", until="behaviours"

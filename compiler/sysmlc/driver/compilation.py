@@ -20,7 +20,7 @@ from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
-from sysmlc.overlay import Refinement
+from sysmlc.overlay import SUFFIX, Refinement
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
@@ -114,7 +114,9 @@ def open_unit(request: Request) -> Opened:
     sink = Sink(request.config.rules)
     frontends = request.frontends or tuple(registry.frontends(request.cache))
     root = unit_root((*request.inputs, *request.overlays), request.config.folder)
-    reading = read_unit(request.inputs, root, frontends, sink, request.overlays)
+    models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
+    laid = [path for path in request.inputs if path.name.endswith(SUFFIX)]
+    reading = read_unit(models, root, frontends, sink, (*request.overlays, *laid))
     drawings = () if request.diagrams == DERIVED else beside(reading, root, sink)
     return Opened(root, reading, sink, frontends, drawings)
 

@@ -17,7 +17,9 @@ from sysmlc.passes.overlay.ports import refine_port
 
 def add_all(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
     """Add what the overlays say; of several, each step of all before the next step."""
-    finders = [Finder(graph, sink, one) for one in sorted(refinements, key=lambda one: one.file)]
+    roots = graph.roots()
+    ordered = sorted(refinements, key=lambda one: one.file)
+    finders = [Finder(graph, sink, one, roots) for one in ordered]
     for finder in finders:
         add_items(finder)
     for finder in finders:

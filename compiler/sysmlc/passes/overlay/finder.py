@@ -17,9 +17,14 @@ from sysmlc.suggest import did_you_mean
 
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
-_TELLING = 5_000
+_TELLING = 2_000
 """Names among which the nearest is looked for; comparing more takes seconds."""
+_ADVISED = 20
+"""Words of an overlay that are answered with the nearest name: an export may lose thousands."""
 _LISTED = 5
+
+
+_ByName = dict[str, list[Element]]
 
 
 class Sort(NamedTuple):
@@ -47,13 +52,15 @@ class Finder:
     graph: Graph
     sink: Sink
     refinement: Refinement
+    roots: list[Element]
+    """What no element owns; packages that overlays add join them."""
     items: dict[str, Element] = field(default_factory=dict)
     """Item types by the keys of their entries."""
     behaviors: dict[str, list[Element]] = field(default_factory=dict)
     """What the words for behaviours meant before any behaviour was moved."""
     _other_ids: dict[str, Element] | None = None
-    _roots: list[Element] = field(default_factory=list)
-    _size: int = -1
+    _named: dict[str, tuple[tuple[int, str], _ByName]] = field(default_factory=dict)
+    _advised: int = 0
 
     # -- what words mean -----------------------------------------------------------------------
 
@@ -98,19 +105,13 @@ class Finder:
         return self._other_ids.get(plain(text))
 
     def _along(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
-        level = [one for one in self.roots() if one.name == names[0] and all(names)]
+        level = [one for one in self.roots if one.name == names[0] and all(names)]
         for name in names[1:]:
             inside = [one for top in level for one in self._inside(top, name)]
             level = list(dict.fromkeys(inside))
         for one in level:
             if not file or one.source == file:
                 yield one
-
-    def roots(self) -> list[Element]:
-        """What no element owns; packages of overlays join them while overlays are added."""
-        if len(self.graph) != self._size:
-            self._size, self._roots = len(self.graph), self.graph.roots()
-        return self._roots
 
     def _inside(self, top: Element, name: str) -> list[Element]:
         """What has this name in an element, or in what it is an instance or usage of."""
@@ -122,10 +123,22 @@ class Finder:
         for one in waiting[:]:
             waiting += generals(self.graph, one)
         for one in waiting:
-            found = [inner for inner in self.graph.owned(one) if inner.name == name]
+            found = self._members(one).get(name)
             if found:
                 return found
         return []
+
+    def _members(self, top: Element) -> _ByName:
+        """What an element owns, by name; asked for again and again of large hierarchies."""
+        owned = self.graph.owned(top)
+        last = (len(owned), owned[-1].id if owned else "")
+        seen, known = self._named.get(top.id, ((-1, ""), {}))
+        if seen != last:
+            known = {}
+            for one in owned:
+                known.setdefault(one.name, []).append(one)
+            self._named[top.id] = (last, known)
+        return known
 
     def _as(self, element: Element, sort: Sort) -> Element | None:
         """The element, or what classifies it when only that is of the sort."""
@@ -166,7 +179,7 @@ class Finder:
             kind = other[0].kind.value
             self.report(rules.WRONG_SORT, term, word=term.text, sort=sort.title, kind=kind)
         else:
-            advice = self._absent(term) or did_you_mean(path or term.text, self.known(sort))
+            advice = self._absent(term) or self._nearest(path or term.text, sort)
             self.report(rules.NO_MATCH, term, word=term.text, sort=sort.title, advice=advice)
         return None
 
@@ -176,6 +189,12 @@ class Finder:
         name = beside(self.refinement.file, file)
         is_there = not sign or any(element.source == name for element in self.graph)
         return "" if is_there else f"the file '{file}' is not part of the compile unit"
+
+    def _nearest(self, word: str, sort: Sort) -> str:
+        self._advised += 1
+        if self._advised > _ADVISED:
+            return "the first findings of this kind name what is near"
+        return did_you_mean(word, self.known(sort))
 
     def _listed(self, found: Iterable[Element]) -> str:
         words = [f"{self.path(one)} ({one.id})" for one in found]
@@ -202,6 +221,8 @@ class Finder:
         if known is None:
             file = self.refinement.file
             known = self.graph.add(Element(id, kind, name, owner, spot.offset, file, attrs={}))
+            if owner is None:
+                self.roots.append(known)
         self.graph.set(known, **attrs)
         return known
 
