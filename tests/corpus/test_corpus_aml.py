@@ -10,9 +10,10 @@ from collections import Counter
 from pathlib import PurePosixPath
 
 import pytest
+from classes_of_aml import lead_nowhere
 from lxml import etree
 
-from sysmlc.diagnostics import Coverage, Severity, Sink
+from sysmlc.diagnostics import Coverage, Place, Severity, Sink
 from sysmlc.diagnostics.locate import locate
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.caex import FRONTEND
@@ -79,6 +80,31 @@ def test_each_element_of_each_file_has_one_verdict_and_all_are_in_the_graph(aml,
             counted = read.coverage.file(source.name)
             assert counted.elements == sum(1 for _ in tree(source).iter(etree.Element)), name
             assert counted.totals()["mapped"] == counted.elements, name
+
+
+@pytest.mark.parametrize("folder", ["bad", "baygate"])
+def test_verdicts_sum_to_the_number_of_elements_of_every_file_that_can_be_read(
+    folder, aml, reading
+):
+    read_at_all = 0
+    for path in sorted((aml / folder).glob("*.aml")):
+        read = reading(f"{folder}/{path.name}")
+        counted = {f.file: f.elements for f in read.coverage.files()}
+        if "SM142" not in read.codes():
+            expected = sum(1 for _ in tree(read.sources[0]).iter(etree.Element))
+            assert counted == {path.name: expected}
+            read_at_all += 1
+    assert read_at_all == {"bad": 5, "baygate": 3}[folder]
+
+
+def test_each_dev_entry_compiles(aml):
+    """What is wrong in it is told; nothing of the compiler fails, nothing is left out."""
+    for name in names(aml, "dev"):
+        made = compile_model(Request(inputs=(aml / name,)))
+        codes = {found.rule.code for found in made.diagnostics}
+        assert not any(code.startswith("SM9") or code == "SM142" for code in codes), name
+        assert len(made.graph) > 0, name
+        assert verify(made.graph) == [], name
 
 
 # -- references --------------------------------------------------------------------------------
@@ -154,6 +180,37 @@ def test_every_class_of_an_internal_element_is_found_or_told(name, expected, rea
     assert len(told) == every - found
 
 
+@pytest.mark.parametrize("name", ["mtp_wago_ecockpit", "mtp_tud_minimal", "vera_plant"])
+def test_a_class_that_lxml_finds_is_the_type_of_the_part_or_instance(name, reading):
+    read = reading(f"dev/{name}.aml")
+    graph, seen = read.graph, 0
+    root = tree(read.sources[0])
+    known = {
+        path
+        for library in local(root, "SystemUnitClassLib")
+        for path in paths_below(library, library.get("Name"))
+    }
+    for node in local(root, "InternalElement"):
+        path = node.get("RefBaseSystemUnitPath")
+        element = graph.get(node.get("ID"))
+        if path in known and element is not None:
+            holders = [element, *graph.targets(element, Edge.REPRESENTS)]
+            edges = [(one, edge) for one in holders for edge in (Edge.TYPED_BY, Edge.INSTANCE_OF)]
+            types = [type_ for one, edge in edges for type_ in graph.targets(one, edge)]
+            general = [graph.qualified_name(t) for type_ in types for t in above(graph, type_)]
+            assert path.replace("/", "::") in general, path
+            seen += 1
+    assert seen > 10
+
+
+def above(graph, type_):
+    """A class and those that it specialises."""
+    found = [type_]
+    for one in found:
+        found += [t for t in graph.targets(one, Edge.SPECIALIZES) if t not in found]
+    return found
+
+
 DEFECTS = {
     "eplan_arapc_example.aml": "names of interfaces with '.' are cut: 54 of 58 sides",
     "mtp_wago_ecockpit.aml": "an InternalElement hides the nested class of its name: 49 of 55",
@@ -196,6 +253,32 @@ def test_each_reference_that_leads_nowhere_is_told_with_its_line(aml, reading):
         for found in missing:
             assert found.notes, name
             assert all(re.search(r":\d+:\d+\)$", note) for note in found.notes), name
+
+
+SINGLE, TOGETHER = {"SM130", "SM133", "SM138"}, {"SM131", "SM132"}
+"""Rules that are told at each reference, and those that list what they take down."""
+
+
+def test_the_references_that_lxml_finds_in_vain_are_told_at_their_lines(aml, reading):
+    files = [f"dev/{p.name}" for p in sorted((aml / "dev").glob("*.aml"))]
+    files += [
+        f"bad/i40_{name}.aml" for name in ("alias_undeclared", "link_freetext", "wrong_order")
+    ]
+    for name in files:
+        read = reading(name)
+        (source,) = read.sources
+        places = [Place(source.name, n) for n in lead_nowhere(tree(source))]
+        expected = {found.line for found in locate([source], places).values()}
+        assert told_lines(read, source) == expected, name
+
+
+def told_lines(read, source):
+    """Lines of all references that are told to lead nowhere."""
+    single = [f.subject.place for f in read.sink if f.rule.code in SINGLE]
+    held = [f.subject.place for f in read.sink if f.rule.code == "SM149"]
+    lines = {found.line for found in locate([source], [*single, *held]).values()}
+    notes = (note for f in read.sink if f.rule.code in TOGETHER for note in f.notes)
+    return lines | {int(re.search(r":(\d+):\d+\)$", note)[1]) for note in notes}
 
 
 # -- what must be diagnosed --------------------------------------------------------------------
