@@ -45,5 +45,5 @@ def test_what_is_wrong_is_said(tmp_path, text, sentence):
 
 def test_passes_run_in_the_order_that_they_ask_for():
     order = [one.name for one in registry.passes({})]
-    assert order[:4] == ["resolve", "overlay", "inherit", "classify"]
+    assert order[:5] == ["resolve", "kept", "overlay", "inherit", "classify"]
     assert order.index("activities") < order.index("contracts")

@@ -73,7 +73,8 @@ def _refer(book: Book, feature: Element, found: Typing, node: Node, file: File) 
         book.late.append((node, "RefAttributeType", master))
         return
     path = book.path(found.declared, file) if found.declared is not None else ""
-    path = path or unresolved(feature, "Attribute")
+    if not node.is_copy:
+        path = path or unresolved(feature, "Attribute")
     if path:
         node.attributes["RefAttributeType"] = path
     elif found.declared is not None:

@@ -3,22 +3,25 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.aml.book import Book
+from sysmlc.backends.aml.families import Family
 from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element
 
 _COPIED = frozenset({"DefaultValue", "Value", "RefSemantic", "Constraint", "Attribute"})
 _FEATURES = frozenset({"Attribute", "ExternalInterface"})
+_TYPE = "RefAttributeType"
 _IDENTITY = frozenset({"ID", "ChangeMode"})
 
 
 def write(book: Book) -> None:
     """Complete every internal element by the attributes that its classes have and it has not."""
+    known = {path for _, family, path in book.paths if family is Family.ATTRIBUTE}
     for node, declared in book.copies:
         for child in _features(book, declared):
             if child.tag == "Attribute":
-                _complete(node, child)
+                _complete(node, child, known)
             else:
-                _interface(node, child)
+                _interface(node, child, known)
 
 
 def _features(book: Book, type_: Element) -> Iterator[Node]:
@@ -46,16 +49,16 @@ def _chain(book: Book, type_: Element) -> Iterator[Node]:
         one = book.graph.target(one, Edge.SPECIALIZES)
 
 
-def _interface(node: Node, of_class: Node) -> None:
+def _interface(node: Node, of_class: Node, types: set[str]) -> None:
     """The attributes of an interface that the element repeats."""
     found = node.child("ExternalInterface", of_class.attributes["Name"])
     if found is not None and found.is_copy:
         for child in of_class.children:
             if child.tag == "Attribute":
-                _complete(found, child)
+                _complete(found, child, types)
 
 
-def _complete(node: Node, of_class: Node) -> None:
+def _complete(node: Node, of_class: Node, types: set[str]) -> None:
     """Add an attribute; of one that is there what it does not say itself."""
     waiting = [(node, of_class)]
     while waiting:
@@ -64,6 +67,8 @@ def _complete(node: Node, of_class: Node) -> None:
         if found is None:
             found = above.add(Node("Attribute", is_copy=True))
             found.attributes = {k: v for k, v in known.attributes.items() if k not in _IDENTITY}
+            if found.attributes.get(_TYPE) not in types:
+                found.attributes.pop(_TYPE, None)
         if not found.is_copy:
             continue
         said = {child.tag for child in found.children}
