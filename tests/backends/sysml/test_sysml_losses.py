@@ -71,3 +71,10 @@ def graph_of(text):
 
 def test_an_empty_graph_is_an_empty_text():
     assert text_of("") == ""
+
+
+def test_deep_models_are_written():
+    deep = "".join(f'{"  " * depth}Package p{depth} "P{depth}"\n' for depth in range(300))
+    text = text_of(deep)
+    assert text.count("package") == 300
+    assert text.startswith("package P0 {\n    package P1 {\n")

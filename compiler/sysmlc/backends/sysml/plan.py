@@ -1,5 +1,6 @@
 """Where each element stands in the text, and its name there: decided before a line is written."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -53,6 +54,14 @@ class Plan:
     """Ids of elements that are not public in the model and that the text refers to."""
     applied: dict[str, Entry] = field(default_factory=dict)
     """Metadata definition of each application of a stereotype, by its id."""
+
+    @property
+    def depth(self) -> int:
+        """How deep members are nested in one another."""
+        level, found = self.tops, 0
+        while level:
+            level, found = [one for above in level for one in above.members], found + 1
+        return found
 
     def entry(self, element: Element | None) -> Entry | None:
         """The entry that an element has, or that stands for it."""
@@ -221,13 +230,6 @@ def _operation_of(plan: Plan, element: Element) -> Entry | None:
 # -- names -------------------------------------------------------------------------------------
 
 _TAKEN_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
-_BASES = {
-    "decide": "decide",
-    "merge": "merge",
-    "fork": "fork",
-    "join": "join",
-    "use case def": "UseCase",
-}
 
 
 def name_all(plan: Plan) -> None:
@@ -245,40 +247,43 @@ def name_all(plan: Plan) -> None:
 def _name(plan: Plan, members: list[Entry], taken: set[str]) -> dict[str, Entry]:
     """Give each member a name of its own; definitions that are second start with a capital."""
     named: dict[str, Entry] = {}
+    numbers: Counter[str] = Counter()
     wanting = [one for one in members if one.shape.is_named and not one.name]
     for one in members:
         if one.name:
-            one.name = _free(plan, one, writable(one.name), taken)
+            one.name = _free(plan, one, writable(one.name), taken, numbers)
             taken.add(one.name)
             named[one.name] = one
     for one in wanting:
-        one.name = _made(one, taken)
+        one.name = _made(one, taken, numbers)
         taken.add(one.name)
         named[one.name] = one
     return named
 
 
-def _free(plan: Plan, entry: Entry, name: str, taken: set[str]) -> str:
+def _free(plan: Plan, entry: Entry, name: str, taken: set[str], numbers: Counter[str]) -> str:
     if name not in taken:
         return name
     capital = name[:1].upper() + name[1:]
     if entry.shape.is_definition and capital not in taken:
         found = capital
     else:
-        found = _numbered(f"{name}_", taken, 2)
+        numbers[f"{name}_"] = max(numbers[f"{name}_"], 1)
+        found = _numbered(f"{name}_", taken, numbers)
     if entry.element is not None:
         plan.losses.note(RENAMED, entry.element, name=name, written=found)
     return found
 
 
-def _numbered(base: str, taken: set[str], first: int) -> str:
-    number = first
-    while f"{base}{number}" in taken:
-        number += 1
-    return f"{base}{number}"
+def _numbered(base: str, taken: set[str], numbers: Counter[str]) -> str:
+    """The first name of its kind that is not taken; ``numbers`` are those given last."""
+    numbers[base] += 1
+    while f"{base}{numbers[base]}" in taken:
+        numbers[base] += 1
+    return f"{base}{numbers[base]}"
 
 
-def _made(entry: Entry, taken: set[str]) -> str:
+def _made(entry: Entry, taken: set[str], numbers: Counter[str]) -> str:
     """A name for what has none: of what it is typed by, else of what it is."""
     element = entry.element
     is_return = element is not None and element.attrs.get("direction") == "return"
@@ -294,4 +299,4 @@ def _made(entry: Entry, taken: set[str]) -> str:
         base = first + "".join(word.capitalize() for word in rest)
     if entry.shape.is_definition:
         base = base[:1].upper() + base[1:]
-    return _numbered(base, taken, 1)
+    return _numbered(base, taken, numbers)

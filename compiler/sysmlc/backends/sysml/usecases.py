@@ -29,9 +29,10 @@ def use_case(book: Book, entry: Entry) -> list[Line]:
 
 def _actors(book: Book, use_case_: Element) -> Iterator[Element]:
     """Actors that an association joins with the use case."""
-    for association in book.graph.of_kind(Kind.ASSOCIATION):
-        types = [type_of(book.graph, end) for end in book.graph.targets(association, Edge.END)]
-        if use_case_ in types:
+    for end in book.graph.sources(use_case_, Edge.TYPED_BY):
+        for association in book.graph.sources(end, Edge.END):
+            ends = book.graph.targets(association, Edge.END)
+            types = [type_of(book.graph, one) for one in ends]
             yield from (one for one in types if one is not None and one.kind is Kind.ACTOR)
 
 
