@@ -230,6 +230,24 @@ def test_interfaces_and_attributes_are_mirrored_by_the_id_of_an_interface_or_own
     assert reading.findings == []
 
 
+def test_a_mirror_of_caex_2_may_have_content_which_is_its_own():
+    """CAEX 3.0 forbids it; files of 2.15 have it (rule 12)."""
+    reading = Read(
+        aml_2(
+            plant(
+                '<InternalElement Name="cell" ID="0">'
+                '<InternalElement Name="a" ID="1"><Attribute Name="x"/></InternalElement>'
+                '<InternalElement Name="m" ID="2" RefBaseSystemUnitPath="1">'
+                '<Attribute Name="y"/></InternalElement></InternalElement>'
+            )
+        )
+    )
+    assert reading.to("Plant::cell::m", "mirrors", "Property") == ["Plant::cell::a"]
+    assert reading.owned("Plant::cell::m", "Class") == ["Property y"]
+    assert reading.to("Plant::cell::m", "specializes", "Class") == ["Plant::cell::a"]
+    assert reading.findings == []
+
+
 GONE = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
 
 
