@@ -77,6 +77,15 @@ def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
         )
 
 
+def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
+    canvas = Canvas()
+    start, merge, sink = (canvas.control(kind) for kind in ("initial", "merge", "flow-final"))
+    work = canvas.node(Kind.ACTION, "opaque", "work")
+    for source, target in ((start, work), (work, merge), (work, merge), (merge, sink)):
+        canvas.flow(source, target)
+    assert token_net.check(drawn(canvas), ACTIVITY_REGION, 1000).unsafe
+
+
 @settings(max_examples=100, deadline=None)
 @given(blocks(12))
 def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):

@@ -12,6 +12,7 @@ borders of regions and data stores are no places of such a net.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import combinations
 
 from sysmlc.logic.tokens import Firing, TokenEdge, TokenGraph, TokenNode
 
@@ -101,7 +102,24 @@ def net_of(graph: TokenGraph, region: str) -> Net:
         move.resets = frozenset(p for gift in sorted(move.gives) for p in resets.get(gift, ()))
         move.gives -= drains
     nodes = frozenset(node for move in moves for node in move.nodes)
-    return Net(places, moves, {edge.id for edge in kept if edge.marked}, nodes)
+    marked = {edge.id for edge in kept if edge.marked}
+    for meeting in _meetings(graph, region, drains):
+        places |= dict.fromkeys(meeting.gives)
+        marked |= meeting.gives
+        moves.append(meeting)
+    return Net(places, moves, marked, nodes)
+
+
+def _meetings(graph: TokenGraph, region: str, drains: set[str]) -> Iterator[Move]:
+    """Two tokens that reach a merge before a sink at once: the place that they lead to is full."""
+    for node in graph.nodes:
+        leaving = {edge.id for edge in graph.outgoing(node)}
+        if node.region != region or node.firing is not Firing.ANY or not leaving & drains:
+            continue
+        for one, other in combinations(graph.incoming(node), 2):
+            is_one_interruption = one.interrupts and one.interrupts == other.interrupts
+            if not is_one_interruption and {one.region, other.region} == {region}:
+                yield Move({one.id, other.id}, leaving & drains, set())
 
 
 def _is_drain(graph: TokenGraph, edge: TokenEdge) -> bool:
