@@ -105,13 +105,21 @@ def _fits(value: object, default: object) -> bool:
 
 def backend_names() -> list[str]:
     """Names of all back ends, those of plug-ins included; loads none."""
-    return sorted({*_BACKENDS, *(entry.name for entry in plug_ins())})
+    return sorted({*_BACKENDS, *_others()})
 
 
 def load_backends(names: Iterable[str]) -> list[Backend]:
     """The back ends with these names, each once. Raises BackendError."""
-    others = {entry.name: entry for entry in plug_ins()}
+    return _loaded(names, _others())
+
+
+def _loaded(names: Iterable[str], others: "dict[str, EntryPoint]") -> list[Backend]:
     return [_load(name, others) for name in dict.fromkeys(names)]
+
+
+def _others() -> "dict[str, EntryPoint]":
+    """The back ends of other distributions by name; to look for them takes some milliseconds."""
+    return {entry.name: entry for entry in plug_ins()}
 
 
 def select_backends(wanted: Sequence[str]) -> list[Backend]:
@@ -121,11 +129,12 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
     """
     plain = [name for name in wanted if not name.startswith("+")]
     added = [name[1:] for name in wanted if name.startswith("+")]
+    others = _others()
     if plain:
-        return load_backends([*plain, *added])
-    chosen = _known(added)
+        return _loaded([*plain, *added], others)
+    chosen = _known(added, others)
     unasked = _BACKENDS.keys() - _DEFAULT - chosen
-    every = load_backends(name for name in backend_names() if name not in unasked)
+    every = _loaded(sorted({*_BACKENDS, *others} - unasked), others)
     return [backend for backend in every if backend.is_default or backend.name in chosen]
 
 
@@ -140,17 +149,18 @@ def full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Ru
                 import_module(module)
             except Exception as problem:
                 note(f"the rules of {module} are missing: {problem!r}")
-    others = {entry.name: entry for entry in plug_ins()}
+    others = _others()
     for name in others:
         with suppress(BackendError):
             _load(name, others)
     return catalogue()
 
 
-def _known(names: Iterable[str]) -> frozenset[str]:
+def _known(names: Iterable[str], others: "dict[str, EntryPoint]") -> frozenset[str]:
+    known = sorted({*_BACKENDS, *others})
     for name in names:
-        if name not in backend_names():
-            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, backend_names())}")
+        if name not in known:
+            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, known)}")
     return frozenset(names)
 
 
@@ -171,7 +181,7 @@ def _is_ours(entry: "EntryPoint") -> bool:
 
 
 def _load(name: str, others: "dict[str, EntryPoint]") -> Backend:
-    _known([name])
+    _known([name], others)
     try:
         if name in _BACKENDS:
             return cast("Backend", import_module(_BACKENDS[name]).BACKEND)

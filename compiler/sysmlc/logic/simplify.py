@@ -149,6 +149,8 @@ def _has_model(formula: Formula, found: Mapping[Var, Domain]) -> bool:
 
 def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
     """True or false when the formula is always that, else the formula."""
+    if isinstance(formula, Const):
+        return formula
     if not is_satisfiable(formula, known):
         return f.FALSE
     return formula if is_satisfiable(f.negate(formula), known) else f.TRUE

@@ -154,6 +154,8 @@ def _way(
     """Some way through the pseudostates is open; the guard alone when it opens one always."""
     guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
     way = f.either(*(path.when for path in paths))
+    if way == guard:
+        return simplified(guard, domains)
     always_open = simplified(f.implies(guard, way), domains) == f.TRUE
     return simplified(guard if always_open else way, domains)
 
