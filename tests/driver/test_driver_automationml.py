@@ -107,9 +107,9 @@ def test_an_instance_with_links_frames_an_internal_block_diagram(tmp_path):
     assert lines[0] == "mainframe ibd [block] line : Line"
     assert [line for line in lines if line.startswith(("port", "rectangle"))] == [
         'rectangle " " as line_1 <<frame>> {',
-        'port "<back:#FFFFFF>way</back>" as way_1',
-        'rectangle "gate : gate" as gate_1 <<part>> {',
-        'port "<back:#FFFFFF>p</back>" as p_1',
+        'portin "<back:#FFFFFF>way</back>" as way_1',
+        'rectangle "**gate : gate**" as gate_1 <<part>> {',
+        'portin "<back:#FFFFFF>p</back>" as p_1',
     ]
     assert "way_1 -- p_1 : l" in lines
     assert told(made) == []
