@@ -186,3 +186,37 @@ def test_progress_is_drawn_on_terminals_only_and_after_a_second(capsys, monkeypa
     piped = Progress(clock=lambda: 9.0)
     piped.step("read", 0, 3)
     assert capsys.readouterr().err == ""
+
+
+def many_findings(here, ports):
+    lines = [f'  Port g.p{n} "p{n}" direction="in" @many.ir:{n}\n' for n in range(ports)]
+    wrong = "  Port g.nameless\n"
+    here.write("many.ir", 'Class g "Gate"\n' + "".join(lines) + wrong)
+
+
+def test_of_very_many_findings_the_worst_are_shown_and_the_others_counted(here):
+    many_findings(here, 5)
+    made = here.sysmlc("check", "many.ir", "--max-diagnostics", "2", "--format", "concise")
+    told = [line.split(": ")[1] for line in made.stderr.splitlines()[:2]]
+    assert sorted(told) == ["error[SM942 test-nameless-port]", "warning[SM943 test-untyped-port]"]
+    assert made.stderr.splitlines()[2:] == [
+        "1 error, 5 warnings in 1 file",
+        "4 more are not shown; --max-diagnostics 0 shows all",
+    ]
+    assert made.exit_code == 1
+
+
+@pytest.mark.parametrize("most", ["6", "0"])
+def test_all_findings_are_shown_when_there_are_no_more(here, most):
+    many_findings(here, 5)
+    made = here.sysmlc("check", "many.ir", "--max-diagnostics", most, "--format", "concise")
+    assert len(made.stderr.splitlines()) == 7
+    assert "not shown" not in made.stderr
+
+
+def test_readers_get_a_thousand_findings_and_programs_all(here):
+    many_findings(here, 1_010)
+    assert here.sysmlc("check", "many.ir").stderr.count("SM943") == 999
+    made = here.sysmlc("check", "many.ir", "--format", "json")
+    assert len(json.loads(made.stdout)["diagnostics"]) == 1_011
+    assert made.stderr == ""

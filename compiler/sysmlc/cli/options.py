@@ -81,6 +81,14 @@ def reporting(function: _F) -> _F:
                 help="Form of the findings; json, sarif and github go to standard output.",
             ),
             click.option("--strict", is_flag=True, help="Warnings make the exit code 1 too."),
+            click.option(
+                "--max-diagnostics",
+                "most",
+                type=click.IntRange(min=0),
+                metavar="N",
+                help="Show at most N findings, the worst; 0 shows all."
+                "  [default: 1000; json and sarif: all]",
+            ),
         ],
         function,
     )

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _AS_WRITTEN = frozenset({"resolve", "kept"})
 """Passes that add nothing to what the authors wrote."""
+_SHOWN = 1_000
+"""Findings that a reader is shown unless all are asked for: nobody reads more at once."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
@@ -33,6 +35,7 @@ class Settings:
     print_after: tuple[str, ...] = ()
     verbose: bool = False
     form: str = "text"
+    most: int | None = None
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
@@ -280,14 +283,26 @@ def name_of(root: Path, name: str) -> str:
 
 def show(found: "Iterable[Finding]", settings: Settings) -> None:
     """Print findings in the form that was asked for."""
-    from sysmlc.diagnostics.render import XPATH_FORMATS, Report, render
+    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shortened
 
     on_stdout = settings.form in _ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
     if settings.form not in XPATH_FORMATS and not settings.verbose:
         found = (replace(one, xpath="") for one in found)
-    text = render(Report(tuple(found)), settings.form, color=has_color(stream))
+    report = shortened(found, _most(settings))
+    text = render(report, settings.form, color=has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
+    if report.left:
+        click.echo(
+            f"{len(report.left)} more are not shown; --max-diagnostics 0 shows all", err=True
+        )
+
+
+def _most(settings: Settings) -> int:
+    """How many findings are shown; programs get all unless they ask for less. 0 means all."""
+    if settings.most is None:
+        return 0 if settings.form in ("json", "sarif") else _SHOWN
+    return settings.most
 
 
 def says_more(settings: Settings) -> bool:

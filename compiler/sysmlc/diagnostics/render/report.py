@@ -37,13 +37,28 @@ class Report:
     """All findings of one compilation, in order."""
 
     findings: tuple[Finding, ...]
+    left: tuple[Finding, ...] = ()
+    """Findings that are counted but not shown."""
 
     def summary(self) -> dict[str, int]:
         """Number of findings of each severity, and of files that they are in."""
-        counts = Counter(finding.diagnostic.severity for finding in self.findings)
-        files = {finding.file for finding in self.findings if finding.file}
+        every = (*self.findings, *self.left)
+        counts = Counter(finding.diagnostic.severity for finding in every)
+        files = {finding.file for finding in every if finding.file}
         numbers = {f"{severity.value}s": counts[severity] for severity in Severity}
         return {**numbers, "files": len(files)}
+
+
+def shortened(findings: Iterable[Finding], most: int) -> Report:
+    """A report that shows at most so many findings (0: all), the worst of them, in their order."""
+    found = list(findings)
+    order = list(Severity)
+    ranked = sorted(range(len(found)), key=lambda at: order.index(found[at].diagnostic.severity))
+    shown = set(ranked[:most] if most else ranked)
+    return Report(
+        tuple(one for at, one in enumerate(found) if at in shown),
+        tuple(one for at, one in enumerate(found) if at not in shown),
+    )
 
 
 def make_report(
