@@ -36,17 +36,17 @@ def _file(name: str, path: str, title: str, document: Element | None) -> File:
 
 def _paths(names: list[str]) -> dict[str, str]:
     """Where each file goes: below the folder as it stands in the unit, ending in ``.aml``."""
-    stems = {name: posixpath.splitext(name.replace("!", "/"))[0] for name in names}
-    safe = {name: "::".join(part for part in stem.split("/")) for name, stem in stems.items()}
-    taken: dict[str, str] = {}
-    parts = file_names(sorted({part for stem in stems.values() for part in stem.split("/")}))
-    for name in names:
-        path = "/".join(parts[part] for part in stems[name].split("/"))
+    stems = {name: posixpath.splitext(name.replace("!", "/"))[0].split("/") for name in names}
+    parts = file_names(sorted({part for stem in stems.values() for part in stem}))
+    found: dict[str, str] = {}
+    taken: set[str] = set()
+    for name, stem in stems.items():
+        path = "/".join(parts[part] for part in stem)
         while path.lower() in taken:
             path += "_"
-        taken[path.lower()] = safe[name]
-        stems[name] = path
-    return {name: f"{FOLDER}/{stem}.aml" for name, stem in stems.items()}
+        taken.add(path.lower())
+        found[name] = f"{FOLDER}/{path}.aml"
+    return found
 
 
 def heads(book: Book) -> None:
