@@ -102,8 +102,8 @@ _ATTRIBUTES = """
     when when_language when_bodies when_languages condition condition_language condition_bodies
     condition_languages relative port path represents data_type unit default_value category
     semantics version change_mode copyright ppr interface_ids associated_facet tag data_type
-    feature_direction decision_input_flow stereotype namespace lineage on diagram arguments
-    message_kind qualified description definition_uri item_property first_event
+    decision_input_flow stereotype namespace lineage on diagram arguments
+    message_kind description
 """
 _SAID = frozenset(_ATTRIBUTES.split())
 """Attributes that the text says, or that say nothing more than what it says."""

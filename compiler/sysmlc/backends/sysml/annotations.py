@@ -8,7 +8,7 @@ from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import reference, visible
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.stereotypes import is_standard
-from sysmlc.backends.sysml.words import quoted, string
+from sysmlc.backends.sysml.words import comment_lines, quoted, string
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
@@ -39,6 +39,7 @@ _AML = {
     "copyright": "copyright",
     "ppr": "ppr",
     "associated_facet": "associatedFacet",
+    "default_value": "defaultValue",
 }
 
 
@@ -48,6 +49,7 @@ def of(book: Book, entry: Entry) -> list[Line]:
     if element is None:
         return []
     return [
+        *_description(element),
         *_aml(book, entry, element),
         *_interfaces(book, entry, element),
         *_kind(book, entry, element),
@@ -55,6 +57,12 @@ def of(book: Book, entry: Entry) -> list[Line]:
         *_outside(book, entry, element),
         *_applications(book, entry, element),
     ]
+
+
+def _description(element: Element) -> list[Line]:
+    """What AutomationML says of a feature in words; documents and libraries list it themselves."""
+    text = element.attrs.get("description")
+    return [Line("doc", text=comment_lines(str(text)))] if text else []
 
 
 def ours(book: Book, entry: Entry, name: str, facts: Mapping[str, AttrValue]) -> Line:
@@ -82,7 +90,7 @@ def _aml(book: Book, entry: Entry, element: Element) -> list[Line]:
     for key, name in _AML.items():
         given = element.attrs.get(key)
         if given is not None and (key != "data_type" or given not in _PLAIN_TYPES):
-            facts[name] = _flat(given)
+            facts[name] = str(given) if key == "default_value" else _flat(given)
     if facts and _is_told(element):
         facts["kind"] = element.subkind
     kept = {key: value for key, value in facts.items() if value not in (None, "", ())}
