@@ -47,11 +47,15 @@ def paired(old: Side, new: Side, *, has_ids: bool = True) -> Pairs:
     if has_ids:
         by_id(pairs)
     by_name(pairs)
-    while any(_finds(pairs, step) for step in _STEPS):
+    for _ in range(_MOST):
+        if not any(_finds(pairs, step) for step in _STEPS):
+            break
         by_name(pairs)
     return pairs
 
 
+_MOST = 100
+"""Rounds after which the rest is different: one more for each level of elements without names."""
 _STEPS = (by_surroundings, by_choice, by_likeness, by_move)
 
 

@@ -32,12 +32,18 @@ class Refinement:
         self._numbers = numbers
         self._elements = elements
         self._part_of = {part.id: one for one in elements for part in side.below(one)}
-        self.colours: Colours = {one.id: self._number(self._said(one)) for one in elements}
+        self.colours: Colours = {one.id: self._said(one) for one in elements}
 
-    def _said(self, element: Element) -> Token:
-        said = (self._number(fact_token(f, self._blind)) for f in facts(self._side, element))
-        inside = (self._number(self._said(one)) for one in self._side.children(element))
-        return (element.kind, element.name, tuple(sorted(said)), tuple(sorted(inside)))
+    def _said(self, element: Element) -> int:
+        """A number for what the element and all below it say; depth does no harm."""
+        below = list(self._side.below(element))
+        numbers: dict[str, int] = {}
+        for one in reversed(below):
+            said = (self._number(fact_token(f, self._blind)) for f in facts(self._side, one))
+            inside = sorted(numbers[child.id] for child in self._side.children(one))
+            whole = (one.kind, one.name, tuple(sorted(said)), tuple(inside))
+            numbers[one.id] = self._number(whole)
+        return numbers[element.id]
 
     def _blind(self, element: Element) -> Token:
         """A token that is the same for all of a kind and name while partners are unknown."""

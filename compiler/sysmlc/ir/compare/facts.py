@@ -153,11 +153,15 @@ def _words(detail: Element) -> str:
 
 
 def _content(side: Side, detail: Element) -> Value:
-    """Everything that a detail says, whatever its kind."""
+    """Everything that a detail and all below it say, whatever their kinds."""
+    inside = list(side.graph.subtree(detail))
+    return tuple((one.name if one is not detail else "", *_alone(side, one)) for one in inside)
+
+
+def _alone(side: Side, detail: Element) -> tuple[Value, ...]:
     edges = side.out.get(detail.id, {})
     targets = tuple((edge, *_others(found, detail)) for edge, found in edges.items())
-    inner = tuple((one.name, _content(side, one)) for one in side.graph.owned(detail))
-    return (_given(side, detail), targets, inner)
+    return (detail.kind, len(side.graph.owned(detail)), _given(side, detail), targets)
 
 
 def _others(targets: list[Element], detail: Element) -> list[Value]:

@@ -22,15 +22,17 @@ def by_surroundings(pairs: Pairs) -> None:
 def by_choice(pairs: Pairs) -> None:
     """Where several say the same, any may be chosen; what surrounds it follows the choice.
 
-    Of each owner only one class of equals: the others depend on it.
+    Only the most telling colours are used that find anything: what they leave is looked at anew.
     """
     groups = list(pairs.leftovers())
     refined = Refined(pairs, groups)
     for group in groups:
         for one, other in refined.rounds:
-            found = next(_classes(pairs, group, one, other), None)
-            if found is not None:
-                _choose(pairs, *found, _Walk(pairs, refined, one, other))
+            found = list(_classes(pairs, group, one, other))
+            walk = _Walk(pairs, refined, one, other)
+            for olds, news in found:
+                _choose(pairs, olds, news, walk)
+            if found:
                 break
 
 

@@ -45,7 +45,8 @@ def steps(side: Side, end: Element) -> list[Element]:
 
 def dotted(side: Side, element: Element) -> str:
     """``part.port``: the steps to what a connector end or a nested port stands for."""
-    return ".".join(title(side, step) for step in steps(side, element)) or "(nothing)"
+    names = (step.name or f"<{step.kind}>" for step in steps(side, element))
+    return ".".join(names) or "(nothing)"
 
 
 def _description(side: Side, element: Element) -> str:
