@@ -6,8 +6,8 @@ from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.calls import call_target
 from sysmlc.backends.sysml.declarations import visibility
 from sysmlc.backends.sysml.effects import statements
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.events import trigger
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.successions import first, leaving

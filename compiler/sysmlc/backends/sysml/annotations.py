@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import reference, visible
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE

@@ -2,7 +2,7 @@
 
 from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.words import comment_lines, quoted
 from sysmlc.ir import AttrValue, Edge, Kind

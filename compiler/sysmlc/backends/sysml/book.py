@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.order import in_order
-from sysmlc.backends.sysml.plan import Entry, Plan
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import library_name, named, qualified, redefined_name, visible
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses

@@ -1,7 +1,7 @@
 """How an action names what it calls, and which pin stands for which parameter."""
 
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.references import chain, lookup
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import direction_of, features, generals, type_of

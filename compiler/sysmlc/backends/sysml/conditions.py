@@ -3,9 +3,9 @@
 import re
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import UNITS
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Element

@@ -3,7 +3,7 @@
 from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import typing, visibility
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import chain
 from sysmlc.backends.sysml.structure import contents

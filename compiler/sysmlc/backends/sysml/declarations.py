@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import scalar_of
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind

@@ -23,7 +23,9 @@ from sysmlc.backends.sysml import (
 )
 from sysmlc.backends.sysml.account import account
 from sysmlc.backends.sysml.book import Book, Writer
-from sysmlc.backends.sysml.plan import Entry, make_plan, name_all
+from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.naming import name_all
+from sysmlc.backends.sysml.plan import make_plan
 from sysmlc.backends.sysml.printing import Line, printed
 from sysmlc.backends.sysml.profiles import define
 from sysmlc.backends.sysml.rules import Losses

@@ -1,8 +1,8 @@
 """Effects of our grammar as actions of SysML v2: assignments, sendings, performed actions."""
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import UnknownNameError, resolved, written
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.ir import Element
 from sysmlc.logic.expression import (
     Assignment,

@@ -2,7 +2,7 @@
 
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition, duration, instant
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element
 

@@ -1,7 +1,7 @@
 """Expressions of our grammar over the names of the text; other text stays as it is."""
 
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.plan import Entry, Plan
+from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.references import lookup, meant, reference
 from sysmlc.backends.sysml.words import quoted, string
 from sysmlc.ir import Kind

@@ -1,8 +1,8 @@
 """Imports of packages and elements."""
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.library import scalar_of
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.ir import Edge, Element, Kind
 

@@ -4,7 +4,7 @@ from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition
 from sysmlc.backends.sysml.declarations import type_name
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
 from sysmlc.backends.sysml.structure import contents

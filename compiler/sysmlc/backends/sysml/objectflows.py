@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import visibility
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.structure import contents

@@ -1,6 +1,6 @@
 """The order of members: as in the model, but documentation first, and behaviours as they run."""
 
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _GROUPS = {

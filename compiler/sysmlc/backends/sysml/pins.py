@@ -3,7 +3,7 @@
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.calls import parameter_of
 from sysmlc.backends.sysml.declarations import Head, feature_head
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.values import value

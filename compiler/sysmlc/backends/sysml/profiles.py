@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sysmlc.backends.sysml.plan import Entry, Plan
+from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.ir import AttrValue, Edge, Element, Kind

@@ -7,8 +7,8 @@ members first, then the packages of the unit.
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
+from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.library import IMPORTED, IMPORTS
-from sysmlc.backends.sysml.plan import Entry, Plan
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import definition_head, visibility
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import qualified, reference
 from sysmlc.backends.sysml.structure import classifier, contents

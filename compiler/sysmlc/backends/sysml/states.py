@@ -5,8 +5,8 @@ from sysmlc.backends.sysml.behaviours import held
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition
 from sysmlc.backends.sysml.declarations import visibility
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.events import trigger
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
 from sysmlc.backends.sysml.structure import contents

@@ -3,8 +3,8 @@
 from sysmlc.backends.sysml import annotations, declarations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import Head, definition_head, feature_head, typing
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.library import quantity_of, scalar_of, unit_name
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import qualified
 from sysmlc.backends.sysml.texts import opaque_lines

@@ -2,7 +2,7 @@
 
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
 from sysmlc.backends.sysml.values import literal

@@ -1,7 +1,7 @@
 """Comments, documentation, and bodies in other languages."""
 
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.plan import Entry
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.words import comment_lines, quoted, string
 from sysmlc.ir import Edge, Element

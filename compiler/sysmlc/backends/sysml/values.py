@@ -1,9 +1,9 @@
 """Values of features: literals, enumeration literals, quantities, expressions."""
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import quantity_of, unit_name
-from sysmlc.backends.sysml.plan import Entry
 from sysmlc.backends.sysml.words import string
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.measures import unit_of
