@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import measures, mirrors, ports, special
+from sysmlc.frontends.caex import documents, measures, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
@@ -35,6 +35,7 @@ class _PortShape(NamedTuple):
 
     type: Type | None
     target: Element | None
+    meaning: str
 
 
 class Plain:
@@ -127,7 +128,17 @@ class Plain:
         if inside:
             made.attrs = ports.said_of(document.node(row))
             document.verdicts[row + 1 : row + 1 + inside] = [Verdict.MAPPED] * inside
+        if shape.meaning:
+            self._mean(shape.meaning, owner, made, row)
         return True
+
+    def _mean(self, meaning: str, owner: Type, made: Element, row: int) -> None:
+        """What a port of a special class is for; it may name a file of another language."""
+        context, document = self._context, self._document
+        context.special[made.id] = meaning
+        if meaning in special.DOCUMENTS:
+            node = document.node(row)
+            documents.lower(context, node, document, owner.id, made.id, meaning, made.attrs)
 
     def _has_only_attributes(self, row: int) -> bool:
         document = self._document
@@ -139,9 +150,9 @@ class Plain:
     def _port(self, path: str) -> _PortShape | None:
         declared = self._declared(path.strip(), Family.INTERFACE)
         shape = None
-        if not isinstance(declared, Missing) and not special.meaning(declared):
-            graph = self._context.graph
-            shape = _PortShape(declared, None if declared is None else graph[declared.id])
+        if not isinstance(declared, Missing):
+            target = None if declared is None else self._context.graph[declared.id]
+            shape = _PortShape(declared, target, special.meaning(declared))
         self._ports[path] = shape
         return shape
 
