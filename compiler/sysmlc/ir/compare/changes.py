@@ -4,24 +4,22 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 
 from sysmlc.ir.compare.alike import by_likeness, by_move
-from sysmlc.ir.compare.change import Change, Ref, What
+from sysmlc.ir.compare.change import Change, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import Fact
+from sysmlc.ir.compare.only import only, owner_of, ref_of
 from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
 from sysmlc.ir.compare.plants import (
     holders,
     is_own_class,
     is_part_instance,
-    is_told_of_another,
-    own_classes,
     represented,
 )
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
-from sysmlc.ir.compare.titles import exactly, title, whole, word
+from sysmlc.ir.compare.titles import exactly, title, word
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.kinds import Kind
 
 _Said = list[tuple[tuple[Token, Token], Fact]]
 
@@ -34,8 +32,8 @@ def compare(old: Graph, new: Graph, ignore: Collection[str] = ()) -> list[Change
     """
     pairs = paired(Side(old), Side(new), has_ids="id" not in ignore)
     changes = [
-        *_only(pairs, pairs.old, What.REMOVED),
-        *_only(pairs, pairs.new, What.ADDED),
+        *only(pairs, pairs.old, What.REMOVED),
+        *only(pairs, pairs.new, What.ADDED),
         *(change for pair in _pairs(pairs) for change in _between(pairs, *pair, ignore)),
     ]
     return sorted(changes, key=_by_owner)
@@ -76,60 +74,6 @@ def _pairs(pairs: Pairs) -> Iterator[tuple[Element, Element]]:
             yield old, new
 
 
-# -- what is on one side only ------------------------------------------------------------------
-
-
-def _only(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
-    known = pairs.new_of if side is pairs.old else pairs.old_of
-    for owner, children in side.things.items():
-        if owner is None or owner in known or _is_transparent(side, side.graph[owner], known):
-            for child in children:
-                if not (child.id in known or is_external(child) or _follows(side, child, known)):
-                    yield _alone(side, child, what, known)
-
-
-def _is_transparent(side: Side, owner: Element, known: Collection[str]) -> bool:
-    """Whether what it owns is told by itself: a new class of an InternalElement that is not new."""
-    is_new = owner.id not in known and is_own_class(owner)
-    return is_new and any(one.id in known for one in holders(side, owner))
-
-
-def _follows(side: Side, element: Element, known: Collection[str]) -> bool:
-    """Whether it is there only because of something else that is told.
-
-    What a message does at its ends comes and goes with the message.
-    """
-    if element.kind is Kind.OCCURRENCE:
-        into = side.into.get(element.id, ())
-        return any(one.kind is Kind.MESSAGE and one.id not in known for _, one in into)
-    return is_told_of_another(side, element, known)
-
-
-def _alone(side: Side, element: Element, what: What, known: Collection[str]) -> Change:
-    tops = [element, *own_classes(side, element)]
-    contents = sum(one.id not in known for top in tops for one in side.below(top)) - len(tops)
-    ref = _ref(side, element)
-    is_old = what is What.REMOVED
-    return Change(
-        what=what,
-        owner=_owner(side, element),
-        name=title(side, element),
-        kind=word(side, element),
-        contents=contents,
-        old=ref if is_old else None,
-        new=None if is_old else ref,
-    )
-
-
-def _ref(side: Side, element: Element) -> Ref:
-    return Ref(element.id, whole(side, element), element.source, element.ordinal)
-
-
-def _owner(side: Side, element: Element) -> str:
-    owner = side.graph.owner(element)
-    return "" if owner is None else whole(side, owner)
-
-
 # -- what the two of a pair say ----------------------------------------------------------------
 
 
@@ -139,7 +83,7 @@ def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) 
     if old.kind is not new.kind:
         yield _change(pairs, old, new, What.RETYPED, "kind", str(old.kind), str(new.kind))
     if _is_moved(pairs, old, new):
-        there, here = _owner(pairs.old, old), _owner(pairs.new, new)
+        there, here = owner_of(pairs.old, old), owner_of(pairs.new, new)
         yield _change(pairs, old, new, What.MOVED, "owner", there, here)
     yield from _reordered(pairs, old, new)
     differing = _differing(pairs, old, new)
@@ -247,12 +191,12 @@ def _change(
 ) -> Change:
     return Change(
         what=what,
-        owner=_owner(pairs.new, new),
+        owner=owner_of(pairs.new, new),
         name=title(pairs.new, new),
         kind=word(pairs.new, new),
         aspect=aspect,
         before=before,
         after=after,
-        old=_ref(pairs.old, old),
-        new=_ref(pairs.new, new),
+        old=ref_of(pairs.old, old),
+        new=ref_of(pairs.new, new),
     )
