@@ -149,7 +149,7 @@ def _redirect(graph: Graph, elements: list[_Kept]) -> None:
     stubs = {str(one.attrs["href"]): one for one in outside}
     for kept in elements:
         stub, new = stubs.get(kept.href or ""), graph.get(kept.id)
-        if stub is None or new is None:
+        if stub is None or new is None or stub.id not in graph:
             continue
         for edge in Edge:
             for source in graph.sources(stub, edge) if edge is not Edge.OWNS else ():

@@ -1,6 +1,7 @@
 """Plants of AutomationML that are saved as UML: a comment keeps what UML cannot say."""
 
 import json
+from random import Random
 
 import jsonschema
 import pytest
@@ -8,6 +9,7 @@ from lxml import etree
 from saving import PASSES, read, refined, round_trip, saved
 
 from dialects.papyrus import XMI
+from dialects.random_plants import random_plant
 from sysmlc import resources
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Coverage, Sink
@@ -151,3 +153,12 @@ def test_relations_keep_their_order(plant):
         if one.name == "l" and one.kind.value == "Connector":
             paths = [back.targets(end, Edge.PATH) for end in back.targets(one, Edge.END)]
             assert [[step.name for step in path] for path in paths] == [[], ["belt"]]
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_a_random_plant_comes_back(seed):
+    graph, sink = Graph(), Sink()
+    source = Source("plant.aml", random_plant(Random(seed)))
+    FRONTEND.read([source], graph, sink, Coverage())
+    pipeline.pipeline(PASSES).run(graph, sink)
+    assert round_trip(graph)[2] == []

@@ -25,6 +25,8 @@ _OF_TAGS = frozenset(_OF_TAGS_NAMES.split())
 """What passes work out from tags of applications, or slots of units."""
 _KEPT = frozenset({"unit", "language", "unresolved"})
 """What UML says in other words, and AutomationML in these too."""
+_ONE = ("multiplicity", "1")
+"""What UML says by silence."""
 _SUFFIXES = ("_language", "_languages", "_bodies", "_instance", "_literal")
 _VALUES = {
     Kind.INSTANCE: "specification",
@@ -39,6 +41,8 @@ def write(book: Book, element: Element) -> None:
         writer = _WRITERS.get(key)
         if writer is not None:
             writer(book, element, key, given)
+            if (key, given) == _ONE and book.losses.kept is not None:
+                book.losses.kept.attribute(element, key)
         elif not _is_said_otherwise(book, element, key):
             _plain(book, element, key, given)
         elif key in _KEPT and book.losses.kept is not None:

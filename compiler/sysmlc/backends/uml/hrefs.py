@@ -34,12 +34,17 @@ def href_of(graph: Graph, element: Element) -> str:
     href = str(element.attrs.get("href", ""))
     if not href:
         above = reversed([element, *graph.ancestors(element)])
-        file, *path = [quote(one.name, safe="") for one in above]
+        file, *path = [quote(_own_name(one), safe="") for one in above]
         return f"{_OURS}{file}#{'/'.join(path) or file}"
     for ours, theirs in _FILES.items():
         if href.startswith(ours):
             return theirs + href.removeprefix(ours)
     return _sysml(element, href.removeprefix(_SYSML)) if href.startswith(_SYSML) else href
+
+
+def _own_name(element: Element) -> str:
+    """The name; of types for one unit, of which several have one name, the id."""
+    return element.id if element.name.endswith("]") else element.name
 
 
 def _sysml(element: Element, path: str) -> str:
