@@ -87,6 +87,15 @@ def test_standard_libraries_are_there_for_files_that_omit_them_and_are_not_of_th
     assert reading.findings == []
 
 
+def test_all_that_a_built_in_library_brings_stands_in_no_file_of_the_plant():
+    path = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Port"
+    graph = Read(roles(f'<RoleClass Name="R" RefBaseClassPath="{path}"/>')).graph
+    library = next(one for one in graph.roots() if one.name == "AutomationMLBaseRoleClassLib")
+    brought = list(graph.subtree(library))
+    assert any(one.kind == "DataType" and one.name == "Cardinality" for one in brought)
+    assert {(one.source, one.attrs.get("library")) for one in brought} == {("", True)}
+
+
 def test_a_standard_library_in_the_file_is_used_and_is_not_of_the_plant_either():
     reading = Read(
         roles('<RoleClass Name="AutomationMLBaseRole"/>', "AutomationMLBaseRoleClassLib")

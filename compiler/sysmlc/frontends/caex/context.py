@@ -100,6 +100,13 @@ class Context:
         document.verdicts[row] = Verdict.MAPPED
         return element
 
+    def place(self, element: Element, document: Document, ordinal: int) -> None:
+        """Say where the element stands; what is built in stands in no file of the unit."""
+        if document.is_built_in:
+            element.attrs.update(external=True, library=True)
+        else:
+            element.ordinal, element.source = ordinal, document.name
+
     def id_of(self, node: Node, document: Document, owner: str | None) -> str:
         """The node's own id, or one made of its owner's and its name."""
         return self.free(self.id_at(document, node.row, owner), node)

@@ -102,7 +102,7 @@ def _structure(
 def _own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
     """Add the type that only one feature has; it specialises the declared one."""
     element.id = type.id = context.free(element.id, type.node)
-    element.ordinal, element.source = type.node.ordinal, type.document.name
+    context.place(element, type.document, type.node.ordinal)
     context.graph.add(element)
     type.base = declared
     if declared is not None:
