@@ -196,3 +196,16 @@ def test_a_truth_is_no_number_in_expressions():
 def test_number_with_more_digits_than_python_reads_is_refused():
     with pytest.raises(ExpressionError, match="too many digits"):
         parse_expression("9" * 5000)
+
+
+@pytest.mark.parametrize("text", ["- " * 500 + "1", "not " * 200 + "a", "a" + " + a" * 400])
+def test_what_nests_deeper_than_any_expression_is_refused(text):
+    with pytest.raises(ExpressionError, match="nested too deeply"):
+        parse_expression(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["- " * 100 + "1", "a" + " + a" * 100, "max(" + "a, " * 400 + "a)"]
+)
+def test_what_is_long_but_not_deep_is_read(text):
+    parse_expression(text)

@@ -4,10 +4,12 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import lru_cache
 from typing import TypeVar
 
+_DEEPEST = 150
+"""Levels of nesting that are read; a tuple of arguments is one."""
 _T = TypeVar("_T")
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
 KEYWORDS = frozenset(_WORDS.split(" "))
@@ -155,9 +157,30 @@ def parse_effect(text: str) -> tuple[Statement, ...]:
 
 def _read(text: str, read: Callable[[str], _T]) -> _T:
     try:
-        return read(text)
+        found = read(text)
     except RecursionError:
         raise ExpressionError("the expression is nested too deeply", 0) from None
+    # What is shorter cannot be nested so deep; those who walk the tree do so by calls.
+    if len(text) > _DEEPEST and _is_deep(found):
+        raise ExpressionError("the expression is nested too deeply", 0)
+    return found
+
+
+def _is_deep(expression: object) -> bool:
+    """Whether more than ``_DEEPEST`` expressions stand one inside the other."""
+    level = [expression]
+    for _ in range(_DEEPEST):
+        inner = [part for one in level for part in _parts(one)]
+        level = [part for part in inner if not isinstance(part, str | int | float | None)]
+        if not level:
+            return False
+    return True
+
+
+def _parts(value: object) -> list[object]:
+    if isinstance(value, tuple | list):
+        return list(value)
+    return [getattr(value, one.name) for one in fields(value)] if is_dataclass(value) else []
 
 
 # -- printing ----------------------------------------------------------------------------------
