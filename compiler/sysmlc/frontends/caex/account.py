@@ -69,18 +69,12 @@ def _count(document: Document, counts: FileCoverage) -> None:
 
 def _unordered(document: Document) -> list[int]:
     """Rows with a child that stands after one that the schema has behind it."""
-    tags, ends, parents = document.tags, document.ends, document.parents
-    if ORDER.keys() >= set(tags[1:]):
-        following = [*tags, ""]
-        pairs = set(zip(tags, map(following.__getitem__, ends), strict=True))
-        wrong = {p for p in pairs if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
-        found = zip(tags, map(following.__getitem__, ends), strict=True)
-        rows = (row for row, pair in enumerate(found) if pair in wrong)
-        return sorted({parents[row] for row in rows if parents[ends[row]] == parents[row]})
-    ranks = [ORDER.get(tag, -1) for tag in tags]
+    if ORDER.keys() >= set(document.tags[1:]):
+        return _unordered_neighbours(document)
+    ranks = [ORDER.get(tag, -1) for tag in document.tags]
     highest: dict[int, int] = {}
     found: dict[int, None] = {}
-    for parent, rank in zip(parents, ranks, strict=True):
+    for parent, rank in zip(document.parents, ranks, strict=True):
         if rank < 0:
             continue
         if rank < highest.get(parent, -1):
@@ -88,6 +82,19 @@ def _unordered(document: Document) -> list[int]:
         else:
             highest[parent] = rank
     return sorted(found)
+
+
+def _unordered_neighbours(document: Document) -> list[int]:
+    """The same where every child has a place in the order: then two neighbours are wrong."""
+    tags, ends, parents = document.tags, document.ends, document.parents
+    following = list(map([*tags, ""].__getitem__, ends))
+    pairs = set(zip(tags, following, strict=True))
+    wrong = {p for p in pairs if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
+    if not wrong:
+        return []
+    both = enumerate(zip(tags, following, strict=True))
+    rows = (row for row, pair in both if pair in wrong)
+    return sorted({parents[row] for row in rows if parents[ends[row]] == parents[row]})
 
 
 def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:

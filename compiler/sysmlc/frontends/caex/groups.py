@@ -29,10 +29,12 @@ def kind_of(context: Context, site: Site) -> Kind | None:
 
 def _look_up(context: Context, document: Document, path: str) -> Kind | None:
     role = context.look_up(path.strip(), Family.ROLE, document) if path.strip() else None
-    is_known = isinstance(role, Type)
-    kinds = (kind for name, kind in _KINDS.items() if is_known and role.conforms(*BASE_ROLE, name))
-    kind = context.shown[document, path] = next(kinds, None)
+    kind = context.shown[document, path] = _kind_of(role) if isinstance(role, Type) else None
     return kind
+
+
+def _kind_of(role: Type) -> Kind | None:
+    return next((kind for name, kind in _KINDS.items() if role.conforms(*BASE_ROLE, name)), None)
 
 
 def roles_of(context: Context, site: Site) -> Iterator[Type]:

@@ -184,7 +184,7 @@ class Sites:
     def _tie(self, edge: Edge, ids: dict[Site, str]) -> None:
         """Tie each element to the type of its site."""
         graph = self._context.graph
-        types = [graph.get(type.id) if (type := site.type) else None for site in ids]
+        types = [graph.get(known.id) if (known := site.type) else None for site in ids]
         graph.connect_all([edge] * len(ids), ids.values(), types)
 
     def _mirror(self, site: Site) -> None:
