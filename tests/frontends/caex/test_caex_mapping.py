@@ -177,6 +177,27 @@ def test_a_part_that_its_class_knows_is_redefined_where_an_instance_puts_more_in
     assert reading.to("Plant::top::m", "specializes", "Class") == ["Lib::M"]
 
 
+def test_a_part_that_an_instance_types_otherwise_than_its_class_is_redefined():
+    def typed(by):
+        return Read(
+            classes(
+                '<SystemUnitClass Name="M"/><SystemUnitClass Name="N"/>'
+                '<SystemUnitClass Name="Fine" RefBaseClassPath="Lib/M"/><SystemUnitClass Name="C">'
+                '<InternalElement Name="m" ID="1" RefBaseSystemUnitPath="Lib/M"/></SystemUnitClass>'
+            )
+            + plant(
+                '<InternalElement Name="top" ID="2" RefBaseSystemUnitPath="Lib/C">'
+                f'<InternalElement Name="m" ID="3" RefBaseSystemUnitPath="Lib/{by}"/>'
+                "</InternalElement>"
+            )
+        )
+
+    assert typed("N").to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
+    assert typed("N").to("Plant::top::m", "typed-by", "Property") == ["Lib::N"]
+    assert typed("Fine").to("Plant::top", "instance-of") == ["Lib::C"]
+    assert typed("Fine").to("Plant::top::m", "instance-of") == ["Lib::Fine"]
+
+
 # -- attributes --------------------------------------------------------------------------------
 
 

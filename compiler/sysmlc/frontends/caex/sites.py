@@ -117,7 +117,7 @@ class Sites:
             return None
         site.declared = self._declared(site)
         known = None if site.is_mirror else self._known(site, parent)
-        if known is None:
+        if known is None or _is_another(site, known):
             self._add_part(site, parent)
         else:
             self._match(site, known)
@@ -146,7 +146,7 @@ class Sites:
         site.is_known = True
         site.part = known.id
         type = known.type
-        if type is not None and type is not site.declared and not _specialises(site, type):
+        if type is not None and not _specialises(site.declared, type):
             site.declared = type
         site.document.verdicts[site.row] = Verdict.MAPPED
         if site.root.instance:
@@ -203,6 +203,14 @@ class Sites:
         return node.element or (site.part if site is not None else "")
 
 
-def _specialises(site: Site, general: Type) -> bool:
-    type = site.declared
+def _is_another(site: Site, known: Member) -> bool:
+    """Whether an instance says that something else is in the place of a part of its class."""
+    stated, type = site.declared, known.type
+    if stated is None or type is None or stated is type:
+        return False
+    return not (_specialises(stated, type) or _specialises(type, stated))
+
+
+def _specialises(type: Type | None, general: Type) -> bool:
+    """Whether the type is the general one, or inherits from it."""
     return type is not None and any(one is general for one in type.chain())
