@@ -4,7 +4,6 @@ Nothing in it is needed: an entry that is missing, damaged or cannot be written 
 """
 
 import os
-import tempfile
 import zlib
 from contextlib import suppress
 from dataclasses import dataclass
@@ -42,10 +41,12 @@ class Cache:
 
     def put(self, key: str, data: bytes) -> None:
         """Keep an entry; in one step, so that no other process sees half of it."""
+        from tempfile import mkstemp
+
         path = self._path(key)
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(dir=path.parent)
+            handle, temporary = mkstemp(dir=path.parent)
             with os.fdopen(handle, "wb") as stream:
                 stream.write(_check_sum(data) + data)
             Path(temporary).replace(path)

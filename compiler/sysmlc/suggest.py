@@ -1,13 +1,14 @@
 """Answers to unknown names: the known ones, the nearest first."""
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 _SHOWN = 12
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """A clause for the end of a message: ``did you mean 'recipe'?``, else the known names."""
+    from difflib import get_close_matches
+
     names = sorted(set(known))
     folded = {name.casefold(): name for name in names}
     near = get_close_matches(word.casefold(), folded, n=1, cutoff=0.6)

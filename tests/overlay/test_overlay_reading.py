@@ -7,8 +7,8 @@ from jsonschema import Draft202012Validator
 
 from sysmlc import resources
 from sysmlc.diagnostics import Sink
-from sysmlc.overlay import files_of, read
 from sysmlc.overlay.paths import beside, join, split
+from sysmlc.overlay.reading import files_of, read
 from sysmlc.overlay.tree import parse
 from sysmlc.sources import Source
 

@@ -3,7 +3,8 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
-from sysmlc.overlay import Refinement, read
+from sysmlc.overlay.model import Refinement
+from sysmlc.overlay.reading import read
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
-from sysmlc.overlay import Refinement
+from sysmlc.overlay.model import Refinement
 from sysmlc.passes.overlay import Overlay
 
 WORDS = [
@@ -165,7 +165,7 @@ def test_any_text_is_an_overlay_or_is_told(text):
 
 @given(st.binary(max_size=60))
 def test_any_bytes_are_an_overlay_or_are_told(data):
-    from sysmlc.overlay import read
+    from sysmlc.overlay.reading import read
     from sysmlc.sources import Source
 
     sink = Sink()

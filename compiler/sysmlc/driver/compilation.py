@@ -1,6 +1,5 @@
 """One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
 
-import traceback
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,13 +13,14 @@ from sysmlc.diagnostics.suppress import suppress
 from sysmlc.driver import faults, registry
 from sysmlc.driver.drawings import beside
 from sysmlc.driver.inputs import unit_root
+from sysmlc.driver.overlays import store_all
 from sysmlc.driver.places import Locator
 from sysmlc.driver.reading import Reading, read_unit
 from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
-from sysmlc.overlay import SUFFIX, Refinement
+from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
@@ -159,8 +159,7 @@ class _Run:
         inputs += tuple(InputFile(one.name, one.sha256, what) for one, what in beside)
         broken = not self._read(reading)
         self._validate(reading)
-        said = [laid.refinement for laid in reading.overlays if laid.refinement is not None]
-        self._graph.store(Refinement, said)
+        store_all(reading.overlays, self._graph)
         broken = not all(self._refine(step) for step in self._passes) or broken
         emitted = [] if broken else self._emit(inputs, reading)
         if self._request.strict_input:
@@ -256,7 +255,9 @@ class _Run:
         except MemoryError:
             raise
         except Exception as problem:
-            self._observer.fault(where, traceback.format_exc())
+            from traceback import format_exc
+
+            self._observer.fault(where, format_exc())
             text = f"{type(problem).__name__}: {problem}"
             self._sink.report(faults.INTERNAL_FAULT, Subject(), where=where, problem=text)
             return False

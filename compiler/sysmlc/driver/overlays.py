@@ -1,16 +1,22 @@
 """Overlays of a unit: those beside its models, and those that are named."""
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import name_of
-from sysmlc.overlay import SUFFIX, Refinement, read
+from sysmlc.ir import Graph
+from sysmlc.overlay import SUFFIX
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS
 from sysmlc.sources.whole import read_whole
+
+if TYPE_CHECKING:
+    from sysmlc.overlay.model import Refinement
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +25,7 @@ class LoadedOverlay:
 
     path: Path
     source: Source
-    refinement: Refinement | None
+    refinement: "Refinement | None"
 
 
 def beside(model: Path) -> Path | None:
@@ -39,4 +45,24 @@ def load_overlay(path: Path, root: Path, sink: Sink, *, is_named: bool) -> Loade
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return None
+    from sysmlc.overlay.reading import read
+
     return LoadedOverlay(path, source, read(source, sink))
+
+
+def store_all(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
+    """Keep what overlays say for the pass ``overlay``."""
+    said = [laid.refinement for laid in overlays if laid.refinement is not None]
+    if said:
+        from sysmlc.overlay.model import Refinement
+
+        graph.store(Refinement, said)
+
+
+def models_of(overlay: LoadedOverlay) -> list[str]:
+    """Files that the terms of an overlay name, each once, as it writes them."""
+    if overlay.refinement is None:
+        return []
+    from sysmlc.overlay.reading import files_of
+
+    return files_of(overlay.refinement)

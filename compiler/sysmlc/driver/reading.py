@@ -8,9 +8,8 @@ from pathlib import Path
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
-from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay
+from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay, models_of
 from sysmlc.frontends.base import Frontend, Mentioning
-from sysmlc.overlay import files_of
 from sysmlc.sources import Roots, Source, SourceError, load
 
 
@@ -83,7 +82,7 @@ class _Reader:
         if found is None:
             return
         self.overlays[found.source.name] = found
-        for file in files_of(found.refinement) if found.refinement else ():
+        for file in models_of(found):
             target = self._roots.resolve(path, file)
             if target is not None:
                 self.read(target, None)

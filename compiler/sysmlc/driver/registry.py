@@ -1,6 +1,5 @@
 """Front ends, back ends and rules: where they are found, without importing what is not used."""
 
-import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields, replace
@@ -11,6 +10,7 @@ from sysmlc.backends.base import Backend
 from sysmlc.cache import Cache
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
+from sysmlc.driver.distributions import may_be_named
 from sysmlc.frontends.base import Caching, Frontend
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
@@ -166,6 +166,8 @@ def _known(names: Iterable[str], others: "dict[str, EntryPoint]") -> frozenset[s
 
 def plug_ins() -> "list[EntryPoint]":
     """Entry points of back ends of other distributions, sorted by name. Raises BackendError."""
+    if not may_be_named(GROUP):
+        return []
     from importlib.metadata import entry_points
 
     found = {entry.name: entry for entry in entry_points(group=GROUP) if not _is_ours(entry)}
@@ -198,8 +200,10 @@ def _modules(package: str) -> Iterator[str]:
             raise
         return
     yield package
+    from pkgutil import walk_packages
+
     # What cannot be imported is given all the same: who imports it finds out.
     paths, ignore = getattr(folder, "__path__", ()), lambda _: None
-    for found in pkgutil.walk_packages(paths, f"{package}.", onerror=ignore):
+    for found in walk_packages(paths, f"{package}.", onerror=ignore):
         if not found.name.endswith("__main__"):
             yield found.name

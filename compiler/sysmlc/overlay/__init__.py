@@ -1,38 +1,7 @@
-"""Overlays: what an author adds to a model that its own language cannot say (thesis 3.4)."""
+"""Overlays: what an author adds to a model that its own language cannot say (thesis 3.4).
 
-from sysmlc.overlay.model import (
-    Allocation,
-    BlockEntry,
-    ConnectorEntry,
-    FlowEntry,
-    ItemEntry,
-    Key,
-    OperationEntry,
-    ParameterEntry,
-    PortEntry,
-    Refinement,
-    Term,
-    ValueEntry,
-)
-from sysmlc.overlay.reading import files_of, read
+The parts are imported by those who have an overlay: ``model`` its values, ``reading`` its YAML.
+"""
 
 SUFFIX = ".overlay.yaml"
 """How the overlay beside a model is called: the model's name with this for its suffix."""
-
-__all__ = [
-    "SUFFIX",
-    "Allocation",
-    "BlockEntry",
-    "ConnectorEntry",
-    "FlowEntry",
-    "ItemEntry",
-    "Key",
-    "OperationEntry",
-    "ParameterEntry",
-    "PortEntry",
-    "Refinement",
-    "Term",
-    "ValueEntry",
-    "files_of",
-    "read",
-]

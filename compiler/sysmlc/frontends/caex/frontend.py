@@ -1,31 +1,11 @@
-"""The front end for AutomationML."""
+"""The front end for AutomationML; what reads it is imported when there is a plant to read."""
 
-import gc
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
-from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.caex import (
-    account,
-    detect,
-    documents,
-    features,
-    libraries,
-    mappings,
-    metadata,
-    mirrors,
-    roles,
-    rules,
-)
-from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Document, read
-from sysmlc.frontends.caex.links import Links
-from sysmlc.frontends.caex.plain import Plain
-from sysmlc.frontends.caex.sites import Sites
-from sysmlc.frontends.caex.standard import Standard
-from sysmlc.frontends.caex.vocabulary import Family
+from sysmlc.diagnostics import Coverage, Place, Sink
+from sysmlc.frontends.caex import detect
 from sysmlc.ir import Graph
-from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.sources import Source
 
 
 class CaexFrontend:
@@ -39,11 +19,15 @@ class CaexFrontend:
 
     def links(self, source: Source) -> Sequence[str]:
         """The files that its external references name."""
-        return account.links(source)
+        from sysmlc.frontends.caex.account import links
+
+        return links(source)
 
     def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
         """The files of other languages that it refers to: they are not read."""
-        return list(documents.mentioned(source))
+        from sysmlc.frontends.caex.documents import mentioned
+
+        return list(mentioned(source))
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph; see docs/automationml.md.
@@ -51,69 +35,6 @@ class CaexFrontend:
         A damaged file is reported and left out. Raises SourceError for what exceeds the
         limits. The graph does not depend on the order of the files.
         """
-        ordered = sorted(sources, key=lambda source: source.name)
-        with _no_collection():
-            documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-            standard = Standard()
-            context = Context(documents, graph, sink, standard.provide)
-            _lower(context)
-            account.account(context, coverage, ordered)
-            context.forget()
-            standard.forget()
+        from sysmlc.frontends.caex.reading import read_all
 
-
-def _lower(context: Context) -> None:
-    types = []
-    for document in context.documents:
-        context.plain[document] = Plain(context, document)
-        libraries.header(context, document)
-    libraries.tie_aliases(context)
-    for document in context.documents:
-        types += libraries.lower(context, document)
-    libraries.specialise(context, types)
-    for type in libraries.in_order(types):
-        features.lower_own(context, type)
-    sites = Sites(context)
-    held = [type for type in types if type.family in (Family.SYSTEM_UNIT, Family.ROLE)]
-    for type in libraries.in_order_of_parts(context, held):
-        sites.lower_class(type)
-    for document in context.documents:
-        sites.lower_hierarchies(document)
-    sites.finish()
-    for plain in context.plain.values():
-        plain.finish()
-    mirrors.finish(context)
-    roles.lower(context, sites)
-    mappings.lower(context, sites)
-    Links(context, sites).lower()
-    for document in context.documents:
-        metadata.lower(context, document)
-    libraries.set_apart(context)
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
-
-    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
-    over a large graph again and again costs more than many passes.
-    """
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.freeze()
-            gc.enable()
-
-
-def _read(source: Source, sink: Sink) -> Document | None:
-    try:
-        return read(source)
-    except SourceError as problem:
-        if problem.fault is Fault.LIMIT:
-            raise
-        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-        sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
-        return None
+        read_all(sources, graph, sink, coverage)

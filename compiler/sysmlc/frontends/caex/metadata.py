@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator
-from xml.sax.saxutils import escape, quoteattr
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
@@ -100,6 +99,8 @@ def _keep(context: Context, document: Document, node: Node, element: Element) ->
 
 def _as_written(top: Node) -> str:
     """The node as XML without namespaces, for the way back to CAEX."""
+    from xml.sax.saxutils import escape, quoteattr  # imports urllib: 30 ms
+
     parts: list[str] = []
     waiting: list[Node | str] = [top]
     while waiting:

@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.huds.lowering import lower
-from sysmlc.frontends.huds.records import Record, read
-from sysmlc.frontends.huds.rules import MALFORMED
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.huds.records import Record
 
 _ROOT = re.compile(
     rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>\[]*(\[.*?\])?\s*>\s*)*<packet[\s>]",
@@ -37,13 +38,18 @@ class HudsFrontend:
 
         Raises SourceError for what exceeds the limits.
         """
+        from sysmlc.frontends.huds.lowering import lower
+
         for source in sorted(sources, key=lambda one: one.name):
             records = _records(source, sink)
             if records is not None:
                 lower(source.name, records, graph, sink, coverage)
 
 
-def _records(source: Source, sink: Sink) -> list[Record] | None:
+def _records(source: Source, sink: Sink) -> "list[Record] | None":
+    from sysmlc.frontends.huds.records import read
+    from sysmlc.frontends.huds.rules import MALFORMED
+
     try:
         return read(source)
     except SourceError as problem:

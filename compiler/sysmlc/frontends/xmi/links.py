@@ -1,7 +1,6 @@
 """Which files a document refers to; found without parsing it, before the unit is known."""
 
 import re
-from html import unescape
 
 from sysmlc.sources import Source
 
@@ -14,4 +13,12 @@ def links(source: Source) -> list[str]:
     A document in UTF-16 gives none: its hrefs are read, but as references to other units.
     """
     found = (double or single for double, single in _HREF.findall(source.data))
-    return list(dict.fromkeys(unescape(href.decode("utf-8", "replace")) for href in found))
+    return list(dict.fromkeys(_unescaped(href.decode("utf-8", "replace")) for href in found))
+
+
+def _unescaped(href: str) -> str:
+    if "&" not in href:
+        return href
+    from html import unescape
+
+    return unescape(href)

@@ -5,7 +5,8 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.overlay import Refinement
+
+_REFINEMENTS = "sysmlc.overlay.model"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +24,8 @@ class Overlay:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Add in place and report; see the class."""
-        refinements = graph.derived(Refinement)
-        if refinements:
+        if graph.has_derived(_REFINEMENTS):
+            from sysmlc.overlay.model import Refinement
             from sysmlc.passes.overlay.adding import add_all
 
-            add_all(refinements, graph, sink)
+            add_all(graph.derived(Refinement), graph, sink)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.overlay import Refinement
+from sysmlc.overlay.model import Refinement
 from sysmlc.passes.overlay.allocations import add_allocation
 from sysmlc.passes.overlay.behaviors import add_behaviors, note_behaviors
 from sysmlc.passes.overlay.blocks import refine_block

@@ -1,7 +1,7 @@
 """Allocations: what of the model is allocated to what (SysML 1.6 clause 15)."""
 
 from sysmlc.ir import Edge, Kind, derived_id
-from sysmlc.overlay import Allocation
+from sysmlc.overlay.model import Allocation
 from sysmlc.passes.overlay.finder import ANYTHING, Finder
 
 

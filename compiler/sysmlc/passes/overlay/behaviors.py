@@ -2,7 +2,7 @@
 
 from sysmlc.ir import Edge, Element
 from sysmlc.ir.query import parameters
-from sysmlc.overlay import BlockEntry, OperationEntry, Term
+from sysmlc.overlay.model import BlockEntry, OperationEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.blocks import add_parameter, operation_of
 from sysmlc.passes.overlay.finder import BEHAVIOR, BLOCK, Finder

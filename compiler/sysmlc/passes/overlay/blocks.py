@@ -2,7 +2,7 @@
 
 from sysmlc.ir import AttrValue, Edge, Element, Kind, derived_id
 from sysmlc.ir.query import generals, parameters
-from sysmlc.overlay import BlockEntry, OperationEntry, Term, ValueEntry
+from sysmlc.overlay.model import BlockEntry, OperationEntry, Term, ValueEntry
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import BLOCK, TYPE, Finder
 from sysmlc.passes.overlay.items import describe

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import generals, parameters, type_of
-from sysmlc.overlay import BlockEntry, Term
+from sysmlc.overlay.model import BlockEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.behaviors import behaviors_of, block_of
 from sysmlc.passes.overlay.finder import OPERATION, Finder

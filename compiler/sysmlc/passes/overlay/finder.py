@@ -8,8 +8,7 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
-from sysmlc.overlay import Key, Refinement, Term
-from sysmlc.overlay.model import Spot
+from sysmlc.overlay.model import Key, Refinement, Spot, Term
 from sysmlc.overlay.paths import beside, join, split
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES

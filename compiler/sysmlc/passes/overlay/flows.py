@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Kind, derived_id
 from sysmlc.ir.query import ends, role_of
-from sysmlc.overlay import ConnectorEntry, FlowEntry, Term
+from sysmlc.overlay.model import ConnectorEntry, FlowEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import CONNECTOR, FEATURE, TYPE, Finder, plain
 from sysmlc.suggest import did_you_mean

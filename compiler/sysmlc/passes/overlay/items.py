@@ -2,7 +2,7 @@
 
 from sysmlc.ir import Edge, Element, Kind, derived_id
 from sysmlc.ir.query import domain_of
-from sysmlc.overlay import ItemEntry, Key, Term
+from sysmlc.overlay.model import ItemEntry, Key, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import PACKAGE, TYPE, Finder
 

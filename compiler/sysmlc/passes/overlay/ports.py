@@ -1,7 +1,7 @@
 """Ports: the direction and the type that the author gives."""
 
 from sysmlc.ir import Edge
-from sysmlc.overlay import PortEntry
+from sysmlc.overlay.model import PortEntry
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import PORT, TYPE, Finder
 
