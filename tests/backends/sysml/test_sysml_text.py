@@ -362,6 +362,24 @@ package Stereotypes {
     )
 
 
+def test_ids_are_those_that_automationml_gave():
+    """A class that only one InternalElement has is of our making, and has none."""
+    lines = lines_of(
+        """\
+Document d "plant.aml" subkind="caex" @plant.aml:1
+Package IH#Plant "Plant" subkind="instance-hierarchy" @plant.aml:2
+  Instance i1 "cell" @plant.aml:3
+    -> instance-of i1#class
+  Class i1#class "cell" role="block" subkind="internal-element" @plant.aml:3
+"""
+    )
+    assert [line for line in lines if "@AutomationML" in line] == [
+        '@AutomationML { kind = "instance-hierarchy"; }',
+        'part cell : Cell { @AutomationML { id = "i1"; } }',
+        'part def Cell { @AutomationML { kind = "internal-element"; } }',
+    ]
+
+
 def test_inherited_features_that_hide_one_another_are_named_in_full():
     lines = lines_of("""
 Package p "Plant"

@@ -27,6 +27,8 @@ _SUBKINDS = (
 """Kinds whose subkind no keyword of SysML v2 says."""
 _ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
 """Kinds of what flows; the domain of flows and connectors follows from it."""
+_OF_CLASS = "#class"
+"""Ends the id of a class that only one InternalElement has; AutomationML gave it none."""
 _PLAIN_TYPES = frozenset(
     {"xs:double", "xs:string", "xs:boolean", "xs:integer", "xs:int", "xs:float", "xs:decimal", ""}
 )
@@ -85,7 +87,8 @@ def _aml(book: Book, entry: Entry, element: Element) -> list[Line]:
     facts: dict[str, AttrValue] = {}
     if element.source in book.caex:
         local = element.id.rpartition("#")[2]
-        is_own = "/" not in local and local not in ("", element.name) and "#" not in element.id[:0]
+        is_made = "/" in local or element.id.endswith(_OF_CLASS)
+        is_own = not is_made and local not in ("", element.name)
         facts["id"] = local if is_own else None
     for key, name in _AML.items():
         given = element.attrs.get(key)
