@@ -30,7 +30,8 @@ MISSING_FILE = rule(
     Severity.WARNING,
     "the file '{file}' is not part of the compile unit; {count} to classes of it",
     why="What the classes bring along is not known: no attributes, interfaces or parts.",
-    help="put the file where the ExternalReference says, or correct its path",
+    help="put the file where the ExternalReference says, or correct its path; a file outside "
+    "of the folder of the model is read when it is a further input",
     wrong='<ExternalReference Path="libs/gone.aml" Alias="Roles"/>',
     right='<ExternalReference Path="libs/roles.aml" Alias="Roles"/>',
 )
