@@ -2,12 +2,27 @@
 
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from sysmlc import resources
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+
+class _Options(TypedDict):
+    trim_blocks: bool
+    lstrip_blocks: bool
+    keep_trailing_newline: bool
+    autoescape: bool
+
+
+_OPTIONS: _Options = {
+    "trim_blocks": True,
+    "lstrip_blocks": True,
+    "keep_trailing_newline": True,
+    "autoescape": False,
+}
 
 
 @cache
@@ -19,14 +34,14 @@ def environment(folder: str, templates: Path | None) -> "Environment":
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 
+    from sysmlc.backends.compiled_templates import CompiledTemplates
+
     ours = resources.path("templates", folder)
     folders = [ours] if templates is None else [templates / folder, templates, ours]
     return Environment(
         loader=ChoiceLoader([FileSystemLoader(one) for one in folders]),
         undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,
+        **_OPTIONS,
         auto_reload=templates is not None,
+        bytecode_cache=CompiledTemplates(_OPTIONS) if templates is None else None,
     )
