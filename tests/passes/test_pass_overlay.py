@@ -313,8 +313,17 @@ def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
 def test_the_id_counts_when_the_path_leads_elsewhere():
     text = "overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sOut, direction: in}\n"
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert lines(sink) == [
+        "SM340 warning: the id 's-in' is that of 'Plant/Stopper/p_sIn' now, "
+        "not of 'Plant/Stopper/p_sOut'"
+    ]
     assert "direction" not in graph["s-out"].attrs
+
+
+@pytest.mark.parametrize("path", ["Plant/Stopper/p_sIn", "Plant/Stopper/gone"])
+def test_a_path_that_leads_to_the_same_or_nowhere_is_fine_beside_an_id(path):
+    _, sink = laid_over(f"overlay: 1\nports:\n  s-in: {{path: {path}, direction: in}}\n")
+    assert codes(sink) == []
 
 
 def test_an_entry_that_matches_nothing_is_told_with_its_place_and_the_nearest_name():

@@ -66,12 +66,20 @@ class Finder:
     def entry(self, key: Key, sort: Sort) -> Element | None:
         """What an entry is about; None when that is not clear, which is reported."""
         found = self.named(key.text, sort)
-        if not found and key.path:
-            found = self.named(key.path, sort)
-            if len(found) == 1:
-                new = found[0].id
-                self.report(rules.BY_PATH, key, id=key.text, path=key.path, new=new)
+        if key.path:
+            found = self._with_path(key, found, self.named(key.path, sort))
         return self.only(Term(key.text, key.spot), found, sort, key.path)
+
+    def _with_path(self, key: Key, found: list[Element], other: list[Element]) -> list[Element]:
+        """What the id means, else the path; that the two do not agree is reported."""
+        if len(other) != 1 or other == found:
+            return found or other
+        id, path = key.text, str(key.path)
+        if not found:
+            self.report(rules.BY_PATH, key, id=id, path=path, new=other[0].id)
+        elif len(found) == 1:
+            self.report(rules.OTHER_PATH, key, id=id, path=path, meant=self.path(found[0]))
+        return found or other
 
     def term(self, term: Term, sort: Sort) -> Element | None:
         """What a word means; None when that is not clear, which is reported."""

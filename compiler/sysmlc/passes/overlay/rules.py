@@ -190,3 +190,14 @@ OTHER_WISE = rule(
     wrong="overlay: 1\nports:\n  Plant/Switch/p_swIn: {direction: out}\n",
     right="overlay: 1\nports:\n  Plant/Switch/p_swIn: {direction: in}\n",
 )
+OTHER_PATH = rule(
+    "SM340",
+    "overlay-id-and-path-differ",
+    Severity.WARNING,
+    "the id '{id}' is that of '{meant}' now, not of '{path}'",
+    why="The id counts; but tools that count ids give one to another element in a new export, and "
+    "what the entry says may be said of the wrong one.",
+    help="correct the id or the path: whichever is out of date",
+    wrong="overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sOut, direction: in}\n",
+    right="overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sIn, direction: in}\n",
+)
