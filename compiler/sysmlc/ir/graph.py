@@ -176,9 +176,9 @@ class Graph:
 
         The way for front ends that make hundreds of thousands of elements: ``attrs`` are copied.
         """
-        if not id or id in self._elements:
+        made = _bare(Element)
+        if not id or self._elements.setdefault(id, made) is not made:
             return None
-        made = self._elements[id] = _bare(Element)
         # What Element() does; its call would cost more than all of this.
         made.id = id
         made.kind = kind
@@ -190,7 +190,11 @@ class Graph:
             made.attrs = attrs.copy()
         self._fresh.append(made)
         if owner is not None:
-            put_new(self._owned, owner, made)
+            known = self._owned.get(owner)
+            if known is None:
+                self._owned[owner] = made
+            else:
+                put_new(self._owned, owner, made)
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
@@ -211,16 +215,17 @@ class Graph:
         self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
         """Add many edges; those without a target, or from an element that is not there, are not."""
-        indexes, drawn = self._out, self._drawn
+        last: Edge | None = None
         for edge, source, target in zip(edges, self.find_all(sources), targets, strict=True):
             if source is None or target is None:
                 continue
-            out, id = indexes[edge], source.id
-            if id in out or edge not in drawn:
+            if edge is not last:
+                last, out, drawn = edge, self._out[edge], self._drawn.get(edge)
+            if drawn is None or source.id in out:
                 self._link(edge, source, target)
             else:
-                out[id] = target
-                drawn[edge] += (source, target)
+                out[source.id] = target
+                drawn += (source, target)
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Remove an edge if it is there. Use ``move`` for ownership."""

@@ -55,6 +55,7 @@ def fill(document: "Document", source: Source) -> None:
     try:
         _handle(document, source, made)
         parse(source, made)
+        document.has_changes = "ChangeMode" in made.intern
         local = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
         document.tags = [local[tag] for tag in document.tags]
     finally:
@@ -74,6 +75,7 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
     deepest = DEFAULT_LIMITS.depth
     own = texts[""]
     ordinal = -1
+    following = 0
     folding: _Texts | None = None
     depth = 0
     add_tag, add_attributes = tags.append, document.attributes.append
@@ -81,7 +83,8 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
     add_end, push, pop = ends.append, stack.append, stack.pop
 
     def start(tag: str, values: dict[str, str]) -> None:
-        nonlocal ordinal, folding, depth
+        # Columns share their numbers: a number of its own is four times its place in a list.
+        nonlocal ordinal, following, folding, depth
         ordinal += 1
         above = stack[-1]
         kind = kinds[tag]
@@ -93,7 +96,9 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
                 folding, depth = kind, len(stack)
                 kind[above] = ""
                 return
-        push(len(tags))
+        row = following
+        following = row + 1
+        push(row)
         add_tag(tag)
         add_attributes(values)
         add_parent(above)
@@ -103,7 +108,7 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
             too_deep(source, made)
 
     def end(_tag: str) -> None:
-        ends[pop()] = len(tags)
+        ends[pop()] = following
 
     def end_of_text(_tag: str) -> None:
         nonlocal folding
@@ -114,7 +119,7 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
             folding = None
             made.EndElementHandler = end
             return
-        ends[pop()] = len(tags)
+        ends[pop()] = following
 
     def text(data: str) -> None:
         row = stack[-1]

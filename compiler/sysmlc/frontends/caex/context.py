@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
 
+_MAPPED = Verdict.MAPPED
+
 _ROOTS = frozenset({*LIBRARIES, "InstanceHierarchy"})
 _REFERENCES = {
     **ROLE_REFERENCES,
@@ -97,7 +99,7 @@ class Context:
         if document.is_built_in:
             element.attrs = {"external": True, "library": True}
         document.elements[row] = id
-        document.verdicts[row] = Verdict.MAPPED
+        document.verdicts[row] = _MAPPED
         return element
 
     def place(self, element: Element, document: Document, ordinal: int) -> None:

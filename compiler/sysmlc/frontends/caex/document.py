@@ -6,9 +6,6 @@ from sysmlc.diagnostics import Place, Verdict
 from sysmlc.frontends.caex.columns import FOLDED, fill
 from sysmlc.sources import Source, SourceError
 
-_FORMS = ("utf-8", "utf-16-le", "utf-16-be")
-"""How ASCII looks in the encodings that expat reads."""
-
 
 class Node:
     """One row of a document. There is one node for each row that was asked for.
@@ -188,7 +185,6 @@ def read(source: Source, is_built_in: bool = False) -> Document:
     if document.tags[0] != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
     rows = len(document.tags)
-    document.has_changes = any("ChangeMode".encode(form) in source.data for form in _FORMS)
     document.verdicts = [None] * rows
     document.elements = [""] * rows
     return document

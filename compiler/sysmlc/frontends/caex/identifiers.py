@@ -1,6 +1,6 @@
 """IDs of the elements of a unit: which row has which, and how one is found."""
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 from sysmlc.frontends.caex.document import Document, Node
@@ -8,6 +8,9 @@ from sysmlc.frontends.caex.paths import plain
 
 Place = tuple[Document, Node]
 """A node and the file that it stands in."""
+
+_FEW = 8
+"""So many texts are looked for in all IDs at once, before these are indexed."""
 
 
 class Identifiers:
@@ -22,6 +25,8 @@ class Identifiers:
         self._repeated: dict[str, list[int]] = {}
         self._plain: dict[str, int] | None = None
         self._paths: bool | None = None
+        self._lower: str | None = None
+        self._asked = 0
         written = [values.get("ID") for one in documents for values in one.attributes]
         self._without = [number for number, id in enumerate(written) if not id]
         self._know(written)
@@ -50,9 +55,11 @@ class Identifiers:
 
     def without(self, document: Document, tag: str) -> list[int]:
         """Rows of a file with this tag that have no ID."""
-        start, tags = self._starts[self._documents.index(document)], document.tags
-        rows = (number - start for number in self._without)
-        return [row for row in rows if 0 <= row < len(tags) and tags[row] == tag]
+        index, tags = self._documents.index(document), document.tags
+        start, end = self._starts[index : index + 2]
+        without = self._without
+        found = without[bisect_left(without, start) : bisect_left(without, end)]
+        return [number - start for number in found if tags[number - start] == tag]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:
         """The node with the ID: literally, else without regard to braces, case and alias.
@@ -69,12 +76,23 @@ class Identifiers:
         """The node whose ID differs at most in braces and case."""
         if "/" in id and not self._has_paths():
             return None
+        if not self._may_be_there(plain(id)):
+            return None
         if self._plain is None:
             self._plain = {}
             for known, number in self._numbers.items():
                 self._plain.setdefault(plain(known), number)
         found = self._plain.get(plain(id))
         return None if found is None else self._place(found)
+
+    def _may_be_there(self, id: str) -> bool:
+        """False for what is not even part of an ID: names of libraries, of which there are few."""
+        self._asked += 1
+        if self._plain is not None or self._asked > _FEW:
+            return True
+        if self._lower is None:
+            self._lower = "\n".join(self._numbers).lower()
+        return id in self._lower
 
     def _has_paths(self) -> bool:
         """Whether some ID looks like the path of a class: next to never."""

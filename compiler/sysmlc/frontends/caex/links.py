@@ -13,6 +13,14 @@ _Key = tuple[str, frozenset[tuple[str, ...]]]
 """Owner of a link, and its ends as the parts and the port that lead there."""
 
 
+# To look a member of an enumeration up takes ten times as long as to look these up.
+_MAPPED = Verdict.MAPPED
+_CONNECTOR_END = Kind.CONNECTOR_END
+_END = Edge.END
+_ROLE = Edge.ROLE
+_PATH = Edge.PATH
+
+
 class Links:
     """The links of a unit."""
 
@@ -25,7 +33,7 @@ class Links:
         """Ids of the classes with links of their own."""
         self._steps: dict[Site, list[Element | None]] = {}
         self._edges: list[Edge] = []
-        self._from: list[str] = []
+        self._from: list[Element | str] = []
         self._to: list[Element | None] = []
 
     def lower(self) -> None:
@@ -46,7 +54,7 @@ class Links:
                 self._link(row, document)
 
     def _link(self, row: int, document: Document) -> None:
-        document.verdicts[row] = Verdict.MAPPED
+        document.verdicts[row] = _MAPPED
         holder = self._sites.rows(document).get(document.parents[row])
         values, direct = document.attributes[row], self._sides.direct
         one = direct(values.get("RefPartnerSideA", ""))
@@ -108,15 +116,13 @@ class Links:
         source, ordinal = connector.source, connector.ordinal
         for side, (port, site) in zip(SIDES, ends, strict=True):
             id = f"{above}#{side}"
-            made = graph.new(id, Kind.CONNECTOR_END, "", above, ordinal, source)
+            made = graph.new(id, _CONNECTOR_END, "", above, ordinal, source)
             if made is None:
                 id = f"{id}~{ordinal}"
-                made = graph.add(Element(id, Kind.CONNECTOR_END, "", above, ordinal, source))
+                made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
             steps = self._steps_to(site)[0 if crosses else 1 :]
-            self._edges += (Edge.END, Edge.ROLE)
-            self._edges += [Edge.PATH] * len(steps)
-            self._from.append(above)
-            self._from += [id] * (1 + len(steps))
+            self._edges += (_END, _ROLE, *[_PATH] * len(steps))
+            self._from += (connector, *[made] * (1 + len(steps)))
             self._to += (made, graph[port], *steps)
 
     def _steps_to(self, site: Site) -> list[Element | None]:

@@ -1,5 +1,7 @@
 """Types of values: UML primitives, and value types with a unit and its quantity kind."""
 
+from functools import lru_cache
+
 from sysmlc.frontends.caex import rules, units
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
@@ -8,6 +10,7 @@ from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE, PRIMITIVES
 from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+_HREFS = {name: _PRIMITIVE_TYPES + name for name in ("String", *PRIMITIVES.values())}
 _PACKAGE = "values#"
 
 
@@ -64,6 +67,7 @@ def complete_type(context: Context, type: Type) -> None:
         _measure(context, type.id, unit)
 
 
+@lru_cache(1024)
 def primitive(data_type: str) -> str:
     """UML primitive of an XML Schema data type."""
     return PRIMITIVES.get(data_type.rpartition(":")[2], "String")
@@ -72,7 +76,7 @@ def primitive(data_type: str) -> str:
 def refer(context: Context, edge: Edge, id: str, data_type: str, ordinal: int) -> None:
     """Refer to the UML primitive of an XML Schema data type."""
     name = primitive(data_type)
-    href = _PRIMITIVE_TYPES + name
+    href = _HREFS[name]
     context.graph.refer(Reference(edge, id, href, Kind.DATA_TYPE, name, ordinal))
 
 

@@ -15,9 +15,17 @@ from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
 from sysmlc.frontends.caex.vocabulary import Family, reader_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.reference import End
 
 _Stated = tuple[str, str, str]
 """Data type, attribute type and unit of an attribute, or nothing."""
+
+
+# To look a member of an enumeration up takes ten times as long as to look these up.
+_MAPPED = Verdict.MAPPED
+_PROPERTY = Kind.PROPERTY
+_PORT = Kind.PORT
+_TYPED_BY = Edge.TYPED_BY
 
 
 class _Shape(NamedTuple):
@@ -46,7 +54,7 @@ class Plain:
         self._document = document
         self._shapes: dict[_Stated, _Shape | None] = {}
         self._ports: dict[str, _PortShape | None] = {}
-        self._sources: list[str] = []
+        self._sources: list[End] = []
         self._targets: list[Element | None] = []
 
     def attribute(self, owner: Type, row: int) -> bool:
@@ -66,22 +74,34 @@ class Plain:
             return False
         if owner.base is not None and owner.base.find("Attribute", name) is not None:
             return False
-        context = self._context
         id = f"{owner.id}/{name or 'Attribute'}"
-        if id in context.graph:
+        made = self._new(id, name, owner.id, row, shape.attrs)
+        if made is None:
             return False
-        made = context.add_at(Kind.PROPERTY, document, row, owner.id, id)
-        made.attrs = shape.attrs.copy()
         text = texts["Value"].get(row)
         if text:
             made.attrs["default"] = text if shape.read is None else shape.read(text)
         if shape.target is not None:
-            self._sources.append(id)
+            self._sources.append(made)
             self._targets.append(shape.target)
         else:
-            measures.refer(context, Edge.TYPED_BY, id, stated[0], made.ordinal)
+            measures.refer(self._context, _TYPED_BY, id, stated[0], made.ordinal)
         owner.members["Attribute", name] = Member(id, shape.type, document, row)
         return True
+
+    def _new(
+        self, id: str, name: str, owner: str, row: int, attrs: dict[str, AttrValue]
+    ) -> Element | None:
+        """Add an attribute; None when the graph has the id."""
+        document = self._document
+        source, ordinal = document.name, document.ordinals[row]
+        if document.is_built_in:
+            source, ordinal = "", -1
+        made = self._context.graph.new(id, _PROPERTY, name, owner, ordinal, source, attrs)
+        if made is not None:
+            document.elements[row] = id
+            document.verdicts[row] = _MAPPED
+        return made
 
     def _shape(self, stated: _Stated, row: int) -> _Shape | None:
         data_type, path, unit = stated
@@ -119,15 +139,15 @@ class Plain:
             return False
         if owner.base is not None and owner.base.find("ExternalInterface", name) is not None:
             return False
-        made = context.add_at(Kind.PORT, document, row, owner.id)
+        made = context.add_at(_PORT, document, row, owner.id)
         if shape.target is not None:
-            self._sources.append(made.id)
+            self._sources.append(made)
             self._targets.append(shape.target)
         owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
         inside = document.ends[row] - row - 1
         if inside:
             made.attrs = ports.said_of(document.node(row))
-            document.verdicts[row + 1 : row + 1 + inside] = [Verdict.MAPPED] * inside
+            document.verdicts[row + 1 : row + 1 + inside] = [_MAPPED] * inside
         if shape.meaning:
             self._mean(shape.meaning, owner, made, row)
         return True

@@ -10,6 +10,8 @@ from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
 from sysmlc.ir import Edge, Element
 
+_MAPPED = Verdict.MAPPED
+
 PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
 
 
@@ -25,8 +27,11 @@ def lower(context: Context, sites: Sites) -> None:
         for role in _roles(context, site):
             if role in inherited:
                 continue
-            _play(context, site, special.ppr(role), played)
-            _be_port(context, site, role)
+            ppr, is_port = played.meaning(role)
+            if ppr:
+                _play(context, site, ppr, played)
+            if is_port:
+                _be_port(context, site)
             clients.append(_client(context, site))
             realized.append(context.graph[role.id])
             if site.own is not None:
@@ -42,6 +47,15 @@ class _Played:
         self._ppr: dict[Type, str] = {}
         self._above: dict[Type, tuple[set[Type], str]] = {}
         self._asked: set[Type] = set()
+        self._meanings: dict[Type, tuple[str, bool]] = {}
+
+    def meaning(self, role: Type) -> tuple[str, bool]:
+        """Whether a role is that of a product, process or resource, and that of a port."""
+        known = self._meanings.get(role)
+        if known is None:
+            is_port = role.conforms(*BASE_ROLE, "Port")
+            known = self._meanings[role] = special.ppr(role), is_port
+        return known
 
     def add(self, type: Type, role: Type) -> None:
         """The class plays the role."""
@@ -74,9 +88,9 @@ class _Played:
             self._asked.clear()
 
 
-def _be_port(context: Context, site: Site, role: Type) -> None:
+def _be_port(context: Context, site: Site) -> None:
     """A port object of CAEX 2.15 (role Port): a part that says what an interface Port says."""
-    if site.part and not site.is_known and role.conforms(*BASE_ROLE, "Port"):
+    if site.part and not site.is_known:
         told = ports.said_of(site.node)
         kept = {key: told[key] for key in PORT_ATTRIBUTES if key in told}
         context.graph.set(context.graph[site.part], subkind="port-object", **kept)
@@ -84,11 +98,10 @@ def _be_port(context: Context, site: Site, role: Type) -> None:
 
 def _play(context: Context, site: Site, ppr: str, played: _Played) -> None:
     """Note that something is a product, process or resource."""
-    if ppr:
-        site.ppr = ppr
-        context.graph.set(context.graph[_client(context, site)], ppr=ppr)
-        if site.own is not None:
-            played.note_ppr(site.own, ppr)
+    site.ppr = ppr
+    context.graph.set(context.graph[_client(context, site)], ppr=ppr)
+    if site.own is not None:
+        played.note_ppr(site.own, ppr)
 
 
 def _client(context: Context, site: Site) -> str:
@@ -103,7 +116,7 @@ def _roles(context: Context, site: Site) -> list[Type]:
     document = site.document
     found: dict[Type, None] = {}
     for row in site.roles:
-        document.verdicts[row] = Verdict.MAPPED
+        document.verdicts[row] = _MAPPED
         path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
         role = context.known(path, Family.ROLE, document) if path else None
         if role is None and path:

@@ -15,8 +15,17 @@ from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family, reader_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.reference import End
 
 _Stated = tuple[str | None, ...]
+
+# To look a member of an enumeration up takes ten times as long as to look these up.
+_MAPPED = Verdict.MAPPED
+_SLOT = Kind.SLOT
+_INSTANCE_OF = Edge.INSTANCE_OF
+
+_NO_ROW = {"": ""}
+"""Attributes that no row has."""
 
 
 class _Known:
@@ -30,7 +39,7 @@ class _Known:
         self.element = context.graph[member.id]
         self.text = node.text("Value")
         self.read = reader_of(node.attributes.get("AttributeDataType", ""))
-        self.template: dict[str, str] | None = None
+        self.template = _NO_ROW
         """Attributes of the last row that said the same: nearly all rows have equal ones."""
         self.alike: set[_Stated] = set()
         """What rows stated that said no more than the class."""
@@ -73,17 +82,15 @@ class Swift:
         self._odd = texts["DefaultValue"].keys() | texts["Description"].keys()
         """Rows that say something beside their value."""
         self._edges: list[Edge] = []
-        self._slots: list[str] = []
+        self._slots: list[End] = []
         self._features: list[Element | None] = []
 
     def lower(self, site: Site) -> None:
         """The members of an internal element."""
         declared, document, context = site.declared, self._document, self._context
-        plan = self._plans.get(declared)
-        if plan is None:
-            plan = self._plans[declared] = _Plan(context, declared)
+        plan = self._plans.get(declared) or self._plan(declared)
         tags, attributes, verdicts = document.tags, document.attributes, document.verdicts
-        known_attributes, ends = plan.attributes, document.ends
+        known_attributes, ends, odd = plan.attributes, document.ends, self._odd
         values_of = document.texts["Value"]
         for row in site.members:
             tag, values = tags[row], attributes[row]
@@ -95,16 +102,27 @@ class Swift:
                     is_read = self._plain.attribute(site.own or own(context, site), row)
                 elif ends[row] > row + 1:
                     is_read = self._structure(site, row, known)
-                elif self._repeats(row, values, known):
+                elif row in odd:
+                    pass
+                elif (alike := values == known.template) or self._repeats(row, known):
                     is_read = True
-                    verdicts[row] = Verdict.MAPPED
+                    if alike:
+                        attributes[row] = known.template
+                    verdicts[row] = _MAPPED
                     text = values_of.get(row)
                     if text is not None and text != known.text:
                         self._slot(site, row, name, known, text)
             elif tag == "ExternalInterface":
                 is_read = self._interface(site, row, plan.interfaces.get(name))
+            elif tag == "InternalLink":
+                # Links come when all that they can lead to is there.
+                is_read = True
             if not is_read:
                 members.lower_one(context, site, document.node(row))
+
+    def _plan(self, declared: Type | None) -> _Plan:
+        plan = self._plans[declared] = _Plan(self._context, declared)
+        return plan
 
     def _interface(self, site: Site, row: int, port: str | None) -> bool:
         """An interface: the port that the class has, or a new one; False when more is said."""
@@ -116,18 +134,19 @@ class Swift:
         path = document.attributes[row].get("RefBaseClassPath")
         if path and self._context.known(path, Family.INTERFACE, document) is None:
             return False
-        document.verdicts[row] = Verdict.MAPPED
+        document.verdicts[row] = _MAPPED
         document.elements[row] = port
         id = document.attributes[row].get("ID")
         if id:
             site.interface_ids.append((port, id))
         return True
 
-    def _repeats(self, row: int, values: dict[str, str], known: _Known) -> bool:
+    def _repeats(self, row: int, known: _Known) -> bool:
         """Whether a row says what the class says, but for its value and rows inside."""
+        document = self._document
+        values = document.attributes[row]
         if row in self._odd:
             return False
-        document = self._document
         if values == known.template:
             document.attributes[row] = known.template
             return True
@@ -155,7 +174,7 @@ class Swift:
         found = []
         while waiting:
             row, one, path = waiting.pop()
-            if not self._repeats(row, attributes[row], one):
+            if not self._repeats(row, one):
                 return False
             found.append((row, one, path))
             for child in document.children(row):
@@ -165,36 +184,35 @@ class Swift:
                     return False
                 waiting.append((child, inner, (*path, one.element)))
         for row, one, path in found:
-            document.verdicts[row] = Verdict.MAPPED
+            document.verdicts[row] = _MAPPED
             text = document.texts["Value"].get(row)
             if text is not None and text != one.text:
-                id = self._slot(site, row, attributes[row].get("Name", ""), one, text)
+                slot = self._slot(site, row, attributes[row].get("Name", ""), one, text)
                 for outer in path:
                     self._edges.append(Edge.PATH)
-                    self._slots.append(id)
+                    self._slots.append(slot)
                     self._features.append(outer)
         return True
 
-    def _slot(self, site: Site, row: int, name: str, known: _Known, text: str) -> str:
+    def _slot(self, site: Site, row: int, name: str, known: _Known, text: str) -> Element:
         """A slot for a value that the class does not give."""
         document, context = self._document, self._context
         owner = site.instance or instance(context, site)
-        value: AttrValue = text if known.read is None else known.read(text)
         slot = None
         if not document.attributes[row].get("ID"):
             id = f"{owner}/{name or 'Attribute'}"
             ordinal = document.ordinals[row]
-            slot = context.graph.new(id, Kind.SLOT, name, owner, ordinal, document.name)
+            slot = context.graph.new(id, _SLOT, name, owner, ordinal, document.name)
         if slot is None:
-            slot = context.add_at(Kind.SLOT, document, row, owner)
-            id = slot.id
+            slot = context.add_at(_SLOT, document, row, owner)
+        value: AttrValue = text if known.read is None else known.read(text)
         if value != "":
             slot.attrs = {"value": value}
-        document.elements[row] = id
-        self._edges.append(Edge.INSTANCE_OF)
-        self._slots.append(id)
+        document.elements[row] = slot.id
+        self._edges.append(_INSTANCE_OF)
+        self._slots.append(slot)
         self._features.append(known.element)
-        return id
+        return slot
 
     def finish(self) -> None:
         """Tie the slots to the attributes that they have the values of."""

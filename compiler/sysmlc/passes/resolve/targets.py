@@ -67,7 +67,7 @@ class Targets:
         return tuple(sorted(exact or named))
 
     def _in(self, fragment: str, files: tuple[str, ...]) -> Element | None:
-        found = self._named(fragment)
+        found = self._named(fragment) if files else []
         return _first(element for element in found if element.source in files)
 
 
