@@ -73,9 +73,18 @@ class _Filling:
         start = self._handle_elements()
         if self._prefixes is not None:
             self._handle_root(self._prefixes, start)
-        parse(self._source, self._made)
+        try:
+            parse(self._source, self._made)
+        finally:
+            self._let_go()
         if self.breaks:
             self._document.ordinals = _ordinals(len(self._document.tags), self.breaks)
+
+    def _let_go(self) -> None:
+        """End the circle of parser and handlers: the frozen graph would keep it for good."""
+        made = self._made
+        made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
+        made.StartNamespaceDeclHandler = None
 
     def _handle_root(self, prefixes: Prefixes, start: _Start) -> None:
         def root(tag: str, values: dict[str, str]) -> None:
