@@ -182,6 +182,15 @@ def test_texts_that_look_alike_are_told_exactly():
     ]
 
 
+def test_ends_that_are_called_alike_are_told_with_their_owners():
+    old = PLANT + '  Class other "Other"\n    Port otherIn "p_stop"\n'
+    assert changed(old, ("-> role stopIn", "-> role otherIn")) == [
+        "Plant::Gate: rewired connector p_in -- stop.p_stop, "
+        "ends: p_in of Plant::Gate -- stop.p_stop of Plant::Stopper"
+        " => p_in of Plant::Gate -- stop.p_stop of Plant::Other"
+    ]
+
+
 # -- who is who ----------------------------------------------------------------------------------
 
 

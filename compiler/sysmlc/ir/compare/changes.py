@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator
 from sysmlc.ir.compare.alike import by_likeness, by_move
 from sysmlc.ir.compare.change import Change, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
-from sysmlc.ir.compare.facts import Fact
+from sysmlc.ir.compare.facts import BETWEEN, Fact
 from sysmlc.ir.compare.only import only, owner_of, ref_of
 from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
 from sysmlc.ir.compare.plants import (
@@ -17,7 +17,7 @@ from sysmlc.ir.compare.plants import (
 )
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
-from sysmlc.ir.compare.titles import exactly, title, word
+from sysmlc.ir.compare.titles import ends_in_full, exactly, title, word
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 
@@ -180,6 +180,9 @@ def _of_key(pairs: Pairs, key: Token, gone: _Said, come: _Said) -> _Differing:
     names = frozenset(part for part in fact.key if isinstance(part, str))
     before = ", ".join(one.text(pairs.old) for one in olds)
     after = ", ".join(one.text(pairs.new) for one in news)
+    if before == after and fact.key == BETWEEN:
+        before = ", ".join(ends_in_full(pairs.old, one.about) for one in olds if one.about)
+        after = ", ".join(ends_in_full(pairs.new, one.about) for one in news if one.about)
     if before == after:
         before = ", ".join(exactly(pairs.old, one.value) for one in olds)
         after = ", ".join(exactly(pairs.new, one.value) for one in news)

@@ -84,6 +84,17 @@ def relation(side: Side, element: Element) -> str:
     return f"{_listed(side, starts)} -> {_listed(side, targets)}"
 
 
+def ends_in_full(side: Side, connector: Element) -> str:
+    """As ``relation``, with the owner of what each end leads to: features may share a name."""
+    ends = [d for d in side.details.get(connector.id, ()) if d.kind is Kind.CONNECTOR_END]
+    return " -- ".join(_in_full(side, end) for end in ends)
+
+
+def _in_full(side: Side, end: Element) -> str:
+    owner = side.graph.owner(found[-1]) if (found := steps(side, end)) else None
+    return dotted(side, end) + (f" of {whole(side, owner)}" if owner is not None else "")
+
+
 def _is_start(edge: Edge) -> bool:
     return edge in (Edge.CLIENT, Edge.FLOW_SOURCE)
 
