@@ -4,6 +4,8 @@ The number of a mutant in a failure is its seed: ``--seed N --count 1 --keep FOL
 again. Run in ``tests/``, ``python -m fuzz.hunt --count 10000 --corpus FOLDER`` tries more.
 """
 
+from dataclasses import replace
+
 import pytest
 
 from fuzz.hunt import Hunter, models, mutant
@@ -85,4 +87,6 @@ def test_a_fault_would_be_found(hunter, monkeypatch):
     assert [found.mutant for found in hunter.look(spoilt)] == [spoilt]
     monkeypatch.undo()
     monkeypatch.setattr(hunter, "bounds", Bounds(seconds=5, memory=1 << 20))
-    assert [found.what[:4] for found in hunter.look(spoilt)] == ["exit"]
+    # What the process has set free would hold a small one.
+    large = replace(spoilt, name="m.uml", data=b"<!--" + b"." * (64 << 20) + b"--><m/>")
+    assert [found.what[:4] for found in hunter.look(large)] == ["exit"]
