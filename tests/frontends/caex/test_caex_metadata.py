@@ -1,0 +1,14 @@
+"""What is kept of AutomationML as XML is quoted as the library of Python quotes it."""
+
+from xml.sax.saxutils import quoteattr
+
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from sysmlc.frontends.caex.metadata import _quoted
+
+
+@example('it\'s "both"\n\t\r & <that>')
+@given(st.text(alphabet=st.sampled_from("a'\"&<>\n\t\r é")))
+def test_values_of_attributes_are_quoted_as_by_the_library(value):
+    assert _quoted(value) == quoteattr(value)
