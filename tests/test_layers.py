@@ -11,7 +11,7 @@ LAYERS = [
     {"sources"},
     {"diagnostics"},
     {"ir"},
-    {"logic", "recipe", "overlay"},
+    {"logic", "recipe", "overlay", "language"},
     {"synthesis", "simulation"},
     {"frontends", "passes", "backends"},
     {"driver", "config"},

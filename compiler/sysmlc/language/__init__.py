@@ -1,0 +1,1 @@
+"""KerML and SysML v2: text and interchange files as trees, names resolved, rules checked."""
