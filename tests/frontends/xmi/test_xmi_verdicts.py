@@ -55,7 +55,7 @@ def test_an_element_where_it_cannot_stand_is_not_read():
 
 def test_a_file_in_which_nothing_is_known_is_an_error():
     reading = read(source(PAPYRUS % "<settings/>"))
-    assert reading.findings[0].startswith("no-known-content: 'm.uml' looks like UML in XMI")
+    assert reading.findings[-1].startswith("no-known-content: 'm.uml' looks like UML in XMI")
     assert [f for f in read(papyrus("")).findings if "no-known" in f] == []
 
 
@@ -158,8 +158,23 @@ def test_a_text_that_is_no_feature_of_uml_is_kept_and_told_at_its_place():
     ]
     assert [(f.subject.id, f.subject.place.ordinal) for f in reading.sink] == [("p", 4)]
     assert reading.graph["p"].attrs["unit"] == "mm/s"
+    assert reading.totals == {"elements": 5, "mapped": 4, "approximated": 1}
     for known in ("<isReadOnly>true</isReadOnly>", "<visibility>private</visibility>"):
         assert read(papyrus(model.format(known))).findings == []
+
+
+def test_an_empty_element_that_is_no_feature_of_uml_is_told():
+    reading = read(
+        papyrus('<packagedElement xmi:type="uml:Class" xmi:id="c"><unit/></packagedElement>')
+    )
+    assert [finding.rule.name for finding in reading.sink] == ["stray-text"]
+    assert reading.totals["approximated"] == 1
+
+
+def test_a_text_beside_the_model_belongs_to_nothing():
+    reading = read(papyrus("", "<settings>left</settings>"))
+    assert [finding.rule.name for finding in reading.sink] == ["unsupported-element"]
+    assert reading.totals["unsupported"] == 1
 
 
 def test_drawings_are_counted_but_not_kept():

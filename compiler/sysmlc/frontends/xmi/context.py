@@ -4,7 +4,7 @@ from collections.abc import Callable
 from itertools import islice
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Place, Sink, Subject, Verdict
+from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.dangling import Loose, Names
@@ -60,6 +60,9 @@ class Context:
         self.guards: list[tuple[Element, str, int]] = []
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
         self.lost: dict[int, str] = {}
+        """What approximated rows are read without, where SM114 tells of it."""
+        self.told: dict[int, tuple[Rule, str]] = {}
+        """Rules that tell of other approximated rows, and why those are."""
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
         self.naming: dict[Names, list[bool]] = {}
@@ -260,21 +263,26 @@ class Context:
         """A child that is only text stands for an attribute of the same name."""
         owner = self.owner(row)
         value = self.document.texts.get(row, "")
-        if owner is None or not value:
+        if owner is None:
+            self.verdicts[row] = Verdict.UNSUPPORTED
+            return
+        if not naming.is_known(feature):
+            self._report_stray(row, feature)
+        if not value:
             return
         if feature == "name":
             self.graph.rename(owner, value)
         elif feature in ("body", "language") and feature in owner.attrs:
             self.opaque[owner.id] = (owner, self.document.parents[row])
         else:
-            if not naming.is_known(feature):
-                self._report_stray(row, feature)
             self.attribute(owner, row, feature, value)
 
     def _report_stray(self, row: int, feature: str) -> None:
         name = self.qualified_name(self.document.parents[row])
         subject = Subject(name, self.gids[row], self.place(row))
         self.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
+        self.verdicts[row] = Verdict.APPROXIMATED
+        self.told[row] = rules.STRAY_TEXT, "kept as text: no feature of UML has its name"
 
     def link(
         self,

@@ -21,6 +21,7 @@ from sysmlc.frontends.xmi import (
     rules,
     snapshot_parts,
     snapshot_use,
+    unread,
 )
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
@@ -105,6 +106,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
     unit.flush()
     for context in contexts:
         dangling.report(context)
+        unread.report(context)
         account.account(context, sink, coverage)
 
 

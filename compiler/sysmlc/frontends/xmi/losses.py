@@ -54,7 +54,8 @@ def _sizes(context: Context) -> dict[int, int]:
         if verdict is Verdict.MAPPED:
             continue
         above = document.parents[row]
-        is_inside = above in begins and verdicts[above] is verdict
+        has_reason = row in context.told or row in context.lost
+        is_inside = above in begins and verdicts[above] is verdict and not has_reason
         begins[row] = first = begins[above] if is_inside else row
         sizes[first] = sizes.get(first, 0) + 1 + hidden.get(row, 0)
     return sizes
@@ -80,6 +81,8 @@ def _own_name(context: Context, row: int) -> str:
 def _reason(
     context: Context, row: int, verdict: Verdict, is_baseless: bool
 ) -> tuple[Rule | None, str]:
+    if verdict is Verdict.APPROXIMATED and row in context.told:
+        return context.told[row]
     if verdict is Verdict.APPROXIMATED:
         return rules.APPROXIMATED, f"read without {context.lost.get(row, 'part of its meaning')}"
     if verdict is Verdict.EXTERNAL:

@@ -1,7 +1,6 @@
-"""Tables: the features of UML that name elements, whatever becomes of them."""
+"""Tables: the features of UML, above all those that name elements, whatever becomes of them."""
 
-import re
-
+from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES
 
 SAID_ELSEWHERE = REDUNDANT | {
@@ -142,11 +141,112 @@ ATTRIBUTES = frozenset(
         "visibility",
     }
 )
-"""Features of UML 2.5.1 that have values; truth values have names as ``isAbstract``."""
+"""Features of UML 2.5.1 that are texts, numbers or one of some words."""
 
-_FLAG = re.compile(r"is[A-Z]")
+FLAGS = frozenset(
+    {
+        "isAbstract",
+        "isActive",
+        "isAssured",
+        "isBehavior",
+        "isCombineDuplicate",
+        "isComposite",
+        "isConjugated",
+        "isControl",
+        "isControlType",
+        "isCovering",
+        "isDerived",
+        "isDerivedUnion",
+        "isDestroyDuplicates",
+        "isDestroyLinks",
+        "isDestroyOwnedObjects",
+        "isDeterminate",
+        "isDimension",
+        "isDirect",
+        "isDisjoint",
+        "isException",
+        "isExternal",
+        "isFinalSpecialization",
+        "isID",
+        "isIndirectlyInstantiated",
+        "isLeaf",
+        "isLocallyReentrant",
+        "isMulticast",
+        "isMultireceive",
+        "isOrdered",
+        "isOrthogonal",
+        "isQuery",
+        "isReadOnly",
+        "isReentrant",
+        "isRelative",
+        "isRemoveDuplicates",
+        "isReplaceAll",
+        "isRequired",
+        "isService",
+        "isSimple",
+        "isSingleExecution",
+        "isStatic",
+        "isStream",
+        "isStrict",
+        "isSubmachineState",
+        "isSubstitutable",
+        "isSynchronous",
+        "isTestedFirst",
+        "isUnique",
+        "isUnmarshall",
+    }
+)
+"""Features of UML 2.5.1 that are truth values."""
+
+_CONTAINED = frozenset(
+    {
+        "changeExpression",
+        "defaultValue",
+        "doActivity",
+        "event",
+        "exceptionInput",
+        "exceptionType",
+        "executableNode",
+        "expr",
+        "fragment",
+        "fromAction",
+        "handlerBody",
+        "icon",
+        "joinSpec",
+        "lowerValue",
+        "mapping",
+        "max",
+        "maxint",
+        "min",
+        "minint",
+        "nameExpression",
+        "nestedClassifier",
+        "ownedActual",
+        "ownedBehavior",
+        "ownedDefault",
+        "ownedElement",
+        "ownedGroup",
+        "ownedNode",
+        "ownedParameteredElement",
+        "ownedType",
+        "packagedElement",
+        "partWithPort",
+        "referred",
+        "returnValue",
+        "selector",
+        "specification",
+        "upperBound",
+        "upperValue",
+        "weight",
+        "when",
+    }
+)
+"""What elements contain, and names of elements that readers of single metaclasses follow."""
+
+FEATURES = ATTRIBUTES | FLAGS | NAMING | _CONTAINED | DEFAULT_TYPES.keys()
+"""Every feature of UML, of any metaclass, in any version of UML 2."""
 
 
 def is_known(feature: str) -> bool:
     """Whether UML has a feature of this name."""
-    return feature in ATTRIBUTES or feature in NAMING or _FLAG.match(feature) is not None
+    return feature in FEATURES

@@ -98,6 +98,18 @@ STRAY_TEXT = rule(
     wrong="<ownedAttribute name='speed'><unit>mm/s</unit></ownedAttribute>",
     right="<ownedAttribute><name>speed</name></ownedAttribute>",
 )
+UNKNOWN_ATTRIBUTE = rule(
+    "SM124",
+    "unknown-attribute",
+    Severity.WARNING,
+    "attribute '{attribute}' of '{element}'{others} is known neither to UML nor to XMI",
+    why="No metaclass of UML 2 has such a feature, so nothing is made of the attribute: most "
+    "likely its name was misspelt by a script or by hand. What tools say in namespaces or "
+    "extensions of their own is not meant.",
+    help="look whether the name is spelt as UML does; else remove it",
+    wrong="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstrct='true'/>",
+    right="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='true'/>",
+)
 DANGLING_OPPOSITE = rule(
     "SM116",
     "dangling-opposite",

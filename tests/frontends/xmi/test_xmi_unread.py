@@ -1,0 +1,104 @@
+"""Attributes that neither UML nor XMI has are told, each name once for each file."""
+
+import pytest
+from lxml import etree
+from reading_xmi import magicdraw, papyrus, read, source
+
+from sysmlc.frontends.xmi import naming
+
+CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="{}" name="{}" {}/>'
+
+
+def told(reading):
+    return [finding.message for finding in reading.sink if finding.rule.code == "SM124"]
+
+
+def test_a_name_is_told_once_at_the_first_element_that_has_it():
+    classes = [CLASS.format(x, x.upper(), 'isAbstrct="true"') for x in "abc"]
+    reading = read(papyrus("".join(classes)))
+    assert told(reading) == [
+        "attribute 'isAbstrct' of 'M::A' and 2 more is known neither to UML nor to XMI"
+    ]
+    (finding,) = reading.sink
+    assert finding.help == "did you mean 'isAbstract'?"
+    assert (finding.subject.id, finding.subject.place.ordinal) == ("a", 2)
+    assert reading.totals == {"elements": 5, "mapped": 2, "approximated": 3}
+
+
+def test_each_file_tells_its_own():
+    files = [papyrus(CLASS.format(x, x, 'colour="red"'), name=f"{x}.uml") for x in "ab"]
+    reading = read(*files)
+    assert [finding.subject.place.file for finding in reading.sink] == ["a.uml", "b.uml"]
+
+
+def test_names_beyond_fifty_are_counted():
+    names = " ".join(f'colour{number}="red"' for number in range(60))
+    reading = read(papyrus(CLASS.format("a", "A", names)))
+    assert len(told(reading)) == 50
+    assert [finding.notes for finding in reading.sink][-1] == (
+        "10 more such names are in the file",
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "name"),
+    [
+        ('<ownedRule xmi:id="r"><specification xmi:type="uml:LiteralString" valeu="3"/></ownedRule>',
+         "valeu"),
+        ('<packagedElement xmi:type="uml:Class" xmi:id="k"><generalization xmi:id="g" to="k"/>'
+         "</packagedElement>", "to"),
+        ('<packagedElement xmi:type="uml:Class" xmi:id="k"><ownedAttribute xmi:id="p">'
+         '<type href="x.uml#_1" named="y"/></ownedAttribute></packagedElement>', "named"),
+        ('<packagedElement xmi:type="uml:Class" xmi:idd="k"/>', "xmi:idd"),
+    ],
+)  # fmt: skip
+def test_also_of_rows_that_are_no_elements_and_in_the_namespace_of_xmi(model, name):
+    (message,) = told(read(papyrus(model)))
+    assert message.startswith(f"attribute '{name}' of ")
+
+
+@pytest.mark.parametrize(
+    ("model", "applications"),
+    [
+        (CLASS.format("a", "A", 'xmi:uuid="1" isAbstract="true" visibility="private"'), ""),
+        (CLASS.format("a", "A", 'xmlns:draw="http://vendor/draw" draw:colour="red"'), ""),
+        (CLASS.format("a", "A", ""), '<Plant:Cell xmi:id="s" base_Class="a" colour="red"/>'),
+        ('<eAnnotations xmi:id="e" source="tool" colour="red"/>', ""),
+    ],
+)
+def test_tags_notation_and_what_tools_name_in_their_own_namespaces_are_not_meant(
+    model, applications
+):
+    assert told(read(papyrus(model, applications))) == []
+
+
+def test_what_tools_keep_in_extensions_is_not_meant():
+    extension = "<xmi:Extension extender='T'><modelExtension colour='red'/></xmi:Extension>"
+    held = "<packagedElement xmi:type='uml:Class' xmi:id='a'>{}</packagedElement>"
+    assert told(read(magicdraw(held.format(extension)))) == []
+    assert len(told(read(magicdraw(held.format("<ownedComment xmi:id='c' colour='red'/>"))))) == 1
+
+
+def test_a_template_parameter_is_asked_too():
+    model = """<packagedElement xmi:type="uml:Class" xmi:id="c"><ownedTemplateSignature xmi:id="s">
+ <ownedParameter xmi:id="t" colour="red"/></ownedTemplateSignature></packagedElement>"""
+    assert len(told(read(papyrus(model)))) == 1
+
+
+def test_a_bare_model_is_asked_as_well():
+    bare = (
+        '<uml:Model xmlns:xmi="http://schema.omg.org/spec/XMI/2.1" xmi:version="2.1" colour="red"'
+        ' xmlns:uml="http://www.eclipse.org/uml2/3.0.0/UML" xmi:id="m" name="M"/>'
+    )
+    assert told(read(source(bare))) == [
+        "attribute 'colour' of 'M' is known neither to UML nor to XMI"
+    ]
+
+
+@pytest.mark.corpus
+def test_every_feature_of_the_metamodel_is_known(corpus):
+    tree = etree.parse(corpus / "xmi" / "metamodel" / "uml.ecore")
+    features = {found.get("name") for found in tree.iter("eStructuralFeatures")}
+    assert len(features) > 400
+    assert features - naming.FEATURES == set()
+    assert naming.FLAGS == {name for name in features if name[:2] == "is" and name[2].isupper()}
