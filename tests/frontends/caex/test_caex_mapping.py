@@ -334,6 +334,23 @@ def test_an_attribute_has_the_unit_of_its_type_or_its_own(of_type):
     assert unit_of(plain.graph, plain.one("Lib::C::v")).attrs["symbol"] == "m"
 
 
+def test_value_types_of_one_unit_have_a_name_for_each_primitive():
+    reading = Read(
+        classes(
+            '<SystemUnitClass Name="C">'
+            '<Attribute Name="r" AttributeDataType="xs:double" Unit="m"/>'
+            '<Attribute Name="i" AttributeDataType="xs:int" Unit="m"/>'
+            '<Attribute Name="s" Unit="m"/><Attribute Name="f" Unit="furlong"/></SystemUnitClass>'
+        )
+    )
+    assert {name: reading.to(f"Lib::C::{name}", "typed-by") for name in "risf"} == {
+        "r": ["Values::length[m]"],
+        "i": ["Values::Integer length[m]"],
+        "s": ["Values::String length[m]"],
+        "f": ["Values::String[furlong]"],
+    }
+
+
 def test_an_unknown_unit_is_told_once_a_file_and_kept_as_it_is():
     reading = measured("furlong")
     assert reading.findings == ["SM147: the unit 'furlong' of 'v' is not known"]

@@ -119,9 +119,7 @@ def _measured(context: Context, node: Node, type: Type | None, unit: str) -> str
     data_type = primitive(node.attributes.get("AttributeDataType", ""))
     id = f"{type.id if type else data_type}[{unit}]"
     if id not in context.graph:
-        found = units.known(unit)
-        quantity = found.quantity if found else data_type
-        name = f"{type.node.name if type else quantity}[{unit}]"
+        name = f"{type.node.name if type else _quantity(unit, data_type)}[{unit}]"
         made = Element(id, Kind.DATA_TYPE, name, type.id if type else _package(context))
         made.attrs.update(role="value type", external=True, library=True)
         context.graph.add(made)
@@ -131,6 +129,14 @@ def _measured(context: Context, node: Node, type: Type | None, unit: str) -> str
         else:
             refer(context, Edge.SPECIALIZES, id, node.attributes.get("AttributeDataType", ""), -1)
     return id
+
+
+def _quantity(unit: str, data_type: str) -> str:
+    """What is measured, the primitive before it where it is not Real: names are told apart."""
+    found = units.known(unit)
+    if found is None:
+        return data_type
+    return found.quantity if data_type == "Real" else f"{data_type} {found.quantity}"
 
 
 def _package(context: Context) -> str:
