@@ -67,6 +67,30 @@ def test_what_is_new_in_a_standard_library_stands_in_without_complaint(href, nam
     assert codes(sink) == []
 
 
+@pytest.mark.parametrize(
+    ("href", "count", "name"),
+    [
+        ("pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#Intger", 1, "Intger"),
+        ("http://www.omg.org/spec/UML/20131001/PrimitiveTypes.xmi#Int32", 1, "Int32"),
+        ("UML_Standard_Profile.mdzip#_9_0_2_91a0295_1_2_3", 1, "_9_0_2_91a0295_1_2_3"),
+    ],
+)  # fmt: skip
+def test_what_no_version_of_a_standard_library_has_is_told(href, count, name):
+    _, sink = refined(pointing(href, "DataType"), "resolve")
+    assert lines(sink) == [
+        f"SM153 warning: '{href.partition('#')[0]}' is known to sysmlc without reading it, but "
+        f"{count} of what the model takes from it is not"
+    ]
+    assert next(iter(sink)).notes == (f"DataType '{name}', used by p",)
+    assert next(iter(sink)).subject.place.ordinal == 1
+
+
+def test_a_type_of_magicdraws_profile_with_its_name_is_no_finding():
+    text = pointing("UML_Standard_Profile.mdzip#_9_0_2_91a0295_1_2_3", "DataType", "Date")
+    _, sink = refined(text, "resolve")
+    assert codes(sink) == []
+
+
 def test_a_stub_keeps_the_qualified_name_that_the_reference_shows():
     text = pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Company::Robots::Arm")
     graph, _ = refined(text, "resolve")

@@ -1,7 +1,11 @@
 """Ids for what a pass or a front end makes: computed from origin and role, never random."""
 
+import re
 from uuid import UUID, uuid5
 
+_MADE_BY_TOOLS = re.compile(
+    r"_[\w-]{22}|_\w+_\d+_\d+_\d+|EA(ID|PK)_[0-9A-F]{8}_\w+|eee_\d+_\d+_\d+", re.ASCII
+)
 _UNMISTAKABLE = 20
 """Length from which tools' ids are unique in the world: Papyrus writes 23 characters, MagicDraw
 about 41, Enterprise Architect 43."""
@@ -13,6 +17,11 @@ _NAMESPACE = UUID("6f1d7a54-3f0c-5d3a-9a52-0c2f6f2d7b11")
 def is_unmistakable(id: str) -> bool:
     """Whether an id of a file is of the kind that tools make, the same in no two models."""
     return len(id) >= _UNMISTAKABLE and not id.startswith(ROOT)
+
+
+def is_made_by_tools(id: str) -> bool:
+    """Whether it is an id as Eclipse, MagicDraw and Enterprise Architect make them, and no word."""
+    return _MADE_BY_TOOLS.fullmatch(id) is not None
 
 
 def derived_id(origin: str, role: str) -> str:

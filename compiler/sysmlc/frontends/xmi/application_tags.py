@@ -1,7 +1,5 @@
 """Tagged values of applications: texts, values, and ids of the elements that they name."""
 
-import re
-
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
@@ -9,12 +7,9 @@ from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of
 from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.values import value_of
 from sysmlc.ir import AttrValue, Element
+from sysmlc.ir.identity import is_made_by_tools
 
 _NOT_TAGS = ("base_", "__EA")
-_MADE_BY_TOOLS = re.compile(
-    r"_[\w-]{22}|_\w+_\d+_\d+_\d+|EA(ID|PK)_[0-9A-F]{8}_\w+|eee_\d+_\d+_\d+", re.ASCII
-)
-"""Ids as Eclipse, MagicDraw and Enterprise Architect make them: nobody writes such text."""
 
 
 def read(context: Context, element: Element, row: int) -> None:
@@ -40,7 +35,7 @@ def value(context: Context, element: Element, row: int, name: str, written: str)
     if written[:1] == "{":
         return id_of(context, written) or written
     ids = context.document.ids
-    if len(tokens) == 1 and tokens[0] not in ids and not _MADE_BY_TOOLS.fullmatch(tokens[0]):
+    if len(tokens) == 1 and tokens[0] not in ids and not is_made_by_tools(tokens[0]):
         return written
     if all(token in ids for token in tokens):
         known = tokens
@@ -55,7 +50,7 @@ def _existing(
 ) -> list[str]:
     """Ids of elements, when all tokens are ids; those that lead nowhere are reported."""
     missing = dict.fromkeys(token for token in tokens if not _is_known(context, token))
-    if not all(map(_MADE_BY_TOOLS.fullmatch, missing)):
+    if not all(map(is_made_by_tools, missing)):
         return []
     if missing:
         _report(context, element, row, name, *missing)
@@ -78,8 +73,7 @@ def _child_tag(context: Context, element: Element, child: int) -> AttrValue:
 
 def _is_known(context: Context, id: str) -> bool:
     return id in context.document.ids or (
-        _MADE_BY_TOOLS.fullmatch(id) is not None
-        and context.unit.find(context.lowered, id, False) is not None
+        is_made_by_tools(id) and context.unit.find(context.lowered, id, False) is not None
     )
 
 

@@ -4,13 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
-from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.identity import derived_id, is_made_by_tools
 from sysmlc.ir.query import ids_in
 from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.libraries import (
     PRIMITIVE_TYPES,
+    PRIMITIVES,
+    has_primitives_only,
     is_href,
     is_standard,
     kind_of,
@@ -24,6 +26,7 @@ from sysmlc.passes.resolve.rules import (
     BROKEN_REFERENCE,
     MANY_BROKEN,
     MISSING_LIBRARY,
+    UNKNOWN_IN_LIBRARY,
 )
 from sysmlc.passes.resolve.targets import Targets
 from sysmlc.passes.standins import StandIn
@@ -285,19 +288,32 @@ def _report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[_Use]]) 
     libraries: dict[str, dict[str, list[_Use]]] = {}
     for href, uses in outside.items():
         library, _ = split(href)
-        if not is_standard(library):
+        if not is_standard(library) or _is_doubtful(graph, href):
             libraries.setdefault(library, {})[href] = uses
     for library in sorted(libraries):
-        _report_library(graph, sink, library, libraries[library])
+        rule = UNKNOWN_IN_LIBRARY if is_standard(library) else MISSING_LIBRARY
+        _report_library(graph, sink, rule, library, libraries[library])
 
 
-def _report_library(graph: Graph, sink: Sink, library: str, missing: dict[str, list[_Use]]) -> None:
+def _is_doubtful(graph: Graph, href: str) -> bool:
+    """Whether a standard library surely has no such element, or only its id is known.
+
+    Newer versions may have new elements; profiles that are applied say nothing by themselves.
+    """
+    stub = graph[_stand_in_id(href)]
+    is_nameless = is_made_by_tools(stub.name) and stub.kind is not Kind.PROFILE
+    return is_nameless or (has_primitives_only(split(href)[0]) and stub.name not in PRIMITIVES)
+
+
+def _report_library(
+    graph: Graph, sink: Sink, rule: Rule, library: str, missing: dict[str, list[_Use]]
+) -> None:
     first = min((use for uses in missing.values() for use in uses), key=_Use.place)
     file, ordinal, _ = first.place()
     lines = [_takes_down(graph, href, missing[href]) for href in sorted(missing)]
     more = [f"and {len(lines) - _LISTED} more"] if len(lines) > _LISTED else []
     sink.report(
-        MISSING_LIBRARY,
+        rule,
         _user(graph, first, Place(file, ordinal) if file else None),
         notes=(*lines[:_LISTED], *more),
         library=library,

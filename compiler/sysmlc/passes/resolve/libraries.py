@@ -20,6 +20,7 @@ _STANDARD = re.compile(
     """,
     re.VERBOSE,
 )
+_PRIMITIVES_ONLY = re.compile(r"(.*/)?(UML)?PrimitiveTypes\.(library\.uml|xmi)")
 _ALIASES = {
     "bool": "Boolean",
     "boolean": "Boolean",
@@ -59,6 +60,11 @@ def is_href(target: str) -> bool:
 def is_standard(library: str) -> bool:
     """Whether the file is UML's, SysML's or our own, whose content is known without reading it."""
     return _STANDARD.match(unquote(library)) is not None
+
+
+def has_primitives_only(library: str) -> bool:
+    """Whether the file is UML's library of primitive types, which are five for good."""
+    return _PRIMITIVES_ONLY.fullmatch(unquote(library)) is not None
 
 
 def primitive(href: str, path: str, kind: Kind) -> str:

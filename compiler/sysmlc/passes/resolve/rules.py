@@ -109,3 +109,24 @@ Class gate "Gate" @line.uml:1
 Class pallet "Pallet" @plant.uml:1
 """,
 )
+UNKNOWN_IN_LIBRARY = rule(
+    "SM153",
+    "unknown-in-library",
+    Severity.WARNING,
+    "'{library}' is known to sysmlc without reading it, but {count} of what the model takes from "
+    "it is not",
+    why="The file comes with every modelling tool, so that nobody gives it as an input. It has no "
+    "element of this name in any version, or the reference shows only an id, because the name was "
+    "lost with the extensions of the tool. What is not known has a kind, nothing more.",
+    help="choose the type again in the modelling tool, or give the file as a further input",
+    wrong="""\
+Class gate "Gate"
+  Property gate.count "count"
+    ?> typed-by pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#Intger DataType
+""",
+    right="""\
+Class gate "Gate"
+  Property gate.count "count"
+    ?> typed-by pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#Integer DataType
+""",
+)
