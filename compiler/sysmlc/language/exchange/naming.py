@@ -1,0 +1,56 @@
+"""Effective and qualified names of elements whose references are resolved (KerML 1.0, 8.3.2.1)."""
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.tree import Node
+
+_NAMED_BY = ("Redefinition", "ReferenceSubsetting")
+"""Relations whose target names a feature without a name of its own."""
+_FEATURES = kinds_of("Feature")
+_DEEPEST = 100
+
+
+def shown(node: Node) -> str:
+    """What a message calls the element: its name, else its metaclass."""
+    return node.name or node.short or node.kind
+
+
+class Naming:
+    """Names of elements, each computed once."""
+
+    def __init__(self) -> None:
+        self._qualified: dict[Node, tuple[str, ...]] = {}
+
+    def qualified(self, node: Node) -> tuple[str, ...]:
+        """The names from the top of its document down to the element.
+
+        What has no name counts by its position: ``#3`` is the third member of its owner.
+        """
+        found = self._qualified.get(node)
+        if found is None:
+            owner = node.owner
+            above = self.qualified(owner) if owner is not None and owner.owner else ()
+            found = (*above, effective(node) or _position(node)) if owner else ()
+            self._qualified[node] = found
+        return found
+
+
+def effective(node: Node, depth: int = 0) -> str:
+    """The name of an element, else that of the feature which names it, else nothing.
+
+    A feature without a name is called as the one that it redefines (KerML 1.0, 8.3.3.3.4), or
+    as the one that it references, performs or exhibits (SysML 2.0, 8.3.6.4).
+    """
+    if node.name or node.short:
+        return node.name or node.short or ""
+    if node.kind not in _FEATURES or depth > _DEEPEST:
+        return ""
+    for relation in node.relations:
+        if relation.kind in _NAMED_BY:
+            target = relation.reference.target
+            return effective(target, depth + 1) if target else ""
+    return ""
+
+
+def _position(node: Node) -> str:
+    owner = node.owner
+    return f"#{owner.members.index(node) + 1}" if owner and node in owner.members else "#"

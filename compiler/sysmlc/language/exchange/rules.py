@@ -1,0 +1,79 @@
+"""Rules of reading KerML and SysML v2 from interchange files."""
+
+from sysmlc.diagnostics import Severity, rule
+
+UNKNOWN_METACLASS = rule(
+    "SM163",
+    "unknown-metaclass",
+    Severity.WARNING,
+    "'{kind}' is no metaclass of SysML 2.0: it is left out with all that it owns",
+    why="The file was written for another version of the language, or by hand. What stands there "
+    "cannot be understood, so outputs do not reflect it.",
+    help="export the model again for SysML 2.0 (https://www.omg.org/spec/SysML/20250201)",
+    wrong="<ownedRelatedElement xsi:type='sysml:PartDef' declaredName='Robot'/>",
+    right="<ownedRelatedElement xsi:type='sysml:PartDefinition' declaredName='Robot'/>",
+)
+UNKNOWN_FEATURE = rule(
+    "SM164",
+    "unknown-feature",
+    Severity.WARNING,
+    "'{feature}' of '{element}' is no feature of a {kind}: nothing is read from it",
+    why="The metaclass has no such feature in SysML 2.0: most likely a script misspelt it, or the "
+    "file was written for another version of the language.",
+    help="look whether the name is spelt as the metamodel does",
+    wrong="<ownedRelatedElement xsi:type='sysml:PartDefinition' isAbstrct='true'/>",
+    right="<ownedRelatedElement xsi:type='sysml:PartDefinition' isAbstract='true'/>",
+)
+DANGLING = rule(
+    "SM165",
+    "dangling-interchange-reference",
+    Severity.ERROR,
+    "'{feature}' of '{element}' leads to the id '{id}', which {file} does not have",
+    why="The element was deleted, or the files come from two different exports. What depends on "
+    "the reference is missing from the outputs.",
+    help="export all files of the model again, together",
+    wrong="<ownedRelationship xsi:type='sysml:FeatureTyping' type='gone'/>",
+    right="<ownedRelationship xsi:type='sysml:FeatureTyping' type='robot'/>",
+)
+MALFORMED = rule(
+    "SM750",
+    "malformed-interchange",
+    Severity.ERROR,
+    "'{file}' cannot be read: {problem}",
+    why="The file is damaged, or it asks for something that safe reading refuses. Nothing of it "
+    "is used, because half a model gives wrong outputs.",
+    help="export the model again",
+    wrong="<sysml:Namespace><ownedRelationship></sysml:Namespace>",
+    right="<sysml:Namespace><ownedRelationship/></sysml:Namespace>",
+)
+REPEATED_ID = rule(
+    "SM751",
+    "repeated-interchange-id",
+    Severity.ERROR,
+    "the id '{id}' is used by two elements",
+    why="A reference to it could mean either. Ids are unique in an interchange file.",
+    help="export the model again, or give one of them another id",
+    wrong="<ownedRelatedElement xmi:id='a'/><ownedRelatedElement xmi:id='a'/>",
+    right="<ownedRelatedElement xmi:id='a'/><ownedRelatedElement xmi:id='b'/>",
+)
+BAD_VALUE = rule(
+    "SM756",
+    "bad-interchange-value",
+    Severity.ERROR,
+    "'{feature}' of '{element}' is '{value}', which is no {type}",
+    why="The metamodel gives the feature another type, so the value cannot be meant.",
+    help="write a value of the type that the metamodel says",
+    wrong="<ownedRelatedElement xsi:type='sysml:PartDefinition' isAbstract='yes'/>",
+    right="<ownedRelatedElement xsi:type='sysml:PartDefinition' isAbstract='true'/>",
+)
+NO_MODEL = rule(
+    "SM757",
+    "no-interchange-model",
+    Severity.ERROR,
+    "'{file}' holds no model of SysML 2.0: its root is '{root}'",
+    why="The root of an interchange file is a sysml:Namespace, or xmi:XMI with one inside "
+    "(KerML 1.0, 10.2). Anything else would be left out without a word.",
+    help="look whether the file is what its name says",
+    wrong="<catalogue/>",
+    right='<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"/>',
+)
