@@ -55,6 +55,30 @@ def test_generals_end_in_a_circle():
     assert ids(query.generals(GATE, GATE["gate"])) == ["device"]
 
 
+def test_generals_come_nearest_first_each_once():
+    graph = parse_text(
+        """\
+Class robot "Robot"
+  -> specializes arm cart
+Class arm "Arm"
+  -> specializes axis machine
+Class cart "Cart"
+  -> specializes machine
+Class axis "Axis"
+Class machine "Machine"
+  -> specializes thing
+Class thing "Thing"
+"""
+    )
+    found = query.generals(graph, graph["robot"])
+    assert ids(found) == ["arm", "cart", "axis", "machine", "thing"]
+
+
+def test_a_class_that_is_above_itself_is_not_among_its_generals():
+    graph = parse_text('Class a "A"\n  -> specializes a b\nClass b "B"\n  -> specializes a\n')
+    assert ids(query.generals(graph, graph["a"])) == ["b"]
+
+
 def test_conformance_goes_over_generals_and_realised_interfaces():
     gate, track = GATE["gate"], GATE["track"]
     assert query.conforms(GATE, gate, gate)

@@ -271,8 +271,11 @@ def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Fin
 
 def named(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
     found = list(found)
-    names = {one.file: name_of(root, one.file) for one in found if one.file}
-    return [replace(one, file=names.get(one.file, "")) for one in found]
+    files = {one.file for one in found if one.file}
+    names = {file: name_of(root, file) for file in files} | {"": ""}
+    return [
+        one if names[one.file] == one.file else replace(one, file=names[one.file]) for one in found
+    ]
 
 
 def name_of(root: Path, name: str) -> str:
@@ -287,9 +290,10 @@ def show(found: "Iterable[Finding]", settings: Settings) -> None:
 
     on_stdout = settings.form in _ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
-    if settings.form not in XPATH_FORMATS and not settings.verbose:
-        found = (replace(one, xpath="") for one in found)
     report = shortened(found, _most(settings))
+    if settings.form not in XPATH_FORMATS and not settings.verbose:
+        bare = tuple(replace(one, xpath="") for one in report.findings)
+        report = replace(report, findings=bare)
     text = render(report, settings.form, color=has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
     if report.left:

@@ -96,14 +96,18 @@ def generals(graph: Graph, classifier: Element) -> list[Element]:
 
 
 def _above(graph: Graph, element: Element, edge: Edge) -> list[Element]:
-    found: dict[str, Element] = {}
-    level = [element] if graph.target(element, edge) else []
+    level = graph.targets(element, edge)
+    found = dict.fromkeys(level)
     while level:
-        ups = (up for one in level for up in graph.targets(one, edge))
-        level = [up for up in dict.fromkeys(ups) if up.id not in found]
-        found.update((up.id, up) for up in level)
-    found.pop(element.id, None)
-    return list(found.values())
+        if len(level) == 1:
+            # Most have one above them, and chains can be thousands long.
+            level = [up for up in graph.targets(level[0], edge) if up not in found]
+        else:
+            ups = (up for one in level for up in graph.targets(one, edge))
+            level = [up for up in dict.fromkeys(ups) if up not in found]
+        found.update(dict.fromkeys(level))
+    found.pop(element, None)
+    return list(found)
 
 
 def conforms(graph: Graph, specific: Element, general: Element) -> bool:

@@ -10,17 +10,11 @@ from sysmlc.ir.measures import is_quantity_kind, is_unit, quantity_kind_of, unit
 
 def rows(graph: Graph, item: Element) -> tuple[str, ...]:
     """``unit = kilogram (kg)`` and the like: of a value type its own, of a unit what it says."""
-    if is_unit(item) or is_quantity_kind(item):
+    if item.role != "value type" or is_unit(item) or is_quantity_kind(item):
         return ()
-    found = {
-        title: element
-        for title, element in (
-            ("unit", unit_of(graph, item)),
-            ("quantityKind", quantity_kind_of(graph, item)),
-        )
-        if element is not None and item.role == "value type"
-    }
-    return tuple(row for title, one in found.items() for row in lines(f"{title} = {_text(one)}"))
+    measures = (("unit", unit_of(graph, item)), ("quantityKind", quantity_kind_of(graph, item)))
+    found = ((title, one) for title, one in measures if one is not None)
+    return tuple(row for title, one in found for row in lines(f"{title} = {_text(one)}"))
 
 
 def shown(graph: Graph, item: Element) -> Iterator[str]:

@@ -235,11 +235,12 @@ def _report_lost(graph: Graph, sink: Sink, lost: list[_Use]) -> None:
 def _report_many(graph: Graph, sink: Sink, uses: list[_Use]) -> None:
     first = uses[0]
     _mark(graph, first)
+    subject = _subject(graph, first)
     sink.report(
         MANY_BROKEN,
-        _subject(graph, first),
+        subject,
         relation=first.relation,
-        element=graph.qualified_name(first.holder),
+        element=subject.name,
         target=first.target,
         others=len(uses) - 1,
     )
@@ -253,20 +254,21 @@ def _mark(graph: Graph, use: _Use) -> None:
 
 def _report_broken(graph: Graph, sink: Sink, use: _Use) -> None:
     _mark(graph, use)
+    subject = _subject(graph, use)
     sink.report(
         BROKEN_REFERENCE if use.edge else BROKEN_ID,
-        _subject(graph, use),
+        subject,
         relation=use.relation,
-        element=graph.qualified_name(use.holder),
+        element=subject.name,
         target=use.target,
     )
 
 
 def _subject(graph: Graph, use: _Use) -> Subject:
-    subject = graph.subject(use.holder)
+    holder = use.holder
     if use.ordinal < 0:
-        return subject
-    return Subject(subject.name, subject.id, Place(use.holder.source, use.ordinal))
+        return graph.subject(holder)
+    return Subject(graph.qualified_name(holder), holder.id, Place(holder.source, use.ordinal))
 
 
 def _rewrite(graph: Graph, answers: _Answers, held: list[_Use]) -> None:
