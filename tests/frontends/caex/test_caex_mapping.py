@@ -695,6 +695,14 @@ def test_what_caex_does_not_have_is_told_and_counted():
             ],
         ),
         ('<InternalLink Name="l" RefPartnerSideA="" RefPartnerSideB=""/><RoleRequirements/>', []),
+        (
+            "<SourceObjectInformation OriginID='a'/><AdditionalInformation/>",
+            [
+                "SM140: 'AdditionalInformation' of 'Plant::i' stands after "
+                "'SourceObjectInformation', against the schema of CAEX (1 place)"
+            ],
+        ),
+        ("<AdditionalInformation/><SourceObjectInformation OriginID='a'/>", []),
     ],
 )
 def test_elements_in_another_order_than_the_schema_has_are_told_once(inside, order):

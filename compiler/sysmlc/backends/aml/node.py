@@ -6,49 +6,11 @@ from typing import Any
 
 from lxml import etree
 
-NAMESPACE = "http://www.dke.de/CAEX"
+from sysmlc.sources.caex import NAMESPACE, ORDER
+
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _FREE = frozenset({"AdditionalInformation"})
 """What may hold any XML: its inner order is that of the author."""
-_RANKS = {
-    tag: rank
-    for rank, tag in enumerate(
-        (
-            "Description",
-            "Version",
-            "Revision",
-            "Copyright",
-            "AdditionalInformation",
-            "SourceObjectInformation",
-            "SuperiorStandardVersion",
-            "SourceDocumentInformation",
-            "ExternalReference",
-            "InstanceHierarchy",
-            "InterfaceClassLib",
-            "RoleClassLib",
-            "SystemUnitClassLib",
-            "AttributeTypeLib",
-            "DefaultValue",
-            "Value",
-            "RefSemantic",
-            "Constraint",
-            "Attribute",
-            "AttributeType",
-            "ExternalInterface",
-            "InternalElement",
-            "SupportedRoleClass",
-            "InternalLink",
-            "RoleRequirements",
-            "MappingObject",
-            "AttributeNameMapping",
-            "InterfaceIDMapping",
-            "InterfaceClass",
-            "RoleClass",
-            "SystemUnitClass",
-        )
-    )
-}
-"""No two elements stand in different orders anywhere in the schema of CAEX 3.0."""
 
 
 @dataclass(slots=True, eq=False)
@@ -118,7 +80,7 @@ def ordered(node: Node) -> list[Node]:
     """The children in the order of the schema; those of one tag as they were added."""
     if node.tag in _FREE:
         return node.children
-    return sorted(node.children, key=lambda child: _RANKS.get(child.tag, len(_RANKS)))
+    return sorted(node.children, key=lambda child: ORDER.get(child.tag, len(ORDER)))
 
 
 def parsed(text: str) -> Node:

@@ -13,9 +13,10 @@ from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
-from sysmlc.frontends.caex.vocabulary import LIBRARIES, ORDER, ROLE_REFERENCES, STANDARD
+from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, STANDARD
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
+from sysmlc.sources.caex import ORDER
 from sysmlc.sources.encoding import codec
 
 _Use = tuple[Document, Node]

@@ -55,44 +55,6 @@ STANDARD = frozenset(
 )
 """Libraries of IEC 62714-1: the same whoever holds them, so that none is drawn."""
 
-ORDER = {
-    tag: rank
-    for rank, tag in enumerate(
-        (
-            "Description",
-            "Version",
-            "Revision",
-            "Copyright",
-            "SourceObjectInformation",
-            "AdditionalInformation",
-            "SuperiorStandardVersion",
-            "SourceDocumentInformation",
-            "ExternalReference",
-            "InstanceHierarchy",
-            "InterfaceClassLib",
-            "RoleClassLib",
-            "SystemUnitClassLib",
-            "AttributeTypeLib",
-            "DefaultValue",
-            "Value",
-            "RefSemantic",
-            "Constraint",
-            "Attribute",
-            "AttributeType",
-            "ExternalInterface",
-            "RoleClass",
-            "InterfaceClass",
-            "InternalElement",
-            "SupportedRoleClass",
-            "InternalLink",
-            "SystemUnitClass",
-            "RoleRequirements",
-            "MappingObject",
-        )
-    )
-}
-"""The order of elements in both schemas: no two of them stand in different orders anywhere."""
-
 BASE_ROLE = ("AutomationMLBaseRoleClassLib", "AutomationMLBaseRole")
 BASE_INTERFACE = ("AutomationMLInterfaceClassLib", "AutomationMLBaseInterface")
 BASE_ATTRIBUTE = ("AutomationMLBaseAttributeTypeLib",)
