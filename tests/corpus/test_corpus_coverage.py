@@ -63,3 +63,27 @@ def test_everything_that_is_listed_has_a_place_a_name_and_a_reason(covered):
 
 def test_the_models_are_there(corpus):
     assert len(models()) > 40
+
+
+@pytest.mark.parametrize(
+    ("page", "folder"),
+    [
+        ("papyrus.md", "papyrus"),
+        ("cameo-magicdraw.md", "magicdraw"),
+        ("enterprise-architect.md", "ea"),
+    ],
+)
+def test_the_pages_of_the_tools_give_the_numbers_of_the_golden(page, folder):
+    here = Path(__file__).parents[1]
+    rows = (here / "golden" / "coverage" / "corpus.txt").read_text().splitlines()
+    header, *cells = (row.split() for row in rows)
+    chosen = [dict(zip(header, row, strict=True)) for row in cells if row[0].startswith(folder)]
+    elements, mapped, external, unsupported, notation = (
+        sum(int(row[column]) for row in chosen)
+        for column in ("elements", "mapped", "external", "unsupported", "ignored_notation")
+    )
+    text = " ".join((here.parent / "docs" / page).read_text().split())
+    assert f"{elements:,} XML elements in all" in text
+    assert f"{round(100 * (mapped + external) / elements)} % are in the graph or lead" in text
+    assert f"{float(f'{100 * notation / elements:.2g}'):g} % are " in text
+    assert f"{unsupported} elements" in text if unsupported else "none is left out" in text

@@ -1,5 +1,6 @@
 """Behaviour: activities, state machines with events folded into triggers, interactions."""
 
+import pytest
 from reading_xmi import below_model, magicdraw, papyrus, read
 
 from sysmlc.ir import Edge
@@ -110,6 +111,24 @@ def test_pin_bounds_in_extensions_of_magicdraw():
     )
     assert reading.graph["p"].attrs["multiplicity"] == "2..5"
     assert reading.graph["a"].attrs["body"] == "go()"
+
+
+@pytest.mark.parametrize(
+    "owned",
+    [
+        "<ownedAttribute xmi:type='uml:Property' xmi:id='p'>{}</ownedAttribute>",
+        "<ownedAttribute xmi:type='uml:Port' xmi:id='p'>{}</ownedAttribute>",
+        "<ownedOperation xmi:type='uml:Operation' xmi:id='o'><ownedParameter xmi:type="
+        "'uml:Parameter' xmi:id='p'>{}</ownedParameter></ownedOperation>",
+    ],
+)
+def test_other_bounds_in_extensions_of_magicdraw(owned):
+    bounds = """<xmi:Extension extender='MagicDraw UML 19.0'><modelExtension>
+  <upperValue xmi:type='uml:LiteralUnlimitedNatural' xmi:id='u' value='*'/></modelExtension>
+</xmi:Extension>"""
+    model = "<packagedElement xmi:type='uml:Class' xmi:id='c'>{}</packagedElement>"
+    reading = read(magicdraw(model.format(owned.format(bounds))))
+    assert reading.graph["p"].attrs["multiplicity"] == "1..*"
 
 
 MACHINE = """\
