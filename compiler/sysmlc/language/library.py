@@ -1,0 +1,187 @@
+"""The model libraries that a model refers to: where they are, and their files, read when needed."""
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from sysmlc.cache import Cache
+from sysmlc.diagnostics import Sink
+from sysmlc.language.stored import read
+from sysmlc.language.tree import Document, Node
+from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
+
+VARIABLE = "SYSML_LIBRARY_PATH"
+"""Environment variable: the folder or .kpar of the standard library."""
+_SUFFIXES = {".sysml": "sysml", ".kerml": "kerml"}
+_DISTRIBUTION = "sysml"
+"""The distribution whose model files are the standard library; they are read as data only."""
+
+
+class Library:
+    """Files of a library and their root members, each file read when a name of it is asked for.
+
+    ``name`` says where it was found, for messages; ``is_core`` tells that it is the small one of
+    our own, which has only what examples need.
+    """
+
+    def __init__(
+        self,
+        sources: Iterable[Source],
+        cache: Cache | None = None,
+        *,
+        name: str = "",
+        is_core: bool = False,
+    ) -> None:
+        self._sources = {source.name: source for source in sources}
+        self._cache = cache
+        self._documents: dict[str, Document] = {}
+        self._stems: dict[str, list[str]] = {}
+        for path in self._sources:
+            self._stems.setdefault(_stem(path), []).append(path)
+        self._index: dict[str, list[str]] | None = None
+        self.name = name
+        self.is_core = is_core
+
+    def roots(self, name: str) -> list[Node]:
+        """Root members with that name: a file named like it is asked first, then the index."""
+        found = self._named(self._stems.get(name, ()), name)
+        if found or not self._sources:
+            return found
+        if self._index is None:
+            self._index = self._indexed()
+        return self._named(self._index.get(name, ()), name)
+
+    def _named(self, paths: Iterable[str], name: str) -> list[Node]:
+        members = (member for path in paths for member in self.document(path).root.members)
+        return [member for member in members if name in (member.name, member.short)]
+
+    def document(self, path: str) -> Document:
+        """One file of the library. Raises KeyError for one that it has not."""
+        document = self._documents.get(path)
+        if document is None:
+            source = self._sources[path]
+            document = read(source, path, _SUFFIXES[_suffix(path)], Sink(), self._cache)
+            self._documents[path] = document
+        return document
+
+    def paths(self) -> list[str]:
+        """Names of all files, sorted."""
+        return sorted(self._sources)
+
+    def loaded(self) -> list[Document]:
+        """The documents read so far, by path."""
+        return [self._documents[path] for path in sorted(self._documents)]
+
+    def _indexed(self) -> dict[str, list[str]]:
+        """Which files have which root members; kept in the cache under the files' digests."""
+        key = f"{self._digest()}-library-index" if self._cache else ""
+        kept = self._cache.get(key) if self._cache else None
+        if kept is not None:
+            return _index_of(kept)
+        index: dict[str, list[str]] = {}
+        for path in self.paths():
+            for member in self.document(path).root.members:
+                for name in {member.name, member.short} - {None}:
+                    index.setdefault(str(name), []).append(path)
+        if self._cache:
+            lines = [f"{name}\t{path}" for name in sorted(index) for path in index[name]]
+            self._cache.put(key, "\n".join(["index", *lines]).encode())
+        return index
+
+    def _digest(self) -> str:
+        from hashlib import sha256
+
+        parts = [f"{path} {self._sources[path].sha256}" for path in self.paths()]
+        return sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _index_of(kept: bytes) -> dict[str, list[str]]:
+    index: dict[str, list[str]] = {}
+    for line in kept.decode().splitlines()[1:]:
+        name, _, path = line.partition("\t")
+        index.setdefault(name, []).append(path)
+    return index
+
+
+def _stem(path: str) -> str:
+    return path.rpartition("/")[2].rpartition("!")[2].rpartition(".")[0]
+
+
+def _suffix(path: str) -> str:
+    return path[path.rfind(".") :]
+
+
+def find(
+    path: str | Path | None = None,
+    environment: Mapping[str, str] = os.environ,
+    cache: Cache | None = None,
+) -> Library:
+    """The library at ``path``, else of the environment, of the installed distribution, our own.
+
+    ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar.
+    Raises SourceError when the one that was asked for is not there or has no model files.
+    """
+    asked = str(path) if path else environment.get(VARIABLE, "")
+    if asked:
+        sources = _read(Path(asked))
+        if not sources:
+            raise SourceError("has no .sysml or .kerml files", asked, fault=Fault.MISSING)
+        return Library(sources, cache, name=asked)
+    installed = _installed()
+    if installed is not None:
+        return Library(_read(installed), cache, name=f"the '{_DISTRIBUTION}' distribution")
+    return core(cache)
+
+
+def core(cache: Cache | None = None) -> Library:
+    """The small library of our own."""
+    from sysmlc import resources
+
+    return Library(
+        _read(resources.path("metamodels", "core")), cache, name="sysmlc's core", is_core=True
+    )
+
+
+def _installed() -> Path | None:
+    """The folder of model files of the installed distribution, which is not imported."""
+    from importlib.util import find_spec
+
+    try:
+        spec = find_spec(_DISTRIBUTION)
+    except (ImportError, ValueError):
+        return None
+    for folder in (spec.submodule_search_locations or ()) if spec else ():
+        models = Path(folder) / "stdlib"
+        if models.is_dir():
+            return models
+    return None
+
+
+def _read(path: Path) -> list[Source]:
+    """The model files of a folder or archive, named relative to it. Raises SourceError."""
+    try:
+        if path.is_dir():
+            return _of_folder(path)
+        source = Source(path.name, path.read_bytes())
+    except OSError as problem:
+        raise SourceError(problem.strerror or "not there", str(path), fault=Fault.MISSING) from None
+    if is_archive(source.data):
+        return entries(source, _is_model)
+    return [source] if _is_model(path.name) else []
+
+
+def _of_folder(folder: Path) -> list[Source]:
+    found: list[Source] = []
+    for below, _, files in os.walk(folder):
+        for file in files:
+            suffix = _suffix(file)
+            if suffix in _SUFFIXES or suffix == ".kpar":
+                path = Path(below) / file
+                name = path.relative_to(folder).as_posix()
+                source = Source(name, path.read_bytes())
+                found += entries(source, _is_model) if suffix == ".kpar" else [source]
+    return sorted(found, key=lambda source: source.name)
+
+
+def _is_model(name: str) -> bool:
+    return _suffix(name) in _SUFFIXES

@@ -1,0 +1,5 @@
+"""Names: what every name of a model leads to, and what its elements specialise."""
+
+from sysmlc.language.names.model import Model, resolve
+
+__all__ = ["Model", "resolve"]

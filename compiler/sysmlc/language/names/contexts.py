@@ -1,0 +1,141 @@
+"""Where the search for a name begins (KerML 8.2.3.5.2) and what it may lead to."""
+
+from typing import NamedTuple
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names.contents import NAMESPACES
+from sysmlc.language.tree import Node, Relation
+
+_CONNECTORS = kinds_of("Connector")
+INSTANTIATIONS = kinds_of("InstantiationExpression")
+_SKIPPED = INSTANTIATIONS | {"FeatureReferenceExpression", "MetadataAccessExpression"}
+"""Expressions that only hold other expressions: no name is looked up in them."""
+_FEATURE = kinds_of("Feature")
+_TYPE = kinds_of("Type")
+_CLASSIFIER = kinds_of("Classifier")
+
+WANTED: dict[str, frozenset[str]] = {
+    "Specialization": _TYPE,
+    "Subclassification": _CLASSIFIER,
+    "FeatureTyping": _TYPE,
+    "ConjugatedPortTyping": kinds_of("PortDefinition"),
+    "Subsetting": _FEATURE,
+    "Redefinition": _FEATURE,
+    "ReferenceSubsetting": _FEATURE,
+    "CrossSubsetting": _FEATURE,
+    "Conjugation": _TYPE,
+    "Disjoining": _TYPE,
+    "Unioning": _TYPE,
+    "Intersecting": _TYPE,
+    "Differencing": _TYPE,
+    "FeatureChaining": _FEATURE,
+    "FeatureInverting": _FEATURE,
+    "TypeFeaturing": _TYPE,
+    "importedNamespace": NAMESPACES,
+    "specific": _TYPE,
+    "general": _TYPE,
+    "subclassifier": _CLASSIFIER,
+    "superclassifier": _CLASSIFIER,
+    "typedFeature": _FEATURE,
+    "type": _TYPE,
+    "subsettingFeature": _FEATURE,
+    "subsettedFeature": _FEATURE,
+    "redefiningFeature": _FEATURE,
+    "redefinedFeature": _FEATURE,
+    "conjugatedType": _TYPE,
+    "originalType": _TYPE,
+    "typeDisjoined": _TYPE,
+    "disjoiningType": _TYPE,
+    "featureInverted": _FEATURE,
+    "invertingFeature": _FEATURE,
+    "featureOfType": _FEATURE,
+    "featuringType": _TYPE,
+}
+"""Metaclasses that the target of a relation may have; other relations take any element."""
+
+
+class Start(NamedTuple):
+    """Where a search begins: ``scope`` and outwards, or in the result of ``operand`` only.
+
+    ``inherited`` looks in the generals of the scope first and not at what it owns: a feature
+    redefines what its owner inherits (KerML 8.2.3.5.2). ``without`` is not found by its
+    effective name, which the search is to give.
+    """
+
+    scope: Node | None
+    operand: Node | None = None
+    inherited: bool = False
+    without: Node | None = None
+
+
+def start(node: Node, relation: Relation) -> Start:
+    """Where the first name of a relation of ``node`` is looked up."""
+    kind = relation.kind
+    if kind == "Membership":
+        return _membership(node)
+    if kind == "ReferenceSubsetting" and _is_connector_end(node):
+        return Start(_outer(node.owner), without=node)
+    if kind == "Redefinition":
+        return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
+    if kind == "FeatureTyping":
+        return Start(beyond_expressions(node), without=node)
+    return Start(namespace(node), without=node)
+
+
+def _membership(node: Node) -> Start:
+    if node.kind == "Membership":
+        return Start(namespace(node), without=node)
+    if node.kind == "FeatureChainExpression":
+        return Start(None, operand=node.members[0] if node.members else None)
+    if node.kind == "AssignmentActionUsage":
+        operand = _assigned(node)
+        return Start(None, operand=operand) if operand else Start(node)
+    if node.kind in _SKIPPED:
+        return Start(beyond_expressions(node))
+    return Start(node)
+
+
+def _assigned(node: Node) -> Node | None:
+    """The expression before the dot of ``assign x.y := z``, where it is written apart."""
+    for member in node.members:
+        if member.membership == "ParameterMembership":
+            return next((m for m in member.members if m.membership == "FeatureValue"), None)
+    return None
+
+
+def _is_connector_end(node: Node) -> bool:
+    owner = node.owner
+    return (
+        owner is not None
+        and owner.kind in _CONNECTORS
+        and (node.membership == "EndFeatureMembership" or bool(node.facts.get("isEnd")))
+    )
+
+
+def _outer(node: Node | None) -> Node | None:
+    return namespace(node) if node else None
+
+
+def namespace(node: Node) -> Node | None:
+    """The nearest namespace around ``node``."""
+    owner = node.owner
+    while owner is not None and owner.kind not in NAMESPACES:
+        owner = owner.owner
+    return owner
+
+
+def beyond_expressions(node: Node) -> Node | None:
+    """The nearest namespace around ``node`` in which names of an expression are looked up."""
+    owner = namespace(node)
+    while owner is not None and (node.membership == "FeatureValue" or owner.kind in _SKIPPED):
+        node = owner
+        owner = namespace(node)
+    return owner
+
+
+def outer(scope: Node) -> Node | None:
+    """The next scope outwards."""
+    owner = scope.owner
+    while owner is not None and (owner.kind not in NAMESPACES or owner.kind in _SKIPPED):
+        owner = owner.owner
+    return owner

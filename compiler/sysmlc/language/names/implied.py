@@ -1,0 +1,137 @@
+"""What an element specialises though its text does not say so: the candidates, by name.
+
+The tables are in ``bases``; which candidates are needed beside the written ones, ``model`` decides.
+"""
+
+from functools import cache
+
+from sysmlc.language.metaclasses import GENERALS, kinds_of
+from sysmlc.language.names.bases import (
+    BASES,
+    BINARY,
+    BY_MEMBERSHIP,
+    NEGATED,
+    PLACES,
+    REDEFINED_BY_MEMBERSHIP,
+)
+from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.tree import Node
+
+_FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
+_PARAMETERS = kinds_of("ParameterMembership")
+_USAGES = kinds_of("Usage")
+_REFERENTIAL = (
+    kinds_of("AttributeUsage") | kinds_of("EventOccurrenceUsage") | {"ReferenceUsage"}
+)
+_VALUES = kinds_of("AttributeDefinition") | kinds_of("AttributeUsage")
+_PORTS = kinds_of("PortDefinition") | kinds_of("PortUsage")
+_CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
+_CONNECTORS = kinds_of("Connector") | kinds_of("Association")
+_PORTIONS = {
+    "snapshot": "Occurrences::Occurrence::snapshots",
+    "timeslice": "Occurrences::Occurrence::timeSlices",
+}
+
+
+def owning_type(node: Node) -> Node | None:
+    """The type that owns ``node`` as its feature."""
+    owner = node.owner
+    owns = owner is not None and node.membership in _FEATURE_MEMBERSHIPS and owner.kind in TYPES
+    return owner if owns else None
+
+
+def is_composite(node: Node) -> bool:
+    """Whether the values of a feature are parts of what has it (SysML BNF 8.2.2.6.2 note 1)."""
+    if node.kind not in _USAGES:
+        return bool(node.facts.get("isComposite"))
+    facts, owner = node.facts, owning_type(node)
+    if owner is None or node.kind in _REFERENTIAL or owner.kind in _VALUES:
+        return False
+    if facts.get("isReference") or facts.get("direction") or facts.get("isEnd"):
+        return False
+    if node.membership in _PARAMETERS:
+        return False
+    return not node.kind == "PortUsage" or owner.kind in _PORTS
+
+
+def ends(node: Node) -> list[Node]:
+    """The end features that a connector or association owns."""
+    return [
+        member
+        for member in node.members
+        if member.membership == "EndFeatureMembership" or member.facts.get("isEnd")
+    ]
+
+
+def candidates(node: Node) -> list[tuple[str, str]]:
+    """Kind of relation and qualified name of what ``node`` may implicitly specialise."""
+    kind = node.kind
+    if kind not in TYPES:
+        return []
+    if kind not in FEATURES:
+        return [("Subclassification", name) for name in _bases(node)]
+    role = BY_MEMBERSHIP.get((node.membership, node.role)) or BY_MEMBERSHIP.get(
+        (node.membership, "")
+    )
+    redefines = node.membership in REDEFINED_BY_MEMBERSHIP
+    found = [("Redefinition" if redefines else "Subsetting", role)] if role else []
+    names = [*_placed(node), *_bases(node)]
+    return [*found, *(("Subsetting", name) for name in names)]
+
+
+def _bases(node: Node) -> list[str]:
+    negated = NEGATED.get(node.kind) if node.facts.get("isNegated") else None
+    if negated:
+        return [negated]
+    if node.kind in _CONNECTORS:
+        return _connector(node)
+    if node.kind == "IfActionUsage" and _clauses(node) > 2:
+        return ["Actions::ifThenElseActions"]
+    return list(_defaults(node.kind))
+
+
+def _clauses(node: Node) -> int:
+    return sum(member.membership == "ParameterMembership" for member in node.members)
+
+
+def _connector(node: Node) -> list[str]:
+    count = len(ends(node))
+    if node.kind == "FlowUsage" and count:
+        return ["Flows::flows"]
+    if node.kind == "Flow" and count:
+        return ["Transfers::flowTransfers"]
+    binary = BINARY.get(node.kind) if count == 2 else None
+    return [binary] if binary else list(_defaults(node.kind))
+
+
+@cache
+def _defaults(kind: str) -> tuple[str, ...]:
+    """The bases of the nearest metaclasses that have one."""
+    if kind in BASES:
+        return (BASES[kind],)
+    names = (name for general in GENERALS.get(kind, ()) for name in _defaults(general))
+    return tuple(dict.fromkeys(names))
+
+
+@cache
+def _places(kind: str) -> tuple[tuple[frozenset[str], str, bool], ...]:
+    return tuple((p.owners, p.base, p.composite) for p in PLACES if kind in p.kinds)
+
+
+def _placed(node: Node) -> list[str]:
+    portion = _PORTIONS.get(str(node.facts.get("portionKind", "")))
+    found = [portion] if portion else []
+    owner = owning_type(node)
+    if owner is None:
+        return found
+    if node.membership == "ActorMembership":
+        inside = "Cases::Case" if owner.kind in _CASES else "Requirements::RequirementCheck"
+        return [*found, f"{inside}::actors"]
+    composite: bool | None = None
+    for owners, base, needs_composite in _places(node.kind):
+        if owner.kind in owners:
+            if needs_composite and composite is None:
+                composite = is_composite(node)
+            if not needs_composite or composite:
+                found.append(base)
+    return found

@@ -1,0 +1,363 @@
+"""Looking names up: what a namespace owns, inherits and imports (KerML 8.2.3.5)."""
+
+from collections.abc import Callable, Iterator
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import contexts
+from sysmlc.language.names.contents import NAMESPACES, TYPES, Owned, owned
+from sysmlc.language.names.filters import passes
+from sysmlc.language.names.results import result
+from sysmlc.language.tree import Node, Reference, Relation
+
+Hits = tuple[Node, ...]
+"""Members found by one name, the nearest first; an alias is its Membership node."""
+_NONE: Hits = ()
+_IMPORTS = kinds_of("Import")
+_GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+"""Relations whose target gives its members to the node that has them."""
+
+
+class Lookup:
+    """Finds what names lead to, each once; ``roots`` gives the members of the global scope.
+
+    ``implied`` gives the elements that a type specialises though the text does not say so.
+    References that are being looked up already lead nowhere meanwhile: what was found while one
+    was cut is not remembered, so cycles end and change no other answer.
+    """
+
+    def __init__(
+        self, roots: Callable[[str], Hits], implied: Callable[[Node], list[Node]]
+    ) -> None:
+        self._roots = roots
+        self._implied = implied
+        self._owned: dict[Node, Owned] = {}
+        self._generals: dict[Node, list[Node]] = {}
+        self._inherited: dict[Node, dict[str, Hits]] = {}
+        self._imports: dict[Node, list[Node]] = {}
+        self._imported: dict[tuple[Node, bool], dict[str, Hits]] = {}
+        self._active: set[Reference] = set()
+        self._inheriting: set[Node] = set()
+        self._importing: set[tuple[Node, bool]] = set()
+        self._cuts = 0
+        self._raw: dict[Reference, Node] = {}
+
+    # References
+
+    def target(self, node: Node, relation: Relation) -> Node | None:
+        """The element that a relation of ``node`` leads to; None when a name leads nowhere."""
+        reference = relation.reference
+        if reference.targets is not None:
+            return reference.target
+        if reference in self._active:
+            self._cuts += 1
+            return None
+        before = self._cuts
+        self._active.add(reference)
+        targets = self._follow(node, relation)
+        self._active.discard(reference)
+        if len(targets) == len(reference.chain) or self._cuts == before or not self._active:
+            reference.targets = targets
+        return targets[-1] if len(targets) == len(reference.chain) else None
+
+    def _follow(self, node: Node, relation: Relation) -> list[Node]:
+        """The element of each link of the chain, as far as they are found."""
+        reference = relation.reference
+        wanted = contexts.WANTED.get(relation.kind)
+        last = len(reference.chain) - 1
+        start = contexts.start(node, relation)
+        found: list[Node] = []
+        for index, names in enumerate(reference.chain):
+            kinds = wanted if index == last else contexts.WANTED["Subsetting"]
+            if index:
+                hit = self.descend(found[-1], names, 0, kinds)
+            elif start.operand is not None:
+                scope = result(start.operand, self)
+                hit = self.descend(scope, names, 0, kinds) if scope else None
+            else:
+                hit = self.search(start, names, kinds)
+            if hit is None:
+                break
+            if index == last:
+                self._raw[reference] = hit
+            element = self.element(hit)
+            if element is None:
+                break
+            found.append(element)
+        return found
+
+    def membership(self, node: Node, relation: Relation) -> Node | None:
+        """Like ``target``, but an alias stays one: imports bring its name."""
+        element = self.target(node, relation)
+        return self._raw.get(relation.reference, element) if element else None
+
+    def element(self, hit: Node) -> Node | None:
+        """What a member stands for: the element of an alias, else the member itself."""
+        if hit.kind != "Membership":
+            return hit
+        return next((self.target(hit, r) for r in hit.relations if r.kind == "Membership"), None)
+
+    # Names
+
+    def search(
+        self, start: contexts.Start, names: tuple[str, ...], kinds: frozenset[str] | None
+    ) -> Node | None:
+        """The member that a qualified name leads to from a scope, outwards."""
+        first, scope, inherited = names[0], start.scope, start.inherited
+        if first == "$" and len(names) > 1:
+            return self._among(self._roots(names[1]), names, 1, kinds)
+        while scope is not None:
+            hits: Iterator[Node]
+            if inherited and scope.kind in TYPES:
+                hits = iter(self._general_hits(scope, first))
+            else:
+                hits = self._inside(scope, first, start.without)
+            inherited = False
+            for hit in hits:
+                found = self._take(hit, names, 0, kinds)
+                if found is not None:
+                    return found
+                if len(names) > 1 and self._is_namespace(hit):
+                    return None
+            scope = contexts.outer(scope)
+        return self._among(self._roots(first), names, 0, kinds)
+
+    def descend(
+        self, scope: Node, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+    ) -> Node | None:
+        """The member that the names from ``index`` on lead to, from outside of ``scope``."""
+        return self._among(self.visible(scope, names[index]), names, index, kinds)
+
+    def _among(
+        self, hits: Hits, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+    ) -> Node | None:
+        for hit in hits:
+            found = self._take(hit, names, index, kinds)
+            if found is not None:
+                return found
+        return None
+
+    def _take(
+        self, hit: Node, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+    ) -> Node | None:
+        """``hit`` when it ends the name and is of a wanted kind, else what lies further in it."""
+        element = self.element(hit)
+        if element is None:
+            return None
+        if index + 1 == len(names):
+            return hit if kinds is None or element.kind in kinds else None
+        return self.descend(element, names, index + 1, kinds)
+
+    def _is_namespace(self, hit: Node) -> bool:
+        element = self.element(hit)
+        return element is not None and element.kind in NAMESPACES
+
+    # Members of one namespace
+
+    def owned(self, scope: Node) -> Owned:
+        """What ``scope`` owns, by name."""
+        index = self._owned.get(scope)
+        if index is None:
+            index = self._owned[scope] = owned(scope)
+        return index
+
+    def _inside(self, scope: Node, name: str, without: Node | None) -> Iterator[Node]:
+        """Members by one name as seen from inside: all own ones, inherited, imported."""
+        for hit in self.owned(scope).get(name, _NONE):
+            if hit is not without or name in (hit.name, hit.short):
+                yield hit
+        if scope.kind in TYPES:
+            yield from self.inherited(scope, name)
+        yield from self.imported(scope, name, inside=True)
+
+    def visible(self, scope: Node, name: str) -> Hits:
+        """Members by one name as seen from outside: public own ones, inherited, imported."""
+        hits = [h for h in self.owned(scope).get(name, _NONE) if h.visibility in ("", "public")]
+        if not hits and scope.kind in TYPES:
+            hits += [h for h in self.inherited(scope, name) if h.visibility != "protected"]
+        if not hits:
+            hits += self.imported(scope, name, inside=False)
+        return tuple(hits)
+
+    def inherited(self, scope: Node, name: str) -> Hits:
+        """Members by one name that a type inherits, without those that it redefines."""
+        memo = self._inherited.get(scope)
+        if memo is None:
+            memo = self._inherited[scope] = {}
+        hits = memo.get(name)
+        if hits is not None:
+            return hits
+        if scope in self._inheriting:
+            return _NONE
+        before = self._cuts
+        self._inheriting.add(scope)
+        hits = self._general_hits(scope, name)
+        if hits:
+            hits = tuple(hit for hit in hits if not self._hidden(scope, hit))
+        self._inheriting.discard(scope)
+        if self._cuts == before:
+            memo[name] = hits
+        return hits
+
+    def _general_hits(self, scope: Node, name: str) -> Hits:
+        hits: list[Node] = []
+        for general in self.generals(scope):
+            hits += [hit for hit in self._heritable(general, name) if hit not in hits]
+        if not hits:
+            for general in self._implied(scope):
+                hits += [hit for hit in self._heritable(general, name) if hit not in hits]
+        return tuple(hits) if len(hits) < 2 else self._most_special(hits)
+
+    def _heritable(self, general: Node, name: str) -> Hits:
+        """Members by one name that ``general`` gives to what specialises it."""
+        hits = [h for h in self.owned(general).get(name, _NONE) if h.visibility != "private"]
+        return (
+            tuple(hits)
+            or self.inherited(general, name)
+            or self.imported(general, name, inside=False)
+        )
+
+    def _most_special(self, hits: list[Node]) -> Hits:
+        """Without the members that others of them redefine."""
+        redefined = {general for hit in hits for general in self.redefined(hit)}
+        return tuple(hit for hit in hits if hit not in redefined)
+
+    def redefined(self, feature: Node) -> set[Node]:
+        """What a feature redefines, directly or not."""
+        found: set[Node] = set()
+        waiting = [feature]
+        while waiting:
+            node = waiting.pop()
+            for relation in node.relations:
+                if relation.kind == "Redefinition":
+                    target = self.target(node, relation)
+                    if target is not None and target not in found:
+                        found.add(target)
+                        waiting.append(target)
+        return found
+
+    def _hidden(self, scope: Node, hit: Node) -> bool:
+        """Whether a feature that ``scope`` owns redefines ``hit``."""
+        for member in scope.members:
+            for relation in member.relations:
+                if relation.kind == "Redefinition" and not relation.implied:
+                    name = relation.reference.chain[-1][-1]
+                    if name in (hit.name, hit.short) or hit.name is None:
+                        target = self.target(member, relation)
+                        if target is hit or (target and hit in self.redefined(target)):
+                            return True
+        return False
+
+    def generals(self, node: Node) -> list[Node]:
+        """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
+        known = self._generals.get(node)
+        if known is not None:
+            return known
+        before = self._cuts
+        found: list[Node] = []
+        for relation in node.relations:
+            if relation.kind in _GENERAL and not relation.implied:
+                target = self.target(node, relation)
+                if target is not None and target not in found:
+                    found.append(target)
+        if self._cuts == before:
+            self._generals[node] = found
+        return found
+
+    def conforms(self, node: Node, general: Node) -> bool:
+        """Whether ``node`` specialises ``general`` as the text says, in any number of steps."""
+        seen, waiting = {node}, [node]
+        while waiting:
+            one = waiting.pop()
+            if one is general:
+                return True
+            for other in self.generals(one):
+                if other not in seen:
+                    seen.add(other)
+                    waiting.append(other)
+        return False
+
+    # Imports
+
+    def imports(self, scope: Node) -> list[Node]:
+        """The imports that a namespace owns."""
+        known = self._imports.get(scope)
+        if known is None:
+            known = self._imports[scope] = [m for m in scope.members if m.kind in _IMPORTS]
+        return known
+
+    def imported(self, scope: Node, name: str, *, inside: bool) -> Hits:
+        """Members by one name that a namespace imports; from outside the public ones."""
+        imports = self.imports(scope)
+        if not imports:
+            return _NONE
+        key = (scope, inside)
+        memo = self._imported.get(key)
+        if memo is None:
+            memo = self._imported[key] = {}
+        hits = memo.get(name)
+        if hits is not None:
+            return hits
+        if key in self._importing:
+            self._cuts += 1
+            return _NONE
+        before, first = self._cuts, not self._importing
+        self._importing.add(key)
+        hits = self._gather(scope, imports, name, inside)
+        self._importing.discard(key)
+        if self._cuts == before or (first and not self._active):
+            memo[name] = hits
+        return hits
+
+    def _gather(self, scope: Node, imports: list[Node], name: str, inside: bool) -> Hits:
+        found: list[Node] = []
+        for node in imports:
+            if inside or node.visibility == "public":
+                found += [h for h in self._brought(node, name) if h not in found]
+        conditions = [m for m in scope.members if m.membership == "ElementFilterMembership"]
+        if not conditions:
+            return tuple(found)
+        return tuple(h for h in found if all(passes(c, h, self) for c in conditions))
+
+    def _brought(self, node: Node, name: str) -> Hits:
+        """Members by one name that one import brings."""
+        for member in node.members:
+            if member.kind == "Package":
+                return self.visible(member, name)
+        for relation in node.relations:
+            if relation.kind == "importedMembership":
+                return self._one(node, relation, name)
+            if relation.kind == "importedNamespace":
+                return self._many(node, self.target(node, relation), name)
+        return _NONE
+
+    def _one(self, node: Node, relation: Relation, name: str) -> Hits:
+        hit = self.membership(node, relation)
+        if hit is None:
+            return _NONE
+        names = (hit.name, hit.short) if hit.name or hit.short else (relation.reference.chain[-1][-1],)
+        if name in names:
+            return (hit,)
+        if node.facts.get("isRecursive"):
+            return self._many(node, self.element(hit), name)
+        return _NONE
+
+    def _many(self, node: Node, scope: Node | None, name: str) -> Hits:
+        if scope is None:
+            return _NONE
+        everything = bool(node.facts.get("isImportAll"))
+        hits = tuple(self._inside(scope, name, None)) if everything else self.visible(scope, name)
+        if hits or not node.facts.get("isRecursive"):
+            return hits
+        for nested in self._nested(scope, everything):
+            hits = tuple(self.owned(nested).get(name, _NONE))
+            hits = hits if everything else self.visible(nested, name)
+            if hits:
+                return hits
+        return _NONE
+
+    def _nested(self, scope: Node, everything: bool) -> Iterator[Node]:
+        """The namespaces below ``scope`` that a recursive import searches."""
+        for member in scope.members:
+            if member.kind in NAMESPACES and (everything or member.visibility in ("", "public")):
+                yield member
+                yield from self._nested(member, everything)

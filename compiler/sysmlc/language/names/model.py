@@ -1,0 +1,189 @@
+"""A model with its names resolved, and the questions that others ask about it (KerML 8.2.3.5)."""
+
+from collections.abc import Sequence
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.library import Library
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import implied
+from sysmlc.language.names.contents import FEATURES, TYPES, naming
+from sysmlc.language.names.lookup import Hits, Lookup
+from sysmlc.language.names.unresolved import report
+from sysmlc.language.tree import Document, Node, Reference, Relation
+
+_SPECIALIZATIONS = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+
+
+class Model:
+    """Documents and the library that they refer to; everything is found out when it is asked."""
+
+    def __init__(self, documents: Sequence[Document], library: Library) -> None:
+        self.documents = sorted(documents, key=lambda document: document.path)
+        self.library = library
+        self.lookup = Lookup(self._roots, self.implied_generals)
+        self._by_root = {document.root: document for document in self.documents}
+        self._named: dict[str, list[Node]] = {}
+        for document in self.documents:
+            for member in document.root.members:
+                for name in {member.name, member.short} - {None}:
+                    self._named.setdefault(str(name), []).append(member)
+        self._found: dict[str, Node | None] = {}
+        self._implied: dict[Node, list[Node]] = {}
+        self._supers: dict[Node, dict[Node, None]] = {}
+
+    def _roots(self, name: str) -> Hits:
+        return (*self._named.get(name, ()), *self.library.roots(name))
+
+    # What others ask
+
+    def find(self, qualified_name: str) -> Node | None:
+        """The element with a qualified name such as ``Parts::Part``, in the model or the library."""
+        if qualified_name not in self._found:
+            names = tuple(part.strip("'") for part in qualified_name.split("::"))
+            hits = self._roots(names[0])
+            found = self.lookup._among(hits, names, 0, None)
+            self._found[qualified_name] = self.lookup.element(found) if found else None
+        return self._found[qualified_name]
+
+    def target(self, node: Node, relation: Relation) -> Node | None:
+        """The element that a relation of ``node`` leads to; None when it was not found."""
+        return self.lookup.target(node, relation)
+
+    def generals(self, node: Node) -> list[Node]:
+        """What ``node`` directly specialises, the implied ones last."""
+        written = self.lookup.generals(node)
+        return [*written, *(n for n in self.needed_generals(node) if n not in written)]
+
+    def supers(self, node: Node) -> list[Node]:
+        """``node`` and all that it specialises, directly or not, the nearest first."""
+        known = self._supers.get(node)
+        if known is None:
+            known = {node: None}
+            waiting = [node]
+            while waiting:
+                for general in self._all_generals(waiting.pop(0)):
+                    if general not in known:
+                        known[general] = None
+                        waiting.append(general)
+            self._supers[node] = known
+        return list(known)
+
+    def _all_generals(self, node: Node) -> list[Node]:
+        return [*self.lookup.generals(node), *self.implied_generals(node)]
+
+    def specializes(self, node: Node, general: Node | str) -> bool:
+        """Whether ``node`` is ``general`` or specialises it, in any number of steps."""
+        wanted = self.find(general) if isinstance(general, str) else general
+        return wanted is not None and (node is wanted or wanted in self.supers(node))
+
+    def types(self, node: Node) -> list[Node]:
+        """The types of a feature: its own, else those of what it subsets and redefines."""
+        found: dict[Node, None] = {}
+        waiting, seen = [node], {node}
+        while waiting:
+            for general in self._all_generals(waiting.pop(0)):
+                if general.kind not in FEATURES:
+                    found[general] = None
+                elif general not in seen:
+                    seen.add(general)
+                    waiting.append(general)
+        return [t for t in found if not any(t is not o and t in self.supers(o) for o in found)]
+
+    def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
+        """Members of a namespace: own ones, inherited ones that nothing redefines, imported ones."""
+        from sysmlc.language.names.listing import members
+
+        return members(self, node, inherited=inherited, imported=imported)
+
+    def name(self, node: Node) -> str | None:
+        """The effective name of an element (KerML 8.3.2.1.2): its own, else what gives it one."""
+        seen = {node}
+        while node.name is None:
+            reference = naming(node)
+            if reference is None:
+                return node.short
+            relation = next(r for r in node.relations if r.reference is reference)
+            target = self.lookup.target(node, relation)
+            if target is None or target in seen:
+                return None if target else reference.chain[-1][-1]
+            seen.add(target)
+            node = target
+        return node.name
+
+    def qualified_name(self, node: Node) -> str:
+        """The names from the root to ``node`` with ``::``; a nameless one counts as nothing."""
+        names: list[str] = []
+        at: Node | None = node
+        while at is not None:
+            name = self.name(at)
+            if name is not None:
+                names.append(name)
+            at = at.owner
+        return "::".join(reversed(names))
+
+    def document(self, node: Node) -> Document | None:
+        """The document, of the model or of the library, that ``node`` is in."""
+        while node.owner is not None:
+            node = node.owner
+        found = self._by_root.get(node)
+        if found is None:
+            self._by_root.update((d.root, d) for d in self.library.loaded())
+            found = self._by_root.get(node)
+        return found
+
+    # What the text does not say
+
+    def implied_generals(self, node: Node) -> list[Node]:
+        """All that ``node`` may implicitly specialise, needed or not."""
+        known = self._implied.get(node)
+        if known is None:
+            found = (self.find(name) for _, name in implied.candidates(node))
+            known = [n for n in dict.fromkeys(found) if n is not None and n is not node]
+            self._implied[node] = known
+        return known
+
+    def needed_generals(self, node: Node) -> list[Node]:
+        """What ``node`` implicitly specialises and no other general of it does already."""
+        possible = self.implied_generals(node)
+        written = self.lookup.generals(node)
+        return [
+            one
+            for one in possible
+            if not any(one in self._supers_of(g) for g in written)
+            and not any(other is not one and one in self._supers_of(other) for other in possible)
+        ]
+
+    def _supers_of(self, node: Node) -> dict[Node, None]:
+        self.supers(node)
+        return self._supers[node]
+
+    def add_implied(self) -> None:
+        """Give the nodes of the documents the relations that the text does not say."""
+        for document in self.documents:
+            for node in document.root.walk():
+                if node.kind in TYPES:
+                    node.relations += self._implied_relations(node)
+
+    def _implied_relations(self, node: Node) -> list[Relation]:
+        needed = set(self.needed_generals(node))
+        made = []
+        for kind, name in implied.candidates(node):
+            target = self.find(name)
+            if target in needed:
+                needed.discard(target)
+                reference = Reference((tuple(name.split("::")),))
+                reference.targets = [target]
+                made.append(Relation(kind, reference, implied=True))
+        return made
+
+
+def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
+    """The model of the documents with every reference resolved; what leads nowhere is reported."""
+    model = Model(documents, library)
+    for document in model.documents:
+        for node in document.root.walk():
+            for relation in node.relations:
+                if model.lookup.target(node, relation) is None:
+                    report(model.lookup, document, node, relation, sink)
+    model.add_implied()
+    return model

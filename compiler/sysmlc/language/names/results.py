@@ -1,0 +1,91 @@
+"""Where names after the dot of an expression are looked up: the feature or type of its result."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.contexts import INSTANTIATIONS
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.lookup import Lookup
+
+_FIRST = frozenset({"SelectExpression", "IndexExpression"})
+"""Expressions whose result is like that of their first operand."""
+_FIRST_OPERATORS = frozenset({",", "??", "[", "#"})
+_CASTS = frozenset({"as", "meta"})
+
+
+def result(expression: Node, lookup: "Lookup") -> Node | None:
+    """The feature or type whose members follow a dot after ``expression``; None if unknown."""
+    kind = expression.kind
+    if kind == "FeatureReferenceExpression":
+        return _referent(expression, lookup)
+    if kind == "FeatureChainExpression":
+        return _named(expression, lookup)
+    if kind in _FIRST:
+        return _operand(expression, 0, lookup)
+    if kind == "CollectExpression":
+        return _operand(expression, 1, lookup)
+    if kind == "OperatorExpression":
+        return _operator(expression, lookup)
+    if kind in INSTANTIATIONS:
+        return _invoked(expression, lookup)
+    return None
+
+
+def _named(expression: Node, lookup: "Lookup") -> Node | None:
+    for relation in expression.relations:
+        if relation.kind == "Membership":
+            return lookup.target(expression, relation)
+    return None
+
+
+def _referent(expression: Node, lookup: "Lookup") -> Node | None:
+    body = next((m for m in expression.members if m.kind == "Expression"), None)
+    if body is None:
+        return _named(expression, lookup)
+    last = next((m for m in body.members if m.membership == "ResultExpressionMembership"), None)
+    return result(last, lookup) if last else None
+
+
+def _operand(expression: Node, index: int, lookup: "Lookup") -> Node | None:
+    operands = [m for m in expression.members if m.membership == "ParameterMembership"]
+    return result(operands[index], lookup) if index < len(operands) else None
+
+
+def _operator(expression: Node, lookup: "Lookup") -> Node | None:
+    operator = expression.facts.get("operator")
+    if operator in _CASTS:
+        return _cast(expression, lookup)
+    if operator == "if":
+        return _operand(expression, 1, lookup)
+    return _operand(expression, 0, lookup) if operator in _FIRST_OPERATORS else None
+
+
+def _cast(expression: Node, lookup: "Lookup") -> Node | None:
+    for member in reversed(expression.members):
+        for relation in member.relations:
+            if relation.kind == "FeatureTyping":
+                return lookup.target(member, relation)
+    return None
+
+
+def _invoked(expression: Node, lookup: "Lookup") -> Node | None:
+    """The result parameter of a function or calculation, else the type that is instantiated."""
+    invoked = _named(expression, lookup)
+    if invoked is None or expression.kind == "ConstructorExpression":
+        return invoked
+    return returned(invoked, lookup, set()) or (invoked if invoked.kind not in FEATURES else None)
+
+
+def returned(function: Node, lookup: "Lookup", seen: set[Node]) -> Node | None:
+    """The result parameter that a function or expression owns or inherits."""
+    seen.add(function)
+    for member in function.members:
+        if member.membership == "ReturnParameterMembership":
+            return member
+    for general in lookup.generals(function):
+        found = returned(general, lookup, seen) if general not in seen else None
+        if found is not None:
+            return found
+    return None

@@ -1,0 +1,116 @@
+"""Trees as bytes: a file that was parsed before is not parsed again, its nodes are made when asked."""
+
+import marshal
+import sys
+from pathlib import Path
+from typing import Any
+
+from sysmlc import __version__
+from sysmlc.cache import Cache
+from sysmlc.diagnostics import Sink
+from sysmlc.language.tree import Document, Node, Reference, Relation
+from sysmlc.sources import Source
+
+_Packed = tuple[Any, ...]
+_SIZE = 12
+
+
+class StoredNode(Node):
+    """A node of a stored tree: its members, relations and facts are made when they are asked for."""
+
+    __slots__ = ("_packed",)
+
+    def __init__(self, packed: _Packed, owner: Node | None) -> None:
+        (
+            self.kind,
+            self.name,
+            self.short,
+            self.membership,
+            self.role,
+            self.visibility,
+            self.start,
+            self.end,
+            self.name_start,
+        ) = packed[:9]
+        self.owner = owner
+        self._packed = packed
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "members":
+            made: Any = [StoredNode(packed, self) for packed in self._packed[9]]
+        elif name == "relations":
+            made = [Relation(k, Reference(c, s, e)) for k, c, s, e in self._packed[10]]
+        elif name == "facts":
+            made = dict(self._packed[11])
+        else:
+            raise AttributeError(name)
+        setattr(self, name, made)
+        return made
+
+
+def pack(root: Node) -> bytes | None:
+    """The tree as bytes without its text; None for one that is too deep to be kept."""
+    packed: dict[Node, _Packed] = {}
+    for node in reversed(list(root.walk())):
+        packed[node] = (
+            node.kind,
+            node.name,
+            node.short,
+            node.membership,
+            node.role,
+            node.visibility,
+            node.start,
+            node.end,
+            node.name_start,
+            tuple([packed.pop(member) for member in node.members]),
+            tuple(
+                [
+                    (r.kind, r.reference.chain, r.reference.start, r.reference.end)
+                    for r in node.relations
+                    if not r.implied
+                ]
+            ),
+            tuple(node.facts.items()),
+        )
+    try:
+        return marshal.dumps(packed[root])
+    except ValueError:
+        return None
+
+
+def unpack(data: bytes) -> Node | None:
+    """The tree that ``pack`` made bytes of; None when it is damaged."""
+    try:
+        packed = marshal.loads(data)
+    except (EOFError, TypeError, ValueError):
+        return None
+    whole = isinstance(packed, tuple) and len(packed) == _SIZE
+    return StoredNode(packed, None) if whole else None
+
+
+def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | None) -> Document:
+    """The document of a textual file, from the cache when it was parsed without a finding."""
+    text = source.data.decode("utf-8-sig", "replace")
+    key = f"{source.sha256}-{language}-{_code()}" if cache else ""
+    entry = cache.get(key) if cache else None
+    root = unpack(entry) if entry else None
+    if root is not None:
+        return Document(path, language, root, text, source)
+    from sysmlc.language.text import parse
+
+    before = len(sink)
+    document = parse(text, path, language, sink, source)
+    if cache and len(sink) == before:
+        packed = pack(document.root)
+        if packed:
+            cache.put(key, packed)
+    return document
+
+
+def _code() -> str:
+    """What a stored tree depends on beside the text: Python, our version, the parser's code."""
+    here = Path(__file__).parent
+    files = [here / "tree.py", here / "stored.py", *sorted((here / "text").glob("*.py"))]
+    stats = [file.stat() for file in files]
+    size, newest = sum(s.st_size for s in stats), max(s.st_mtime_ns for s in stats)
+    return f"{sys.version_info.major}.{sys.version_info.minor}-{__version__}-{size:x}-{newest:x}"
