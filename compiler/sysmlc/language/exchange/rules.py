@@ -77,3 +77,69 @@ NO_MODEL = rule(
     wrong="<catalogue/>",
     right='<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"/>',
 )
+CHECKSUM = rule(
+    "SM168",
+    "wrong-checksum",
+    Severity.ERROR,
+    "'{file}' is not the file that project '{project}' was made with: its {algorithm} is {found},"
+    " the project says {expected}",
+    why="A project archive states a checksum of each of its files (KerML 1.0, 10.3) so that damage "
+    "and later changes are noticed. What the file says may not be what was released.",
+    help="get the archive again from where it came from, or pack it anew with its tool",
+    wrong='"checksum": {"Robot.sysml": {"value": "00...", "algorithm": "SHA256"}}',
+    right='"checksum": {"Robot.sysml": {"value": "9f86d081...", "algorithm": "SHA256"}}',
+)
+UNRESOLVED_USAGE = rule(
+    "SM169",
+    "unresolved-usage",
+    Severity.WARNING,
+    "project '{project}' uses '{resource}'{constraint}, {problem}",
+    why="The elements of the used project are missing when its archive or folder is not given: "
+    "names that lead to it will not be found.",
+    help="give the archive or folder of the used project as a further input or as --library",
+    wrong='"usage": [{"resource": "https://example.org/Missing.kpar"}]',
+    right='"usage": [{"resource": "Robots.kpar", "versionConstraint": "1.0.0"}]',
+)
+BAD_PROJECT = rule(
+    "SM752",
+    "bad-project-information",
+    Severity.ERROR,
+    "'{file}' does not describe a project: {problem}",
+    why="A project archive says in .project.json what it is and in .meta.json what its files are "
+    "(KerML 1.0, 10.3). Without them its checksums and usages cannot be examined.",
+    help="pack the archive anew with its tool",
+    wrong='{"version": "1.0.0"}',
+    right='{"name": "Robots", "version": "1.0.0", "usage": []}',
+)
+MISSING_FILE = rule(
+    "SM753",
+    "missing-project-file",
+    Severity.ERROR,
+    "project '{project}' names the file '{file}', which it does not have",
+    why="The index and the checksums of .meta.json name the files of the project (KerML 1.0, "
+    "10.3). A file is missing, so the model is not complete.",
+    help="get the archive again, or pack it anew with its tool",
+    wrong='"index": {"Robots": "Robtos.sysml"}',
+    right='"index": {"Robots": "Robots.sysml"}',
+)
+UNLISTED_FILE = rule(
+    "SM754",
+    "unlisted-project-file",
+    Severity.WARNING,
+    "project '{project}' has no checksum for '{file}'",
+    why="The project has checksums for its other files (KerML 1.0, 10.3): this one was added "
+    "later, or its checksum was forgotten, so nobody can tell whether it is as it was released.",
+    help="pack the archive anew with its tool",
+    wrong='"checksum": {}',
+    right='"checksum": {"Robots.sysml": {"value": "9f86d081...", "algorithm": "SHA256"}}',
+)
+UNKNOWN_ALGORITHM = rule(
+    "SM755",
+    "unknown-checksum-algorithm",
+    Severity.WARNING,
+    "the checksum of '{file}' is not examined: {algorithm} is not known here",
+    why="The file could be damaged without anybody noticing.",
+    help="pack the archive with SHA256",
+    wrong='{"value": "...", "algorithm": "MD6"}',
+    right='{"value": "...", "algorithm": "SHA256"}',
+)
