@@ -158,6 +158,37 @@ def test_layout_files_of_papyrus_start_no_run(watch):
     assert len(watched.built()) == 2
 
 
+NOTATION = """<?xml version="1.0" encoding="UTF-8"?>
+<xmi:XMI xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"
+  xmlns:notation="http://www.eclipse.org/gmf/runtime/1.0.3/notation"
+  xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML">
+ <notation:Diagram xmi:id="_d" type="PapyrusUMLClassDiagram" name="{}">
+  <children xmi:type="notation:Shape" type="Class_Shape">
+   <element xmi:type="uml:Class" href="plant.uml#{}"/></children>
+  <element xmi:type="uml:Model" href="plant.uml#m"/>
+ </notation:Diagram>
+</xmi:XMI>
+"""
+
+
+def test_drawings_of_authors_are_waited_for_too(watch):
+    """First the model is new and the drawing shows what is gone, then there is half a drawing."""
+    files = {
+        "plant.uml": model("Old"),
+        "plant.notation": NOTATION.format("First", "mc").encode(),
+        "plant.di": b"<di/>",
+    }
+    watched = watch(files, "plant.uml", "--diagrams", "author")
+    (watched.folder / "plant.uml").write_bytes(model("New", id="m").replace(b'"mc"', b'"mn"'))
+    in_pieces(watched.folder / "plant.notation", NOTATION.format("Second", "mn").encode(), 0.35)
+    (watched.folder / "plant.di").write_bytes(b"<other/>")
+    watched.until_built("Second")
+    assert watched.said() == ""
+    (watched.folder / "plant.notation").write_text(NOTATION.format("Alone", "mn"))
+    watched.until_built("Alone")
+    assert watched.said() == ""
+
+
 def test_files_that_refer_to_one_another_are_saved_one_after_the_other(watch):
     """Between the two saves a reference leads nowhere; that is not told."""
     refers = '<generalization xmi:id="g" general="{}"/>'
@@ -216,6 +247,42 @@ def test_the_configuration_is_watched_too(watch):
     watched = watch(files, "plant.uml")
     (watched.folder / "sysmlc.toml").write_bytes(b'output = "made"\n')
     watched.until(lambda: (watched.folder / "made" / "graph.json").exists())
+
+
+class Clock:
+    """Time that passes only when somebody sleeps; at some times something is saved."""
+
+    def __init__(self, path, saves):
+        self.now = 0.0
+        self._path, self._saves = path, saves
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+        while self._saves and self._saves[0] <= self.now:
+            self._path.write_bytes(self._path.read_bytes() + b"x")
+            del self._saves[0]
+
+
+def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):
+    path = tmp_path / "a"
+    path.write_bytes(b"")
+    clock = Clock(path, [0.2, 0.4, 0.6, 2.0])
+    monkeypatch.setattr(settling, "time", clock)
+    seen = settling.rested([path], 0.3)
+    assert seen[path][0] == 3
+    assert 0.9 <= clock.now < 1.1
+
+
+def test_files_that_never_rest_are_taken_as_they_are(tmp_path, monkeypatch):
+    path = tmp_path / "a"
+    path.write_bytes(b"")
+    clock = Clock(path, [n / 10 for n in range(1000)])
+    monkeypatch.setattr(settling, "time", clock)
+    settling.rested([path], 0.3)
+    assert 30 <= clock.now < 31
 
 
 def test_rest_is_told_by_size_and_time(tmp_path):

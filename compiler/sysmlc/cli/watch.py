@@ -87,7 +87,8 @@ def _saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
 def _is_input(_change: object, path: str) -> bool:
     """Whether a saved file may be an input; our own outputs must not start the next run.
 
-    Papyrus saves ``.notation`` and ``.di`` beside the model; no output depends on them.
+    Papyrus saves ``.notation`` and ``.di`` beside the model; where outputs depend on the first
+    (``--diagrams author``) it is looked at now and then, as everything is that was read.
     """
     from sysmlc.config import FILE_NAME
     from sysmlc.driver.inputs import SUFFIXES

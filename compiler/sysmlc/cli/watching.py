@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sysmlc.driver import Outcome
 
 _PATIENCE = 5
-"""How many settling times old a save must be before an error in it is believed."""
+"""How many settling times old a save must be before a new finding in it is believed."""
 _ROUNDS = 20
 
 
@@ -33,6 +33,8 @@ class Watch:
         self._named = [path.absolute() for path in named]
         self._paths = dict.fromkeys(self._named)
         self._built: Stamps = {}
+        self._told: frozenset[tuple[str, str]] = frozenset()
+        """Findings of what was compiled last."""
 
     def folders(self) -> list[Path]:
         """Folders whose files are inputs; ends with exit code 2 when one is not there."""
@@ -68,8 +70,9 @@ class Watch:
     def _settled(self) -> "list[tuple[Unit, Outcome]]":
         """What the inputs come to when they have come to rest.
 
-        What was saved while it was compiled is compiled again, and so is what has errors and
-        was saved just now: the tool may be about to write the rest, or the next file.
+        What was saved while it was compiled is compiled again, and so is what has errors, or
+        findings that were not there before, and was saved just now: the tool may be about to
+        write the rest, or the next file.
         """
         from sysmlc.cli import settling
 
@@ -82,11 +85,13 @@ class Watch:
             new = dict.fromkeys(path for _, one in made for path in _read_by(one))
             self._paths |= new
             self._built = {**settling.stamps(new), **before}
-            is_doubtful = any(one.exit_code() for _, one in made)
+            told = _findings(made)
+            is_doubtful = any(one.exit_code() for _, one in made) or not told <= self._told
             if not is_doubtful or not settling.is_fresh(before, patience):
                 break
             if settling.rested(before, patience) == before:
                 break
+        self._told = _findings(made)
         return made
 
 
@@ -117,6 +122,12 @@ def publish(unit: "Unit", made: "Outcome", settings: "Settings") -> bool:
         session.fail(str(problem))
     click.echo(f"{unit.output}: {len(changed)} changed")
     return True
+
+
+def _findings(made: "list[tuple[Unit, Outcome]]") -> frozenset[tuple[str, str]]:
+    """Rules and messages; lines may move without anything being new."""
+    found = (finding.diagnostic for _, one in made for finding in one.findings)
+    return frozenset((one.rule.code, one.message) for one in found)
 
 
 def _read_by(made: "Outcome") -> Iterator[Path]:

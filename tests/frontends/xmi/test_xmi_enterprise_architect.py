@@ -282,5 +282,20 @@ def test_an_export_in_xmi_2_1_is_read_the_same():
     assert content(legacy.graph) == content(new.graph)
 
 
+@pytest.mark.parametrize("name", ["id", "type", "idref"])
+def test_a_file_may_mix_two_versions_of_xmi(name):
+    """Attributes of the older one count as those of the newer, whichever prefix they have."""
+    tank = '<packagedElement xmi:type="uml:Class" xmi:id="EAID_T" name="Tank"/>'
+    owned = '<ownedAttribute xmi:type="uml:Property" xmi:id="EAID_P"><type xmi:idref="EAID_T"/>'
+    model = GATE.format(f"{owned}</ownedAttribute>") + tank
+    text = FILE.format(model=model, extension="", applications="")
+    mixed = text.replace(model, model.replace(f"xmi:{name}=", f"old:{name}=")).replace(
+        "<xmi:XMI ", '<xmi:XMI xmlns:old="http://schema.omg.org/spec/XMI/2.1" ', 1
+    )
+    readings = [read(source(one.encode("cp1252"), "m.xmi")) for one in (text, mixed)]
+    assert readings[1].findings == []
+    assert readings[0].text == readings[1].text
+
+
 def content(graph):
     return sorted((e.kind, e.name, e.owner or "", str(sorted(e.attrs.items()))) for e in graph)
