@@ -1,4 +1,4 @@
-"""From the bytes of a file to the columns of a document, in one pass of the XML parser.
+"""From the bytes of any file to the columns of a document, in one pass of the XML parser.
 
 The handlers here are called for every element of a file: they do the least that they can.
 """
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 FOLDED = ("Description", "Version", "DefaultValue", "Value")
 """Elements that are kept as text of their parent: a third of the elements of a plant."""
 
-_STRUCTURE = frozenset(
+STRUCTURE = frozenset(
     {
         "Attribute",
         "AttributeType",
@@ -44,7 +44,7 @@ class _Kinds(dict[str, _Texts | None]):
 
     def __missing__(self, tag: str) -> _Texts | None:
         name = tag.rpartition(SEPARATOR)[2]
-        own = None if name in _STRUCTURE else self._texts[""]
+        own = None if name in STRUCTURE else self._texts[""]
         self[tag] = kind = self._texts.get(name, own) if name else own
         return kind
 
@@ -58,6 +58,8 @@ def fill(document: "Document", source: Source) -> None:
         document.has_changes = "ChangeMode" in made.intern
         local = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
         document.tags = [local[tag] for tag in document.tags]
+        document.ids = [values.get("ID", "") for values in document.attributes]
+        document.alike = list(range(len(document.tags)))
     finally:
         # The handlers know the parser and the columns: nothing else ends this circle.
         made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None

@@ -115,8 +115,7 @@ class Context:
 
     def id_at(self, document: Document, row: int, owner: str | None) -> str:
         """The same for a row; the graph may have it already."""
-        values = document.attributes[row]
-        id, name = values.get("ID"), values.get("Name", "")
+        id, name = document.ids[row], document.attributes[row].get("Name", "")
         if id:
             return f"{document.name}#{id}" if self.ids.is_repeated(id) else id
         if owner:

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Place, Verdict
-from sysmlc.frontends.caex.columns import FOLDED, fill
+from sysmlc.frontends.caex import columns, pieces
+from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.sources import Source, SourceError
 
 
@@ -19,7 +20,8 @@ class Node:
         self.document = document
         self.row = row
         self.tag = document.tags[row]
-        self.attributes = document.attributes[row]
+        values, id = document.attributes[row], document.ids[row]
+        self.attributes = values if values.get("ID", "") == id else {**values, "ID": id}
 
     @property
     def ordinal(self) -> int:
@@ -111,14 +113,19 @@ class Document:
     folded children, and under the empty name the row's own, for the rows that have some.
     ``has_changes`` tells whether some row may have a ChangeMode. ``elements`` are ids of what
     the rows became in the graph.
+
+    ``ids`` are the IDs, empty where there is none. ``alike`` is the first row with the same tag
+    and attributes, but for the ID; such rows may share ``attributes``, where the ID is empty then.
     """
 
     __slots__ = (
         "_nodes",
+        "alike",
         "attributes",
         "elements",
         "ends",
         "has_changes",
+        "ids",
         "is_built_in",
         "name",
         "ordinals",
@@ -131,10 +138,16 @@ class Document:
     def __init__(self, name: str, is_built_in: bool = False) -> None:
         self.name = name
         self.is_built_in = is_built_in
+        self.clear()
+
+    def clear(self) -> None:
+        """Have no rows."""
         self.tags: list[str] = []
         self.attributes: list[dict[str, str]] = []
         self.parents: list[int] = []
         self.ends: list[int] = []
+        self.ids: list[str] = []
+        self.alike: list[int] = []
         self.ordinals: list[int] = []
         self.texts: dict[str, dict[int, str]] = {tag: {} for tag in ("", *FOLDED)}
         self.verdicts: list[Verdict | None] = []
@@ -181,7 +194,8 @@ class Document:
 def read(source: Source, is_built_in: bool = False) -> Document:
     """The columns of the file. Raises SourceError."""
     document = Document(source.name, is_built_in)
-    fill(document, source)
+    if not pieces.fill(document, source):
+        columns.fill(document, source)
     if document.tags[0] != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
     rows = len(document.tags)

@@ -14,7 +14,7 @@ def own(context: Context, site: Site) -> Type:
     above = site.parent
     graph, document = context.graph, site.document
     owner = own(context, above).id if above is not None else graph[site.instance].owner
-    base = document.attributes[site.row].get("ID") or f"{owner}/{site.name}"
+    base = document.ids[site.row] or f"{owner}/{site.name}"
     made = _add(context, site, f"{base}#class", Kind.CLASS, owner, subkind="internal-element")
     made.attrs["role"] = "block"
     site.own = Type(made.id, document, site.row, Family.SYSTEM_UNIT)

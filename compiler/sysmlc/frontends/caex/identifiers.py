@@ -27,11 +27,11 @@ class Identifiers:
         self._paths: bool | None = None
         self._lower: str | None = None
         self._asked = 0
-        written = [values.get("ID") for one in documents for values in one.attributes]
+        written = [id for one in documents for id in one.ids]
         self._without = [number for number, id in enumerate(written) if not id]
         self._know(written)
 
-    def _know(self, written: list[str | None]) -> None:
+    def _know(self, written: list[str]) -> None:
         numbers = {id: n for n, id in enumerate(written) if id}
         if len(numbers) < len(written) - len(self._without):
             numbers = {}

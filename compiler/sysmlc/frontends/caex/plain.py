@@ -70,7 +70,7 @@ class Plain:
             values.get("Unit", ""),
         )
         shape = self._shapes[stated] if stated in self._shapes else self._shape(stated, row)
-        if shape is None or values.get("ID") or row in texts["DefaultValue"]:
+        if shape is None or document.ids[row] or row in texts["DefaultValue"]:
             return False
         if owner.base is not None and owner.base.find("Attribute", name) is not None:
             return False

@@ -17,32 +17,26 @@ from sysmlc.frontends.caex.vocabulary import Family, reader_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.reference import End
 
-_Stated = tuple[str | None, ...]
-
 # To look a member of an enumeration up takes ten times as long as to look these up.
 _MAPPED = Verdict.MAPPED
 _SLOT = Kind.SLOT
 _INSTANCE_OF = Edge.INSTANCE_OF
 
-_NO_ROW = {"": ""}
-"""Attributes that no row has."""
-
 
 class _Known:
     """An attribute of a class, and how instances repeat it."""
 
-    __slots__ = ("_inner", "alike", "element", "member", "read", "template", "text")
+    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "text")
 
     def __init__(self, context: Context, member: Member) -> None:
         node = member.node
         self.member = member
         self.element = context.graph[member.id]
+        self.name = node.name
         self.text = node.text("Value")
         self.read = reader_of(node.attributes.get("AttributeDataType", ""))
-        self.template = _NO_ROW
-        """Attributes of the last row that said the same: nearly all rows have equal ones."""
-        self.alike: set[_Stated] = set()
-        """What rows stated that said no more than the class."""
+        self.alike: set[int] = set()
+        """Rows that state no more than the class, and with each all that are like it."""
         self._inner: dict[str, _Known | None] = {}
 
     def inner(self, context: Context, name: str) -> "_Known | None":
@@ -57,11 +51,13 @@ class _Known:
 class _Plan:
     """The attributes and interfaces that a class has, inherited ones included, by name."""
 
-    __slots__ = ("attributes", "interfaces")
+    __slots__ = ("attributes", "interfaces", "steps")
 
     def __init__(self, context: Context, type: Type | None) -> None:
         self.attributes: dict[str, _Known] = {}
         self.interfaces: dict[str, str] = {}
+        self.steps: dict[int, _Known | str] = {}
+        """The attribute, or the port, that rows repeat: by the first row that says the same."""
         for one in reversed(list(type.chain())) if type is not None else ():
             for (tag, name), member in one.members.items():
                 if tag == "Attribute":
@@ -87,83 +83,81 @@ class Swift:
 
     def lower(self, site: Site) -> None:
         """The members of an internal element."""
-        declared, document, context = site.declared, self._document, self._context
-        plan = self._plans.get(declared) or self._plan(declared)
-        tags, attributes, verdicts = document.tags, document.attributes, document.verdicts
-        known_attributes, ends, odd = plan.attributes, document.ends, self._odd
-        values_of = document.texts["Value"]
+        declared, document = site.declared, self._document
+        steps = (self._plans.get(declared) or self._plan(declared)).steps
+        alike, ends, odd, verdicts = document.alike, document.ends, self._odd, document.verdicts
+        value_of, ids, elements = document.texts["Value"].get, document.ids, document.elements
         for row in site.members:
-            tag, values = tags[row], attributes[row]
-            name = values.get("Name", "")
-            is_read = False
-            if tag == "Attribute":
-                known = known_attributes.get(name)
-                if known is None:
-                    is_read = self._plain.attribute(site.own or own(context, site), row)
-                elif ends[row] > row + 1:
-                    is_read = self._structure(site, row, known)
-                elif row in odd:
-                    pass
-                elif (alike := values == known.template) or self._repeats(row, known):
-                    is_read = True
-                    if alike:
-                        attributes[row] = known.template
-                    verdicts[row] = _MAPPED
-                    text = values_of.get(row)
-                    if text is not None and text != known.text:
-                        self._slot(site, row, name, known, text)
-            elif tag == "ExternalInterface":
-                is_read = self._interface(site, row, plan.interfaces.get(name))
-            elif tag == "InternalLink":
-                # Links come when all that they can lead to is there.
-                is_read = True
-            if not is_read:
-                members.lower_one(context, site, document.node(row))
+            known = steps.get(alike[row])
+            if known is None or ends[row] > row + 1 or row in odd:
+                self._otherwise(site, row)
+                continue
+            verdicts[row] = _MAPPED
+            if isinstance(known, str):
+                elements[row] = known
+                if ids[row]:
+                    site.interface_ids.append((known, ids[row]))
+            else:
+                text = value_of(row)
+                if text is not None and text != known.text:
+                    self._slot(site, row, known, text)
+
+    def _otherwise(self, site: Site, row: int) -> None:
+        """A row that says more, or what no row of its class said before."""
+        document, context = self._document, self._context
+        plan, tag = self._plans[site.declared], document.tags[row]
+        name, is_read = document.attributes[row].get("Name", ""), False
+        if tag == "Attribute":
+            known = plan.attributes.get(name)
+            if known is None:
+                is_read = self._plain.attribute(site.own or own(context, site), row)
+            else:
+                is_read = self._structure(site, row, known)
+                if is_read and document.ends[row] == row + 1:
+                    plan.steps[document.alike[row]] = known
+        elif tag == "ExternalInterface":
+            is_read = self._interface(site, row, plan)
+        elif tag == "InternalLink":
+            # Links come when all that they can lead to is there.
+            is_read = True
+        if not is_read:
+            members.lower_one(context, site, document.node(row))
 
     def _plan(self, declared: Type | None) -> _Plan:
         plan = self._plans[declared] = _Plan(self._context, declared)
         return plan
 
-    def _interface(self, site: Site, row: int, port: str | None) -> bool:
+    def _interface(self, site: Site, row: int, plan: _Plan) -> bool:
         """An interface: the port that the class has, or a new one; False when more is said."""
-        document = self._document
+        document, values = self._document, self._document.attributes[row]
+        port = plan.interfaces.get(values.get("Name", ""))
         if port is None:
             return self._plain.interface(site.own or own(self._context, site), row)
         if document.ends[row] > row + 1:
             return False
-        path = document.attributes[row].get("RefBaseClassPath")
+        path = values.get("RefBaseClassPath")
         if path and self._context.known(path, Family.INTERFACE, document) is None:
             return False
+        plan.steps[document.alike[row]] = port
         document.verdicts[row] = _MAPPED
         document.elements[row] = port
-        id = document.attributes[row].get("ID")
-        if id:
-            site.interface_ids.append((port, id))
+        if document.ids[row]:
+            site.interface_ids.append((port, document.ids[row]))
         return True
 
     def _repeats(self, row: int, known: _Known) -> bool:
         """Whether a row says what the class says, but for its value and rows inside."""
         document = self._document
-        values = document.attributes[row]
         if row in self._odd:
             return False
-        if values == known.template:
-            document.attributes[row] = known.template
-            return True
-        stated = (
-            values.get("Unit"),
-            values.get("AttributeDataType"),
-            values.get("RefAttributeType"),
-        )
-        if stated not in known.alike:
+        alike = document.alike[row]
+        if alike not in known.alike:
             node, context = document.node(row), self._context
-            path = (stated[2] or "").strip()
+            path = node.attributes.get("RefAttributeType", "").strip()
             leads = not path or isinstance(context.look_up(path, Family.ATTRIBUTE, document), Type)
             if not leads or says_more(context.types, document, node, known.member):
                 return False
-            known.alike.add(stated)
-        if "ID" not in values:
-            known.template = values
+            known.alike.add(alike)
         return True
 
     def _structure(self, site: Site, top: int, known: _Known) -> bool:
@@ -187,21 +181,21 @@ class Swift:
             document.verdicts[row] = _MAPPED
             text = document.texts["Value"].get(row)
             if text is not None and text != one.text:
-                slot = self._slot(site, row, attributes[row].get("Name", ""), one, text)
+                slot = self._slot(site, row, one, text)
                 for outer in path:
                     self._edges.append(Edge.PATH)
                     self._slots.append(slot)
                     self._features.append(outer)
         return True
 
-    def _slot(self, site: Site, row: int, name: str, known: _Known, text: str) -> Element:
+    def _slot(self, site: Site, row: int, known: _Known, text: str) -> Element:
         """A slot for a value that the class does not give."""
         document, context = self._document, self._context
         owner = site.instance or instance(context, site)
         slot = None
-        if not document.attributes[row].get("ID"):
+        if not document.ids[row]:
+            name, ordinal = known.name, document.ordinals[row]
             id = f"{owner}/{name or 'Attribute'}"
-            ordinal = document.ordinals[row]
             slot = context.graph.new(id, _SLOT, name, owner, ordinal, document.name)
         if slot is None:
             slot = context.add_at(_SLOT, document, row, owner)

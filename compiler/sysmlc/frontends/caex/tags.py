@@ -1,0 +1,133 @@
+"""Start tags as they are written, read once each: what they state, apart from IDs, comes again."""
+
+import re
+from typing import TypeVar
+
+from sysmlc.frontends.caex.columns import STRUCTURE
+
+Tag = tuple[str, dict[str, str], bool, bool, int]
+"""Local name; attributes; whether it has an end tag of its own; whether text of the element is
+listened to; the first row that said it."""
+
+_Shape = tuple[str, tuple[str, ...], bool, bool]
+"""What tags have in common that differ in values only: name, names of attributes, and as above."""
+
+_K = TypeVar("_K")
+_V = TypeVar("_V")
+
+_REMEMBERED = 1 << 14
+"""So many tags are remembered: a file whose tags all differ must not fill the memory."""
+
+_UNLIKE = "Internal"
+"""How tags start of which hardly two are alike."""
+
+_TAG = re.compile(r'([^\s/>"\'=!?]+)((?:\s+[^\s=>"\']+\s*=\s*"[^"]*")*)\s*(/?)>(.*)', re.DOTALL)
+_NAME = re.compile(r'([^\s=>"\']+)\s*=\s*"[^"]*"')
+_REFERENCE = re.compile(r"&(?:#x([0-9a-fA-F]+)|#([0-9]+)|(\w+));")
+_NAMED = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
+_SPACES = str.maketrans("\t\n", "  ")
+
+
+class NotPlainError(Exception):
+    """The file says what this way of reading does not know."""
+
+
+class Reader:
+    """Reads start tags that are not known yet."""
+
+    def __init__(self) -> None:
+        self.known: dict[str, Tag] = {}
+        """Tags without an ID, by their text."""
+        self._with_id: dict[tuple[str, str], Tag] = {}
+        """Tags with an ID, by their text before it and behind it."""
+        self._shapes: dict[tuple[str, ...], _Shape] = {}
+        self.has_changes = False
+
+    def read(self, piece: str, row: int) -> tuple[Tag, str]:
+        """What a tag says and its ID, which is empty in attributes that several rows share.
+
+        Raises NotPlainError.
+        """
+        if piece.startswith(_UNLIKE):
+            tag = self._parsed(piece, row)
+            return tag, tag[1].get("ID", "")
+        head, sign, rest = piece.partition(' ID="')
+        id, _, tail = rest.partition('"')
+        known = self._with_id.get((head, tail)) if sign else None
+        if known is not None and _is_plain(id):
+            return known, id
+        tag = self._parsed(piece, row)
+        values = tag[1]
+        found = values.get("ID", "")
+        if tag[3]:
+            return tag, found
+        if "ID" not in values:
+            _remember(self.known, piece, tag)
+        elif sign and found == id:
+            values["ID"] = ""
+            _remember(self._with_id, (head, tail), tag)
+        return tag, found
+
+    def _parsed(self, piece: str, row: int) -> Tag:
+        """What a tag says, as others of its shape do."""
+        parts = piece.split('"')
+        key = tuple(parts[::2])
+        shape = self._shapes.get(key)
+        if shape is None:
+            shape = self._shape(piece)
+            _remember(self._shapes, key, shape)
+        name, names, is_empty, has_text = shape
+        values = dict(zip(names, parts[1::2], strict=False))
+        values.pop("xmlns", None)
+        if not _is_plain("".join(values.values())):
+            values = {name: _value(text) for name, text in values.items()}
+        return name, values, is_empty, has_text, row
+
+    def _shape(self, piece: str) -> _Shape:
+        """The shape of a tag."""
+        found = _TAG.fullmatch(piece)
+        if found is None:
+            raise NotPlainError
+        names = tuple(_NAME.findall(found[2]))
+        if any(":" in name for name in names):
+            raise NotPlainError
+        self.has_changes = self.has_changes or "ChangeMode" in names
+        name = found[1].rpartition(":")[2]
+        return name, names, bool(found[3]), name not in STRUCTURE
+
+
+def text_in(piece: str) -> str:
+    """The text behind a start tag."""
+    head, _, text = piece.partition(">")
+    if '"' in head:
+        found = _TAG.fullmatch(piece)
+        text = found[4] if found else ""
+    return without_references(text)
+
+
+def without_references(text: str) -> str:
+    """The text with the characters that are referred to."""
+    return _REFERENCE.sub(_character, text) if "&" in text else text
+
+
+def _character(reference: re.Match[str]) -> str:
+    hexadecimal, decimal, name = reference.groups()
+    if name:
+        return _NAMED[name]
+    return chr(int(hexadecimal, 16) if hexadecimal else int(decimal))
+
+
+def _is_plain(value: str) -> bool:
+    """Whether the value of an attribute means what is written: no reference, no line end."""
+    return "&" not in value and value.isprintable()
+
+
+def _value(text: str) -> str:
+    """What the text of an attribute means: white space is blanks, unless it is referred to."""
+    return text if _is_plain(text) else without_references(text.translate(_SPACES))
+
+
+def _remember(known: dict[_K, _V], key: _K, value: _V) -> None:
+    if len(known) >= _REMEMBERED:
+        known.clear()
+    known[key] = value

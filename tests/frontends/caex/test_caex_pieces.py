@@ -1,0 +1,157 @@
+"""A plainly written file is cut at its tags, any other goes through the parser: columns agree."""
+
+import random
+import re
+
+import pytest
+
+from sysmlc.frontends.caex import columns, pieces
+from sysmlc.frontends.caex.columns import FOLDED
+from sysmlc.frontends.caex.document import Document
+from sysmlc.sources import Source
+
+PLANT = """\
+<?xml version="1.0" encoding="utf-8"?>
+<CAEXFile xmlns="http://www.dke.de/CAEX" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" \
+xsi:schemaLocation="CAEX.xsd" SchemaVersion="3.0" FileName="plant.aml">
+  <AdditionalInformation>
+    <WriterHeader><WriterName>sysmlc &amp; others</WriterName>, more</WriterHeader>
+  </AdditionalInformation>
+  <InstanceHierarchy Name="Plant">
+    <Version>1.0</Version>
+    <InternalElement Name="A" ID="a">
+      <Description>first &lt;of&gt; &#x41;&#66;</Description>
+      <Attribute Name="x" AttributeDataType="xs:double" ID="i1"><Value>1</Value></Attribute>
+      <Attribute Name="x" AttributeDataType="xs:double" ID="i2"><Value/></Attribute>
+      <Attribute Name="y"><DefaultValue> 2 </DefaultValue><Value>3</Value></Attribute>
+      <Attribute Name="z"><Value>3</Value><Value>4</Value></Attribute>
+      <Attribute Name="y"><Value>5</Value></Attribute>
+      <Attribute Name="x > y" ID="&quot;q&quot;"/>
+      <ExternalInterface Name="p" ID="p1" RefBaseClassPath="L/P"/>
+      <ExternalInterface Name="p" ID="p2" RefBaseClassPath="L/P"/>
+      <ExternalInterface Name="p" ID="&lt;p3&gt;" RefBaseClassPath="L/P" ChangeMode="Change"/>
+      <InternalLink Name="l" RefPartnerSideA="p1" RefPartnerSideB="p2"/>
+      <InternalLink Name="l &amp; m" RefPartnerSideA="p1" RefPartnerSideB="p2"/>
+    </InternalElement>
+  </InstanceHierarchy>
+</CAEXFile>
+"""
+
+
+def read(text, by):
+    document = Document("plant.aml")
+    by(document, Source("plant.aml", text.encode() if isinstance(text, str) else text))
+    return document
+
+
+def said(document):
+    rows = range(len(document.tags))
+    document.verdicts, document.elements = [None] * len(rows), [""] * len(rows)
+    return (
+        [
+            (node.tag, node.attributes, node.texts, node.ordinal)
+            for node in map(document.node, rows)
+        ],
+        document.parents,
+        document.ends,
+        document.ids,
+        document.has_changes,
+    )
+
+
+def agree(text):
+    assert pieces.fill(Document("plant.aml"), Source("plant.aml", text.encode()))
+    assert said(read(text, pieces.fill)) == said(read(text, columns.fill))
+
+
+WRITTEN = {
+    "as it is": lambda text: text,
+    "with a byte order mark": lambda text: "\ufeff" + text,
+    "without declaration": lambda text: text.partition("\n")[2],
+    "with line ends of Windows": lambda text: text.replace("\n", "\r\n"),
+    "with line ends of old Macs": lambda text: text.replace("\n", "\r"),
+    "in one line": lambda text: re.sub(r">\s+<", "><", text),
+    "with tabs": lambda text: text.replace("  ", "\t"),
+    "with comments": lambda text: text.replace("<Attribute", "<!-- <Value> --><Attribute"),
+    "with comments in texts": lambda text: text.replace("first", "fi<!-- > -->rst"),
+    "with attributes in lines": lambda text: text.replace(" ID=", "\n\tID="),
+    "with white space in values": lambda text: text.replace('="x', '="\n\tx'),
+    "with prefixes": lambda text: re.sub(r"<(/?)(\w)", r"<\1c:\2", text.replace("s=", "s:c=", 1)),
+    "with blanks in tags": lambda text: text.replace('">', '" >').replace("/>", " />"),
+    "with letters of other scripts": lambda text: text.replace('"A"', '"Förderer \u6a5f"'),
+    "with text between elements": lambda text: text.replace("</Attribute>", "</Attribute>more"),
+    "with a namespace below": lambda text: text.replace("<WriterHeader", '<WriterHeader xmlns=""'),
+}
+
+
+@pytest.mark.parametrize("write", WRITTEN.values(), ids=WRITTEN)
+def test_plain_files_have_the_same_columns_in_both_ways(write):
+    agree(write(PLANT))
+
+
+NOT_PLAIN = {
+    "CDATA": lambda text: text.replace("first", "<![CDATA[<Value>]]>"),
+    "a processing instruction": lambda text: text.replace("<Version", "<?tool <x> ?><Version"),
+    "single quotes": lambda text: text.replace('"x > y"', "'x \" ID=\"5'"),
+    "an attribute with prefix": lambda text: text.replace('="y"', '="y" xsi:type="T"'),
+    "elements in a value": lambda text: text.replace(">5<", "><b>5</b><"),
+    "another encoding": lambda text: text.replace("utf-8", "iso-8859-1"),
+    "a fault": lambda text: text.replace("</Attribute>", "", 1),
+    "a DOCTYPE": lambda text: text.replace("<CAEXFile", "<!DOCTYPE x><CAEXFile", 1),
+    "a root of another kind": lambda text: text.replace("CAEXFile", "Plant"),
+    "an empty root": lambda text: '<CAEXFile SchemaVersion="3.0"/>',
+}
+
+
+@pytest.mark.parametrize("write", NOT_PLAIN.values(), ids=NOT_PLAIN)
+def test_files_that_are_not_plain_are_left_to_the_parser(write):
+    document = Document("plant.aml")
+    assert not pieces.fill(document, Source("plant.aml", write(PLANT).encode()))
+    assert not document.tags
+    assert not any(document.texts.values())
+
+
+def test_a_file_that_is_too_deep_is_left_to_the_parser():
+    depth = 600
+    text = "<CAEXFile>" + "<InternalElement>" * depth + "</InternalElement>" * depth + "</CAEXFile>"
+    assert not pieces.fill(Document("deep.aml"), Source("deep.aml", text.encode()))
+
+
+def test_text_that_is_no_utf_8_is_left_to_the_parser():
+    data = PLANT.encode("utf-16")
+    assert not pieces.fill(Document("plant.aml"), Source("plant.aml", data))
+
+
+def test_rows_that_say_the_same_but_for_the_id_share_their_attributes():
+    document = read(PLANT, pieces.fill)
+    one, other = (document.ids.index(id) for id in ("p1", "p2"))
+    assert document.attributes[one] is document.attributes[other]
+    assert document.alike[one] == document.alike[other] == one
+    assert document.node(other).attributes == {"Name": "p", "ID": "p2", "RefBaseClassPath": "L/P"}
+
+
+TAGS = ("InternalElement", "Attribute", "Value", "Description", "Revision", "InternalLink", "Note")
+VALUES = ("", "a", "a > b", "&amp;", "\n", "ID=", "é")
+
+
+def some_xml(chance, depth=0):
+    """A random element: any tag inside any other, with texts between them."""
+    tag = chance.choice(TAGS)
+    names = chance.sample(("Name", "ID", "Unit", "xmlns"), chance.randint(0, 2))
+    start = tag + "".join(f' {name}="{chance.choice(VALUES)}"' for name in names)
+    if chance.random() < 0.2:
+        return f"<{start}/>"
+    is_folded = tag in FOLDED and chance.random() < 0.95
+    count = 0 if is_folded or depth > 3 else chance.randint(0, 3)
+    inside = (some_xml(chance, depth + 1) + chance.choice(VALUES) for _ in range(count))
+    return f"<{start}>{chance.choice(VALUES)}{''.join(inside)}</{tag}>"
+
+
+def test_random_files_have_the_same_columns_or_are_left_to_the_parser():
+    chance, plain = random.Random(4), 0
+    for _ in range(600):
+        text = "<CAEXFile>" + "".join(some_xml(chance) for _ in range(3)) + "</CAEXFile>"
+        if pieces.fill(Document("x"), Source("x", text.encode())):
+            plain += 1
+            assert said(read(text, pieces.fill)) == said(read(text, columns.fill)), text
+    assert plain > 100
