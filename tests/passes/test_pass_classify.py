@@ -139,3 +139,11 @@ def test_level_of_the_nearest_general_classifier_is_inherited():
 
 def test_role_that_a_front_end_gave_stays_without_a_stereotype():
     assert refined('Class x "X" role="block"', "classify")[0]["x"].role == "block"
+
+
+def test_a_requirement_has_its_text_from_the_element_where_its_stereotype_says_none():
+    """Enterprise Architect may tell the stereotype in one place and its tags in another."""
+    graph, _ = refined(
+        applied('Class x "X" tag.id="R1" tag.text="shall hold"', "Requirement", SPARX), "classify"
+    )
+    assert (graph["x"].attrs["req_id"], graph["x"].attrs["text"]) == ("R1", "shall hold")

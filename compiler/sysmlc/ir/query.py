@@ -74,7 +74,8 @@ def tag(graph: Graph, element: Element, name: str) -> AttrValue:
     """First tagged value of this name on the element, or None; an exact name goes first.
 
     MagicDraw writes ``Text`` and ``Id`` where Papyrus writes ``text`` and ``id``, so that case
-    is ignored when no name fits exactly.
+    is ignored when no name fits exactly. Enterprise Architect may tell tags of the element
+    itself, beside a stereotype that has none.
     """
     found = applications(graph, element)
     for application in found:
@@ -84,7 +85,7 @@ def tag(graph: Graph, element: Element, name: str) -> AttrValue:
         for key, value in application.attrs.items():
             if key.lower() == f"tag.{name.lower()}":
                 return value
-    return None
+    return element.attrs.get(f"tag.{name}")
 
 
 # -- classifiers and features ------------------------------------------------------------------
