@@ -1,0 +1,128 @@
+"""The grammars become tables of an LALR(1) parser, in a form that loads in milliseconds.
+
+Lark builds the tables; nothing of it is needed to use them. This module is run when the package
+is built, and at most once by a user of a checkout.
+"""
+
+import marshal
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+ACCEPT = -1_000_000
+"""The action that ends the run."""
+
+Row = dict[int, int]
+
+
+def tables(grammar: str) -> bytes:
+    """The tables of a grammar, marshalled; see ``sysmlc.language.text.tables`` for their form.
+
+    Raises ``lark.exceptions.GrammarError`` where the grammar is not LALR(1).
+    """
+    from lark import Lark
+    from lark.lexer import Lexer, Token
+
+    class Nothing(Lexer):
+        def __init__(self, _conf: object) -> None: ...
+
+        def lex(self, *_arguments: object) -> Iterator[Token]:
+            return iter(())
+
+    lark = Lark(grammar, parser="lalr", lexer=Nothing, maybe_placeholders=True)
+    table = lark.parser.parser._parse_table  # type: ignore[attr-defined]
+    return marshal.dumps(_compact(table, lark.terminals))
+
+
+def _compact(table: Any, terminals: Any) -> dict[str, object]:
+    texts = {term.name: str(term.pattern.value) for term in terminals if term.pattern is not None}
+    rules = _rules(table)
+    names = sorted(
+        {str(name) for row in table.states.values() for name in row}
+        - {r.origin.name for r in rules}
+    )
+    numbers = {name: number for number, name in enumerate(names, 1)}
+    for rule in rules:
+        numbers.setdefault(rule.origin.name, len(numbers) + 1)
+    order = {rule: number for number, rule in enumerate(rules)}
+    rows, defaults = _rows(table, numbers, order)
+    forms = [_form(rule, numbers) for rule in rules]
+    _skip_units(rows, defaults, forms)
+    return {
+        "start": table.start_states["start"],
+        "types": {name: numbers[name] for name in names},
+        "words": {texts[name]: numbers[name] for name in names if name in texts},
+        "rows": rows,
+        "defaults": defaults,
+        "rules": forms,
+    }
+
+
+def _rules(table: Any) -> list[Any]:
+    found: dict[Any, None] = {}
+    for _, row in sorted(table.states.items()):
+        for name in sorted(row):
+            action, argument = row[name]
+            if action.name == "Reduce":
+                found.setdefault(argument)
+    return list(found)
+
+
+def _rows(table: Any, numbers: Row, order: Any) -> tuple[list[Row], list[int | None]]:
+    rows, defaults = [], []
+    for state, row in sorted(table.states.items()):
+        made = {
+            numbers[name]: argument if action.name == "Shift" else ~order[argument]
+            for name, (action, argument) in sorted(row.items())
+        }
+        reductions = Counter(action for action in made.values() if action < 0)
+        default = reductions.most_common(1)[0][0] if reductions else None
+        made = {key: action for key, action in made.items() if action != default}
+        if state == table.end_states["start"]:
+            made[numbers["$END"]] = ACCEPT
+        rows.append(made)
+        defaults.append(default)
+    return rows, defaults
+
+
+def _form(rule: Any, numbers: Any) -> tuple[int, int, str, tuple[int, ...]]:
+    """Number of its symbol, length, name of its function, places of its arguments on the stack.
+
+    The stack has three entries for each symbol: value, number of the first token, state; its
+    very first entry is None, which stands for what is absent.
+    """
+    length = len(rule.expansion)
+    places = _places(rule)
+    plain = rule.alias is None and length == 1 and len(places) == 1
+    name = "" if plain else str(rule.alias or rule.origin.name)
+    return numbers[rule.origin.name], length, name, places
+
+
+def _places(rule: Any) -> tuple[int, ...]:
+    length = len(rule.expansion)
+    gaps = [False] * length if not rule.options.empty_indices else rule.options.empty_indices
+    places, index = [], 0
+    for absent in gaps:
+        if absent:
+            places.append(0)
+            continue
+        symbol = rule.expansion[index]
+        if rule.options.keep_all_tokens or not (symbol.is_term and symbol.filter_out):
+            places.append(-3 * (length - index))
+        index += 1
+    return tuple(places)
+
+
+def _skip_units(rows: list[Row], defaults: list[int | None], forms: Any) -> None:
+    """Where a state can only reduce a rule that passes one value on, go on to what follows it."""
+    left = {
+        state: forms[~default][0]
+        for state, default in enumerate(defaults)
+        if default is not None and not rows[state] and not forms[~default][2]
+    }
+    for row in rows:
+        for key, action in row.items():
+            target = action
+            while target in left:
+                target = row[left[target]]
+            row[key] = target

@@ -1,0 +1,54 @@
+"""The parser proper: tokens are shifted, rules reduced, each reduction builds its part of the tree."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from sysmlc.language.text.generate import ACCEPT
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.tables import Tables
+
+Action = Callable[..., Any]
+Stack = list[Any]
+"""None, then three entries for each symbol: its value, its first token, the state after it."""
+Rules = list[tuple[int, int, Any, Action | None]]
+
+
+def rules(tables: Tables, actions: Mapping[str, Action]) -> Rules:
+    """The rules with their functions; a rule without a name passes its value on."""
+    return [
+        (symbol, 3 * length, getter, actions[name] if name else None)
+        for symbol, length, name, getter in tables.rules
+    ]
+
+
+def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, at: int) -> int:
+    """Shift and reduce from token ``at`` on; the number of the token that does not fit.
+
+    That is -1 at the end: ``stack[-3]`` has the value of the whole text then. An action is
+    called with the tokens, the number of the token after what it reduces, the number of the
+    first one of that, and the values of its arguments; what is absent is None.
+    """
+    rows, defaults, types = tables.rows, tables.defaults, tokens.types
+    state = stack[-1]
+    while True:
+        step = rows[state].get(types[at])
+        if step is None:
+            step = defaults[state]
+            if step is None:
+                return at
+        if step >= 0:
+            stack += (at, at, step)
+            state = step
+            at += 1
+            continue
+        if step == ACCEPT:
+            return -1
+        symbol, size, getter, action = rules[~step]
+        if action is None:
+            value, begin = stack[-3], stack[-2]
+        else:
+            got = getter(stack)
+            value, begin = action(tokens, at, *got), got[0]
+        del stack[-size:]
+        state = rows[stack[-1]][symbol]
+        stack += (value, begin, state)
