@@ -8,7 +8,7 @@ from html import unescape
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
-from sysmlc.frontends.caex import measures, rules
+from sysmlc.frontends.caex import fitting, measures, rules
 from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
@@ -54,6 +54,7 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
     _report_missing(context, sources)
     context.report_ids()
     measures.report_strange(context)
+    fitting.report(context)
 
 
 def _count(document: Document, counts: FileCoverage) -> None:

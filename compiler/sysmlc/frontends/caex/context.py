@@ -49,6 +49,10 @@ class Context:
         """What adds plain features of the files."""
         self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
+        self.unfit: dict[tuple[Document, str, str], list[int]] = {}
+        """Rows by data type and text: values that it does not have."""
+        self.unknown_types: dict[tuple[Document, str], int] = {}
+        """The first row that names a data type that there is not."""
         self.references: dict[str, bool] = {}
         """Whether texts in the place of class paths are ids."""
         self.shown: dict[tuple[Document, str], Kind | None] = {}

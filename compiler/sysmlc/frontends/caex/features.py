@@ -1,12 +1,20 @@
 """Attributes and external interfaces: value properties and ports of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import constraints, documents, measures, mirrors, ports, special
+from sysmlc.frontends.caex import (
+    constraints,
+    documents,
+    fitting,
+    measures,
+    mirrors,
+    ports,
+    special,
+)
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import Family, value_of
+from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
 
@@ -50,11 +58,15 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         owner.id,
         role="value",
         data_type=data_type,
-        default=None if given is None else value_of(given, data_type),
         default_value=default if default != value else None,
         semantics=_semantics(node),
     )
     declared = _attribute_type(context, node, document)
+    fitting.know(context, document, node.row, data_type)
+    if given:
+        element.attrs["default"] = fitting.value(context, node, given, data_type, declared)
+    if default and default != given:
+        fitting.value(context, node, default, data_type, declared)
     measures.multiply(element.attrs, declared)
     _redefine(context, owner, node, element)
     structure = _structure(context, owner, node, document, element, declared)
@@ -137,7 +149,7 @@ def _interface(context: Context, owner: Type, node: Node, document: Document) ->
     element = context.add(Kind.PORT, node, document, owner.id)
     declared = interface_class(context, node, document)
     _redefine(context, owner, node, element)
-    said = ports.said_of(node)
+    said = ports.said_of(context, node)
     element.attrs.update(said)
     for child in node.of("Attribute"):
         mark(child)

@@ -4,9 +4,10 @@ from functools import lru_cache
 
 from sysmlc.frontends.caex import rules, units
 from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.datatypes import PRIMITIVES, local
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
-from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE, PRIMITIVES
+from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE
 from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
@@ -70,7 +71,7 @@ def complete_type(context: Context, type: Type) -> None:
 @lru_cache(1024)
 def primitive(data_type: str) -> str:
     """UML primitive of an XML Schema data type."""
-    return PRIMITIVES.get(data_type.rpartition(":")[2], "String")
+    return PRIMITIVES.get(local(data_type), "String")
 
 
 def refer(context: Context, edge: Edge, id: str, data_type: str, ordinal: int) -> None:

@@ -1,7 +1,7 @@
 """Attributes and interfaces of internal elements: those of their class, and new ones."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, features, mirrors, ports, special
+from sysmlc.frontends.caex import documents, features, fitting, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
@@ -9,7 +9,7 @@ from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member
-from sysmlc.frontends.caex.vocabulary import Family, value_of
+from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
 REPEATED = frozenset({"Constraint", "RefSemantic"})
@@ -103,7 +103,8 @@ def _value(context: Context, site: Site, node: Node, known: Member, path: _Path)
         return
     owner = instance(context, site)
     data_type = known.node.attributes.get("AttributeDataType", "")
-    slot = context.add(Kind.SLOT, node, site.document, owner, value=value_of(text, data_type))
+    value = fitting.value(context, node, text, data_type, known.type)
+    slot = context.add(Kind.SLOT, node, site.document, owner, value=value)
     context.graph.connect(Edge.INSTANCE_OF, slot.id, known.id)
     _lead(context, slot.id, path)
 
@@ -150,7 +151,7 @@ def _interface(context: Context, site: Site, node: Node) -> None:
 
 def _port_values(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
     """A slot for what the attributes of an interface say here and not in the class."""
-    said = ports.said_of(node)
+    said = ports.said_of(context, node)
     of_class = context.graph[known.id].attrs
     new = {key: value for key, value in said.items() if of_class.get(key) != value}
     for child in node.of("Attribute"):

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, measures, mirrors, ports, special
+from sysmlc.frontends.caex import documents, fitting, measures, mirrors, ports, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
-from sysmlc.frontends.caex.vocabulary import Family, reader_of
+from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.reference import End
 
@@ -80,7 +80,10 @@ class Plain:
             return False
         text = texts["Value"].get(row)
         if text:
-            made.attrs["default"] = text if shape.read is None else shape.read(text)
+            try:
+                made.attrs["default"] = text if shape.read is None else shape.read(text)
+            except ValueError:
+                made.attrs["default"] = self._unfit(row, text, stated[0], shape)
         if shape.target is not None:
             self._sources.append(made)
             self._targets.append(shape.target)
@@ -88,6 +91,10 @@ class Plain:
             measures.refer(self._context, _TYPED_BY, id, stated[0], made.ordinal)
         owner.members["Attribute", name] = Member(id, shape.type, document, row)
         return True
+
+    def _unfit(self, row: int, text: str, stated: str, shape: _Shape) -> AttrValue:
+        data_type = fitting.data_type_of(stated, shape.type)
+        return fitting.unfit(self._context, self._document, row, text, data_type, stated)
 
     def _new(
         self, id: str, name: str, owner: str, row: int, attrs: dict[str, AttrValue]
@@ -114,7 +121,8 @@ class Plain:
                 attrs["data_type"] = data_type
             measures.multiply(attrs, declared)
             target = measures.target(context, document.node(row), document, declared, attrs)
-            shape = _Shape(declared, target, attrs, reader_of(data_type))
+            shape = _Shape(declared, target, attrs, fitting.reader(data_type, declared))
+            fitting.know(context, document, row, data_type)
         self._shapes[stated] = shape
         return shape
 
@@ -146,7 +154,7 @@ class Plain:
         owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
         inside = document.ends[row] - row - 1
         if inside:
-            made.attrs = ports.said_of(document.node(row))
+            made.attrs = ports.said_of(context, document.node(row))
             document.verdicts[row + 1 : row + 1 + inside] = [_MAPPED] * inside
         if shape.meaning:
             self._mean(shape.meaning, owner, made, row)

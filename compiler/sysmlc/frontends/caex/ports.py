@@ -1,21 +1,23 @@
 """What the attributes of an interface say of a port: direction, cardinality, category, values."""
 
+from sysmlc.frontends.caex import fitting
+from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
-from sysmlc.frontends.caex.vocabulary import DIRECTIONS, value_of
+from sysmlc.frontends.caex.vocabulary import DIRECTIONS
 from sysmlc.ir import AttrValue
 
 _CARDINALITY = ("MinOccur", "MaxOccur")
 
 
-def said_of(node: Node) -> dict[str, AttrValue]:
+def said_of(context: Context, node: Node) -> dict[str, AttrValue]:
     """What the attributes of an interface say."""
     said: dict[str, AttrValue] = {}
     for child in node.of("Attribute"):
-        _tell(said, child)
+        _tell(context, said, child)
     return said
 
 
-def _tell(said: dict[str, AttrValue], node: Node) -> None:
+def _tell(context: Context, said: dict[str, AttrValue], node: Node) -> None:
     value = node.text("Value") or node.text("DefaultValue") or ""
     if node.name == "Direction" and value.strip().lower() in DIRECTIONS:
         said["direction"] = DIRECTIONS[value.strip().lower()]
@@ -24,7 +26,7 @@ def _tell(said: dict[str, AttrValue], node: Node) -> None:
     elif node.name == "Category" and value:
         said["category"] = value
     else:
-        _values(said, node)
+        _values(context, said, node)
 
 
 def _cardinality(said: dict[str, AttrValue], node: Node) -> None:
@@ -35,12 +37,13 @@ def _cardinality(said: dict[str, AttrValue], node: Node) -> None:
         said["multiplicity"] = bounds[0] if bounds[0] == bounds[1] else "..".join(bounds)
 
 
-def _values(said: dict[str, AttrValue], top: Node) -> None:
+def _values(context: Context, said: dict[str, AttrValue], top: Node) -> None:
     waiting = [(top, f"value.{top.name}")]
     while waiting:
         node, key = waiting.pop()
         value = node.text("Value")
         value = node.text("DefaultValue") if value is None else value
         if value is not None:
-            said[key] = value_of(value, node.attributes.get("AttributeDataType", ""))
+            data_type = node.attributes.get("AttributeDataType", "")
+            said[key] = fitting.value(context, node, value, data_type, None)
         waiting += [(child, f"{key}.{child.name}") for child in node.of("Attribute")]

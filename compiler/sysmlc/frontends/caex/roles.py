@@ -91,7 +91,7 @@ class _Played:
 def _be_port(context: Context, site: Site) -> None:
     """A port object of CAEX 2.15 (role Port): a part that says what an interface Port says."""
     if site.part and not site.is_known:
-        told = ports.said_of(site.node)
+        told = ports.said_of(context, site.node)
         kept = {key: told[key] for key in PORT_ATTRIBUTES if key in told}
         context.graph.set(context.graph[site.part], subkind="port-object", **kept)
 

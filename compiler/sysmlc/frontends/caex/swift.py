@@ -6,14 +6,14 @@ same result for every row.
 """
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import members
+from sysmlc.frontends.caex import fitting, members
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
-from sysmlc.frontends.caex.vocabulary import Family, reader_of
+from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.reference import End
 
@@ -26,7 +26,7 @@ _INSTANCE_OF = Edge.INSTANCE_OF
 class _Known:
     """An attribute of a class, and how instances repeat it."""
 
-    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "text")
+    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "stated", "text")
 
     def __init__(self, context: Context, member: Member) -> None:
         node = member.node
@@ -34,7 +34,8 @@ class _Known:
         self.element = context.graph[member.id]
         self.name = node.name
         self.text = node.text("Value")
-        self.read = reader_of(node.attributes.get("AttributeDataType", ""))
+        self.stated = node.attributes.get("AttributeDataType", "")
+        self.read = fitting.reader(self.stated, member.type)
         self.alike: set[int] = set()
         """Rows that state no more than the class, and with each all that are like it."""
         self._inner: dict[str, _Known | None] = {}
@@ -199,7 +200,11 @@ class Swift:
             slot = context.graph.new(id, _SLOT, name, owner, ordinal, document.name)
         if slot is None:
             slot = context.add_at(_SLOT, document, row, owner)
-        value: AttrValue = text if known.read is None else known.read(text)
+        try:
+            value: AttrValue = text if known.read is None else known.read(text)
+        except ValueError:
+            data_type = fitting.data_type_of(known.stated, known.member.type)
+            value = fitting.unfit(context, document, row, text, data_type, known.stated)
         if value != "":
             slot.attrs = {"value": value}
         document.elements[row] = slot.id

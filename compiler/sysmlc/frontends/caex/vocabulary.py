@@ -1,9 +1,6 @@
 """Tables: tags of CAEX and what they become (docs/automationml.md)."""
 
-from collections.abc import Callable
 from enum import StrEnum
-
-from sysmlc.ir import AttrValue
 
 
 class Family(StrEnum):
@@ -60,59 +57,5 @@ BASE_INTERFACE = ("AutomationMLInterfaceClassLib", "AutomationMLBaseInterface")
 BASE_ATTRIBUTE = ("AutomationMLBaseAttributeTypeLib",)
 """Paths of the classes that all roles and interfaces of the standard specialise."""
 
-PRIMITIVES = {
-    **dict.fromkeys(("double", "float", "decimal"), "Real"),
-    **dict.fromkeys(
-        ("integer", "int", "long", "short", "byte", "negativeInteger", "nonPositiveInteger"),
-        "Integer",
-    ),
-    **dict.fromkeys(
-        (
-            "nonNegativeInteger",
-            "positiveInteger",
-            "unsignedInt",
-            "unsignedLong",
-            "unsignedShort",
-            "unsignedByte",
-        ),
-        "Integer",
-    ),
-    "boolean": "Boolean",
-}
-"""UML primitive of an XML Schema data type; every other one holds text."""
-
 DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
 """Values of the attribute Direction of an interface (any case)."""
-
-
-def value_of(text: str, data_type: str) -> AttrValue:
-    """The value that a text means in an XML Schema data type; the text where it means none."""
-    read = reader_of(data_type)
-    return text if read is None else read(text)
-
-
-def reader_of(data_type: str) -> Callable[[str], AttrValue] | None:
-    """How values of an XML Schema data type are read; None for texts."""
-    return _READERS.get(PRIMITIVES.get(data_type.rpartition(":")[2], ""))
-
-
-def _real(text: str) -> AttrValue:
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-def _integer(text: str) -> AttrValue:
-    try:
-        return int(text)
-    except ValueError:
-        return text
-
-
-def _boolean(text: str) -> AttrValue:
-    return _TRUTH.get(text.strip().lower(), text)
-
-
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
-_READERS = {"Real": _real, "Integer": _integer, "Boolean": _boolean}

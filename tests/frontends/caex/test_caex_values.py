@@ -1,0 +1,163 @@
+"""Values that are none of their data type, and data types that are none."""
+
+import pytest
+from reading_caex import Read, classes, interfaces, plant, types
+
+from sysmlc.frontends.caex.datatypes import meant, reader_of
+
+VALUES = {
+    "double": (["1.5", "-2e3", " 7 ", "INF", "NaN"], ["two", "1,5", "1 m", "infinity", "1_0"]),
+    "float": (["0"], ["0x1"]),
+    "decimal": (["1.50", "-.5", "+3."], ["1e3", "INF"]),
+    "integer": (["7", "-3", "+0", str(10**30)], ["7.0", "1_0", "seven"]),
+    "nonNegativeInteger": (["0"], ["-1"]),
+    "positiveInteger": (["1"], ["0"]),
+    "negativeInteger": (["-1"], ["0"]),
+    "byte": (["-128", "127"], ["128"]),
+    "unsignedByte": (["255"], ["256", "-1"]),
+    "int": (["2147483647"], ["2147483648"]),
+    "boolean": (["true", "0", " false "], ["True", "yes", "2"]),
+    "dateTime": (
+        ["2026-11-21T13:00:00", "2026-11-21T24:00:00.0Z", "-0044-03-15T12:00:00+01:00"],
+        ["2026-11-21", "2026-11-21 13:00:00", "2026-13-01T00:00:00", "2026-11-21T25:00:00"],
+    ),
+    "date": (["2026-11-21", "2026-11-21Z"], ["21.11.2026", "2014"]),
+    "time": (["13:00:00.5"], ["13:00"]),
+    "duration": (["P1Y2M3DT4H5M6.7S", "-PT5S", "P3D"], ["5 s", "P", "PT", "P1S"]),
+    "gYear": (["2026"], ["26"]),
+    "hexBinary": (["", "0aFF"], ["0a0", "xy"]),
+    "base64Binary": (["aGk=", "aGFsbG8="], ["?"]),
+    "language": (["de-AT"], ["German (Austria)"]),
+}
+FITTING = [(name, text) for name, (good, _) in VALUES.items() for text in good]
+UNFIT = [(name, text) for name, (_, bad) in VALUES.items() for text in bad]
+
+
+@pytest.mark.parametrize(("name", "text"), [pair for pair in FITTING if pair[1]])
+def test_what_xml_schema_has_is_read(name, text):
+    assert is_read(name, text)
+
+
+def is_read(name, text):
+    try:
+        reader_of(f"xs:{name}")(text)
+    except ValueError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize(("name", "text"), UNFIT)
+def test_what_xml_schema_has_not_is_none(name, text):
+    assert not is_read(name, text)
+
+
+@pytest.mark.parametrize("name", ["string", "anyURI", "ID", "token", "no such type", ""])
+def test_any_text_is_a_value_of_the_other_types(name):
+    assert reader_of(f"xs:{name}" if name else "") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "data_type", "value"),
+    [("True", "xs:boolean", True), ("300", "xs:byte", 300), ("1e3", "xs:decimal", 1000.0)],
+)
+def test_what_is_meant_all_the_same_counts(text, data_type, value):
+    assert meant(text, data_type) == value
+
+
+def attribute(data_type, text, more="", tag="Value"):
+    stated = f' AttributeDataType="{data_type}"' if data_type else ""
+    return f'<Attribute Name="a"{stated}{more}><{tag}>{text}</{tag}></Attribute>'
+
+
+def of_class(body):
+    return classes(f'<SystemUnitClass Name="C">{body}</SystemUnitClass>')
+
+
+def of_instance(body):
+    element = f'<InternalElement Name="i" ID="1" RefBaseSystemUnitPath="Lib/C">{body}'
+    return of_class(attribute("xs:double", "1")) + plant(f"{element}</InternalElement>")
+
+
+TOLD = ["SM631: the value 'two' of 'a' is no xs:double"]
+LENGTH = types('<AttributeType Name="L" AttributeDataType="xs:double"/>')
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        of_class(attribute("xs:double", "two")),
+        of_class(attribute("xs:double", "two", tag="DefaultValue")),
+        of_class(f'<Attribute Name="b">{attribute("xs:double", "two")}</Attribute>'),
+        of_instance(attribute("xs:double", "two")),
+        of_instance(attribute("", "two")),
+        LENGTH + of_class(attribute("", "two", ' RefAttributeType="Types/L"')),
+    ],
+    ids=["class", "default", "inner", "instance", "as-the-class-says", "as-the-type-says"],
+)
+def test_a_value_that_is_none_is_told(body):
+    assert Read(body).findings == TOLD
+    assert Read(body.replace("two", "2")).findings == []
+
+
+def test_a_value_that_is_none_is_told_at_its_place():
+    body = of_instance(attribute("", "two"))
+    (found,) = (one for one in Read(body).sink if one.rule.code == "SM631")
+    assert found.subject.place.ordinal == 7
+    assert found.subject.name == "Plant::i::a"
+
+
+def test_one_value_is_told_once_a_file():
+    reading = Read(
+        of_class(attribute("xs:double", "two"))
+        + plant(
+            "".join(
+                f'<InternalElement Name="i{n}" ID="{n}">{attribute("xs:double", "two")}'
+                "</InternalElement>"
+                for n in range(3)
+            )
+        )
+    )
+    assert reading.findings == ["SM631: the value 'two' of 'a' and 3 more is no xs:double"]
+    assert reading.one("Lib::C::a").attrs["default"] == "two"
+
+
+def test_nothing_is_no_value():
+    assert Read(of_class(attribute("xs:double", ""))).findings == []
+
+
+def test_a_value_of_an_interface_and_a_bound_are_told():
+    port = f'<InterfaceClass Name="P">{attribute("xs:int", "two")}</InterfaceClass>'
+    used = of_class(
+        '<ExternalInterface Name="p" RefBaseClassPath="Interfaces/P">'
+        f"{attribute('xs:int', '2.5')}</ExternalInterface>"
+    )
+    assert Read(interfaces(port) + used).findings == [
+        "SM631: the value 'two' of 'a' is no xs:int",
+        "SM631: the value '2.5' of 'a' is no xs:int",
+    ]
+    bound = (
+        '<Attribute Name="a" AttributeDataType="xs:int"><Constraint Name="few">'
+        "<OrdinalScaledType><RequiredMaxValue>many</RequiredMaxValue></OrdinalScaledType>"
+        "</Constraint></Attribute>"
+    )
+    assert Read(of_class(bound)).findings == ["SM631: the value 'many' of 'few' is no xs:int"]
+
+
+@pytest.mark.parametrize(
+    ("data_type", "hint"),
+    [
+        ("xs:datetime", "did you mean 'xs:dateTime'?"),
+        ("xs:complexType", "its values count as text"),
+        ("Integer", "did you mean 'xs:integer'?"),
+    ],
+)
+def test_a_data_type_that_xml_schema_has_not_is_told(data_type, hint):
+    assert Read(of_class(attribute(data_type, "x"))).findings == [
+        f"SM632: the data type '{data_type}' of 'a' is none of XML Schema; {hint}"
+    ]
+
+
+@pytest.mark.parametrize("data_type", ["xs:dateTime", "xsd:string", "anyURI", "xs:IDREF"])
+def test_a_data_type_of_xml_schema_is_known_whatever_its_prefix(data_type):
+    body = of_class(attribute(data_type, "2026-11-21T13:00:00"))
+    assert Read(body).findings == []
