@@ -114,6 +114,17 @@ def test_pin_bounds_in_extensions_of_magicdraw():
 
 
 @pytest.mark.parametrize(
+    ("written", "mode"),
+    [("", "iterative"), ('mode="iterative"', "iterative"), ('mode="parallel"', "parallel")],
+)
+def test_an_expansion_region_is_iterative_unless_it_says_otherwise(written, mode):
+    """UML 2.5.1 clause 16.14; an element of the graph without a mode would be parallel."""
+    region = f'<node xmi:type="uml:ExpansionRegion" xmi:id="r" {written}/>'
+    model = f'<packagedElement xmi:type="uml:Activity" xmi:id="a">{region}</packagedElement>'
+    assert read(papyrus(model)).graph["r"].attrs["mode"] == mode
+
+
+@pytest.mark.parametrize(
     "owned",
     [
         "<ownedAttribute xmi:type='uml:Property' xmi:id='p'>{}</ownedAttribute>",

@@ -27,6 +27,8 @@ def attributes(kind: Kind, subkind: str, type_name: str, feature: str) -> dict[s
         said["subkind"] = metaclasses.hyphenated(feature)
     elif kind is Kind.PSEUDOSTATE and type_name == "Pseudostate":
         said["subkind"] = "initial"
+    elif kind is Kind.STRUCTURED and subkind == "expansion":
+        said["mode"] = v.default("mode")
     elif kind is Kind.CONSTRAINT and feature in v.CONDITIONS:
         said["subkind"] = v.CONDITIONS[feature]
     elif kind is Kind.DEPENDENCY and feature == "roleBinding":
