@@ -4,14 +4,17 @@ from sysmlc.language.exchange.projects import Project, Usage, open_archive, proj
 from sysmlc.language.exchange.reader import read
 from sysmlc.language.exchange.references import ExchangeDocument, link
 from sysmlc.language.exchange.usages import used
+from sysmlc.language.exchange.writer import interchange_path, write
 
 __all__ = [
     "ExchangeDocument",
     "Project",
     "Usage",
+    "interchange_path",
     "link",
     "open_archive",
     "project",
     "read",
     "used",
+    "write",
 ]

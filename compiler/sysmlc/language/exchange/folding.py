@@ -143,7 +143,7 @@ class Folding:
         """A membership that does not own its member: an alias, an initial node, a referent."""
         if owner.kind in NAMING:
             for target in frame.targets.get("memberElement", ()):
-                reference = self._references.add([target], "memberElement", owner.node)
+                reference = self._references.add([target], "memberElement", frame.node)
                 owner.node.relations.append(Relation("Membership", reference))
             return
         node = frame.node

@@ -3,8 +3,8 @@
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.tree import Node
 
-_NAMED_BY = ("Redefinition", "ReferenceSubsetting")
-"""Relations whose target names a feature without a name of its own."""
+_PERFORMANCES = kinds_of("PerformActionUsage")
+_NAMED_BY_REFERENCE = kinds_of("RequirementConstraintMembership") | {"VariantMembership"}
 _FEATURES = kinds_of("Feature")
 _DEEPEST = 100
 
@@ -37,18 +37,23 @@ class Naming:
 def effective(node: Node, depth: int = 0) -> str:
     """The name of an element, else that of the feature which names it, else nothing.
 
-    A feature without a name is called as the one that it redefines (KerML 1.0, 8.3.3.3.4), or
-    as the one that it references, performs or exhibits (SysML 2.0, 8.3.6.4).
+    A feature without a name is called as the first that it redefines (KerML 1.0, 8.3.3.3.4);
+    performances, variants and constraints of requirements as what they reference (SysML 2.0,
+    8.3.6.4, 8.3.17.15, 8.3.20.6).
     """
     if node.name or node.short:
         return node.name or node.short or ""
     if node.kind not in _FEATURES or depth > _DEEPEST:
         return ""
-    for relation in node.relations:
-        if relation.kind in _NAMED_BY:
-            target = relation.reference.target
-            return effective(target, depth + 1) if target else ""
-    return ""
+    kinds = _naming_relations(node)
+    named = next((one for kind in kinds for one in node.relations if one.kind == kind), None)
+    target = named.reference.target if named else None
+    return effective(target, depth + 1) if target else ""
+
+
+def _naming_relations(node: Node) -> tuple[str, ...]:
+    by_reference = node.kind in _PERFORMANCES or node.membership in _NAMED_BY_REFERENCE
+    return ("ReferenceSubsetting", "Redefinition") if by_reference else ("Redefinition",)
 
 
 def _position(node: Node) -> str:

@@ -2,13 +2,14 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.checksums import digest
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, entries
+from sysmlc.values import dataclass
 
 PROJECT, META = ".project.json", ".meta.json"
 MODELS = (".sysml", ".kerml", ".sysmlx", ".kermlx")

@@ -1,7 +1,7 @@
 """References of interchange files: ids become elements, in one file and across files."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from posixpath import dirname, join, normpath
 from urllib.parse import unquote
 
@@ -9,6 +9,7 @@ from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.naming import Naming, shown
 from sysmlc.language.tree import Document, Node, Reference
+from sysmlc.values import dataclass
 
 _Finder = Callable[[str], Node | None]
 """What leads from an id or an href to an element."""

@@ -143,3 +143,25 @@ UNKNOWN_ALGORITHM = rule(
     wrong='{"value": "...", "algorithm": "MD6"}',
     right='{"value": "...", "algorithm": "SHA256"}',
 )
+UNWRITTEN_REFERENCE = rule(
+    "SM758",
+    "unwritten-reference",
+    Severity.WARNING,
+    "'{name}' of '{element}' is not in the interchange file, because it leads nowhere",
+    why="Interchange files refer by id, and an element that was not found has none. The "
+    "relationship is left out with it.",
+    help="resolve the name: the message about it says what was looked for",
+    wrong="part robot : Robto;",
+    right="part robot : Robot;",
+)
+UNWRITABLE_TEXT = rule(
+    "SM759",
+    "unwritable-text",
+    Severity.WARNING,
+    "the '{feature}' of '{element}' has characters that XML cannot have: they are replaced",
+    why="XML 1.0 has no control characters besides tab and line ends, whatever way they are "
+    "written.",
+    help="leave the control characters out",
+    wrong="package 'form\\ffeed';",
+    right="package 'form feed';",
+)

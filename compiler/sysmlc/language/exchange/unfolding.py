@@ -1,0 +1,291 @@
+"""Unfolding: every relationship that the tree folds, as the metamodel has it (KerML 1.0, 8.3)."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.exchange.composition import USAGES, is_composite
+from sysmlc.language.exchange.features import stated
+from sysmlc.language.exchange.folding import ENDS, NAMING, RELATIONS
+from sysmlc.language.metaclasses import is_a, kinds_of
+from sysmlc.language.tree import Fact, Node, Reference, Relation
+
+OWN_ENDS = {
+    "Specialization": "specific",
+    "Subclassification": "subclassifier",
+    "FeatureTyping": "typedFeature",
+    "ConjugatedPortTyping": "typedFeature",
+    "Subsetting": "subsettingFeature",
+    "Redefinition": "redefiningFeature",
+    "Conjugation": "conjugatedType",
+    "Disjoining": "typeDisjoined",
+    "FeatureInverting": "featureInverted",
+    "TypeFeaturing": "featureOfType",
+}
+"""The feature by which an owned relationship names its owner, where the owner does not say it."""
+
+_INSTANTIATIONS = kinds_of("InstantiationExpression")
+_EXPRESSIONS = kinds_of("Expression")
+_PARAMETERS = kinds_of("ParameterMembership")
+_IMPORTS = {"MembershipImport": "importedMembership", "NamespaceImport": "importedNamespace"}
+_RESULTLESS = {"ConstructorExpression", "AssignmentActionUsage", "TransitionUsage"}
+_KINDS = kinds_of("StateSubactionMembership") | kinds_of("TransitionFeatureMembership")
+_REQUIREMENTS = kinds_of("RequirementConstraintMembership")
+
+
+class Element:
+    """An element of an interchange file: its metaclass, what it says, what it owns.
+
+    ``node`` is what it comes from, for a membership its member; what the tree leaves out has
+    none. ``targets`` are the references by feature: the name of one, an element of the same
+    file, or a link of a reference of the tree.
+    """
+
+    __slots__ = ("attributes", "id", "kind", "node", "owned", "targets")
+
+    def __init__(self, kind: str, node: Node | None = None) -> None:
+        self.kind = kind
+        self.node = node
+        self.attributes: dict[str, Fact] = {}
+        self.targets: list[tuple[str, Element | Link]] = []
+        self.owned: list[Element] = []
+        self.id = ""
+
+    def own(self, element: "Element") -> "Element":
+        """Take the element as the last of what is owned; it is returned."""
+        self.owned.append(element)
+        return element
+
+
+class Link:
+    """One link of a reference of the tree, as the target of a feature."""
+
+    __slots__ = ("index", "reference")
+
+    def __init__(self, reference: Reference, index: int = -1) -> None:
+        self.reference = reference
+        self.index = index % len(reference.chain) if reference.chain else 0
+
+    @property
+    def node(self) -> Node | None:
+        """The element that the link leads to, if it was found."""
+        targets = self.reference.targets
+        return targets[self.index] if targets and self.index < len(targets) else None
+
+    @property
+    def text(self) -> str:
+        """How the reference names it."""
+        return "::".join(self.reference.chain[self.index]) if self.reference.chain else ""
+
+
+def unfold(node: Node) -> Element:
+    """The element of a node with all that it owns."""
+    element = Element(node.kind, node)
+    _state(element, node)
+    if node.kind in ENDS and node.membership:
+        _stand(element, node)
+    else:
+        for item in _in_order(node):
+            if isinstance(item, Relation):
+                element.own(_relationship(item, element))
+            else:
+                _own(element, item)
+    _add_implicit(element, node)
+    return element
+
+
+def _in_order(node: Node) -> Iterator[Relation | Node]:
+    """Relations and members in the order in which the text or the file has them."""
+    relations = [relation for relation in node.relations if not relation.implied]
+    members = list(node.members)
+    while relations and members:
+        before = relations[0].reference.start <= members[0].start
+        yield relations.pop(0) if before else members.pop(0)
+    yield from relations
+    yield from members
+
+
+# -- what an element says --------------------------------------------------------------------
+
+
+def _state(element: Element, node: Node) -> None:
+    names = {"declaredName": node.name, "declaredShortName": node.short}
+    element.attributes.update({name: text for name, text in names.items() if text is not None})
+    known = stated(node.kind)
+    element.attributes.update({name: fact for name, fact in node.facts.items() if name in known})
+    if node.membership in _PARAMETERS:
+        element.attributes.setdefault("direction", _direction(node))
+    if node.kind in USAGES:
+        _complete_usage(element, node)
+
+
+def _direction(node: Node) -> str:
+    return "out" if is_a(node.membership, "ReturnParameterMembership") else "in"
+
+
+def _complete_usage(element: Element, node: Node) -> None:
+    """What follows from the language: composition, and that ends are constant."""
+    if is_composite(node):
+        element.attributes["isComposite"] = True
+    owner = node.owner.kind if node.owner else ""
+    varies = is_a(owner, "OccurrenceDefinition") or is_a(owner, "OccurrenceUsage")
+    if node.facts.get("isEnd") and varies:
+        element.attributes["isConstant"] = True
+
+
+def _stand(element: Element, node: Node) -> None:
+    """A relationship for itself: its ends are features, chains are owned by it."""
+    for relation in node.relations:
+        if len(relation.reference.chain) > 1:
+            element.targets.append((relation.kind, element.own(_chain(relation.reference))))
+        else:
+            element.targets.append((relation.kind, Link(relation.reference)))
+    for member in node.members:
+        _own(element, member)
+
+
+# -- relationships ---------------------------------------------------------------------------
+
+
+def _relationship(relation: Relation, owner: Element) -> Element:
+    reference = relation.reference
+    if relation.kind == "Membership":
+        return _naming(reference)
+    made = Element(relation.kind)
+    own_end = OWN_ENDS.get(relation.kind)
+    if own_end:
+        made.targets.append((own_end, owner))
+    feature = RELATIONS.get(relation.kind, relation.kind)
+    if len(reference.chain) > 1:
+        made.targets.append((feature, made.own(_chain(reference))))
+    else:
+        made.targets.append((feature, Link(reference)))
+    return made
+
+
+def _naming(reference: Reference) -> Element:
+    """The membership by which an expression names what it refers to."""
+    if len(reference.chain) > 1:
+        made = Element("OwningMembership")
+        made.own(_chain(reference))
+        return made
+    made = Element("Membership")
+    made.targets.append(("memberElement", Link(reference)))
+    return made
+
+
+def _chain(reference: Reference) -> Element:
+    made = Element("Feature")
+    for index in range(len(reference.chain)):
+        chaining = made.own(Element("FeatureChaining"))
+        chaining.targets.append(("chainingFeature", Link(reference, index)))
+    return made
+
+
+# -- members ---------------------------------------------------------------------------------
+
+
+def _own(owner: Element, node: Node) -> None:
+    if is_a(node.kind, "Import"):
+        owner.own(_import(node))
+    elif node.kind == "Membership":
+        owner.own(_alias(node))
+    elif not node.membership:
+        owner.own(unfold(node))
+    else:
+        owner.own(_membership(owner, node))
+
+
+def _import(node: Node) -> Element:
+    """An import; the package of a filtered one is owned by it."""
+    made = Element(node.kind, node)
+    made.attributes.update(node.facts)
+    if node.visibility:
+        made.attributes["visibility"] = node.visibility
+    for relation in node.relations:
+        made.targets.append((relation.kind, Link(relation.reference)))
+    feature = next(end for kind, end in _IMPORTS.items() if is_a(node.kind, kind))
+    for member in node.members:
+        if is_a(member.kind, "Package"):
+            made.targets.append((feature, made.own(unfold(member))))
+        else:
+            _own(made, member)
+    return made
+
+
+def _alias(node: Node) -> Element:
+    made = Element("Membership", node)
+    names = {"memberName": node.name, "memberShortName": node.short}
+    names["visibility"] = node.visibility or None
+    made.attributes.update({name: text for name, text in names.items() if text is not None})
+    for relation in node.relations:
+        made.targets.append(("memberElement", Link(relation.reference)))
+    for member in node.members:
+        _own(made, member)
+    return made
+
+
+def _membership(owner: Element, node: Node) -> Element:
+    made = Element(node.membership, node)
+    if node.visibility:
+        made.attributes["visibility"] = node.visibility
+    made.attributes.update(_role(node))
+    if node.membership == "Annotation":
+        made.targets.append(("annotatedElement", owner))
+    inner = unfold(node)
+    is_argument = owner.kind in _INSTANTIATIONS and node.kind in _EXPRESSIONS
+    if is_argument and node.membership == "ParameterMembership":
+        inner.attributes.pop("direction", None)
+        inner = _argument(_late(inner) if node.role == "expression" else inner)
+    made.own(inner)
+    return made
+
+
+def _role(node: Node) -> dict[str, Fact]:
+    if node.membership == "FeatureValue":
+        signs = {"isDefault": "default" in node.role, "isInitial": ":=" in node.role}
+        return {name: True for name, said in signs.items() if said}
+    if node.membership in _KINDS or (node.membership in _REQUIREMENTS and node.role):
+        return {"kind": node.role}
+    return {"kind": "requirement"} if node.membership in _REQUIREMENTS else {}
+
+
+def _argument(value: Element) -> Element:
+    """The parameter that carries an argument (KerML 1.0, 8.2.5.8.1)."""
+    parameter = Element("Feature")
+    parameter.attributes["direction"] = "in"
+    parameter.own(Element("FeatureValue")).own(value)
+    return parameter
+
+
+def _late(value: Element) -> Element:
+    """The reference to an expression that is only evaluated when others say so."""
+    made = Element("FeatureReferenceExpression")
+    made.own(Element("FeatureMembership")).own(value)
+    made.own(_result())
+    return made
+
+
+# -- what the tree leaves out ----------------------------------------------------------------
+
+
+def _add_implicit(element: Element, node: Node) -> None:
+    if node.kind in NAMING and node.kind not in _RESULTLESS:
+        if not any(one.membership == "ReturnParameterMembership" for one in node.members):
+            element.own(_result())
+    elif node.kind == "PortDefinition":
+        element.own(Element("OwningMembership")).own(_conjugate(element))
+    elif node.facts.get("isIndividual") and is_a(node.kind, "OccurrenceDefinition"):
+        element.own(Element("OwningMembership")).own(Element("Multiplicity"))
+
+
+def _result() -> Element:
+    made = Element("ReturnParameterMembership")
+    made.own(Element("Feature")).attributes["direction"] = "out"
+    return made
+
+
+def _conjugate(definition: Element) -> Element:
+    """The conjugated port definition that every port definition has (SysML 2.0, 8.2.2.12)."""
+    made = Element("ConjugatedPortDefinition")
+    conjugation = made.own(Element("PortConjugation"))
+    conjugation.targets += [("conjugatedType", made), ("originalPortDefinition", definition)]
+    return made

@@ -1,0 +1,146 @@
+"""Writes the tree of KerML and SysML v2 as XMI (.kermlx, .sysmlx; KerML 1.0, 10.2)."""
+
+from collections.abc import Iterator, Sequence
+from posixpath import dirname, relpath
+from urllib.parse import quote
+
+from sysmlc.diagnostics import Place, Rule, Sink, Subject
+from sysmlc.language.exchange import rules
+from sysmlc.language.exchange.identity import identify
+from sysmlc.language.exchange.naming import shown
+from sysmlc.language.exchange.unfolding import Element, Link, unfold
+from sysmlc.language.exchange.xmi import Targets, is_writable, lines
+from sysmlc.language.tree import Document, Node
+
+_SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
+_MEMBERSHIPS = {"importedMembership"}
+"""Features that refer to the membership of an element, not to the element."""
+
+
+def write(document: Document, others: Sequence[Document], sink: Sink) -> bytes:
+    """The document as an interchange file; references are those that names were resolved to.
+
+    ``others`` are the documents, libraries included, that references may lead to: they become
+    hrefs relative to the path of the document, to interchange files of the same names. What
+    leads nowhere is reported and left out.
+    """
+    writer = _Writer(document, others, sink)
+    return ("\n".join(lines(writer.root, writer.targets)) + "\n").encode()
+
+
+def interchange_path(document: Document) -> str:
+    """The path of the interchange file of a document: another suffix, archives as folders."""
+    path = document.path.replace("!", "/")
+    stem = path.rpartition(".")[0] or path
+    return stem + _SUFFIXES[document.language]
+
+
+class _File:
+    """An unfolded document, and which elements of it are those of which nodes."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.root = unfold(document.root)
+        identify(self.root, document)
+        self.elements: dict[Node, Element] = {}
+        self.memberships: dict[Node, Element] = {}
+        self.conjugates: dict[Node, Element] = {}
+        self._enter(self.root, None)
+
+    def _enter(self, element: Element, owner: Element | None) -> None:
+        node = element.node
+        if node is not None:
+            self.memberships.setdefault(node, element)
+            self.elements[node] = element
+        for owned in element.owned:
+            self._enter(owned, element)
+            if owned.kind == "ConjugatedPortDefinition" and owner and owner.node:
+                self.conjugates[owner.node] = owned
+
+    def target(self, node: Node, feature: str) -> Element | None:
+        if feature == "conjugatedPortDefinition":
+            return self.conjugates.get(node)
+        return (self.memberships if feature in _MEMBERSHIPS else self.elements).get(node)
+
+
+class _Writer:
+    def __init__(self, document: Document, others: Sequence[Document], sink: Sink) -> None:
+        self._document = document
+        self._sink = sink
+        self._roots = {one.root: one for one in others}
+        self._files: dict[Node, _File] = {document.root: _File(document)}
+        self._folder = dirname(interchange_path(document)) or "."
+        self.root = self._files[document.root].root
+        self._prune(self.root, document.root)
+
+    def targets(self, element: Element) -> Targets:
+        """What the features of an element refer to."""
+        found: Targets = {}
+        for feature, target in element.targets:
+            if isinstance(target, Element):
+                found.setdefault(feature, []).append((target.id, ""))
+            else:
+                found.setdefault(feature, []).append(self._link(feature, target))
+        return found
+
+    # -- references ------------------------------------------------------------------------------
+
+    def _link(self, feature: str, link: Link) -> tuple[str, str]:
+        node = link.node
+        if node is None:
+            return link.text, "Element"
+        root = _root(node)
+        file = self._file(root)
+        target = file.target(node, feature) if file else None
+        if file is None or target is None:
+            return "", ""
+        if root is self._document.root:
+            return target.id, ""
+        path = relpath(interchange_path(file.document), self._folder)
+        return f"{quote(path)}#{target.id}", target.kind
+
+    def _file(self, root: Node) -> _File | None:
+        if root not in self._files and root in self._roots:
+            self._files[root] = _File(self._roots[root])
+        return self._files.get(root)
+
+    # -- what cannot be written ------------------------------------------------------------------
+
+    def _prune(self, element: Element, about: Node) -> None:
+        """Report and take out the relationships whose targets are not known."""
+        about = element.node or about
+        for feature in is_writable(element):
+            self._report(rules.UNWRITABLE_TEXT, about, feature)
+        kept = []
+        for owned in element.owned:
+            lost = next(_lost(owned), None)
+            if lost is None:
+                self._prune(owned, about)
+                kept.append(owned)
+            else:
+                self._report(rules.UNWRITTEN_REFERENCE, about, lost)
+        element.owned[:] = kept
+
+    def _report(self, rule: Rule, node: Node, what: str) -> None:
+        place = Place(self._document.path, offset=node.start)
+        facts = {"element": shown(node), "name": what, "feature": what}
+        self._sink.report(rule, Subject(shown(node), place=place), notes=(), help="", **facts)
+
+
+def _root(node: Node) -> Node:
+    while node.owner is not None:
+        node = node.owner
+    return node
+
+
+def _lost(element: Element) -> Iterator[str]:
+    """How references of a relationship, and of a chain that it owns, are named that lead nowhere.
+
+    An href of a file that was read stays what it is.
+    """
+    for _, target in element.targets:
+        if isinstance(target, Link) and target.node is None and "#" not in target.text:
+            yield str(target.reference)
+    for owned in element.owned:
+        if owned.node is None and owned.kind in ("Feature", "FeatureChaining"):
+            yield from _lost(owned)
