@@ -6,8 +6,9 @@ Nothing in it is needed: an entry that is missing, damaged or cannot be written 
 import os
 import zlib
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
+
+from sysmlc.values import dataclass
 
 VARIABLE = "SYSMLC_CACHE"
 """Environment variable: another folder for the cache, or ``off``."""

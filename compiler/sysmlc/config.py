@@ -1,7 +1,7 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -9,6 +9,7 @@ from sysmlc import resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.suggest import did_you_mean
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError

@@ -3,9 +3,10 @@
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from json.encoder import encode_basestring
 from pathlib import Path
+
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

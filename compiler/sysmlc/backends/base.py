@@ -1,13 +1,13 @@
 """What a back end is: a name and ``emit``. It reads the graph and never changes it."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ and compare.
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sysmlc import resources
@@ -15,6 +14,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Node

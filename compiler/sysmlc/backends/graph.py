@@ -1,12 +1,12 @@
 """Back end ``graph``: the whole graph as ``graph.json``, for other programs."""
 
 import json
-from dataclasses import dataclass
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,10 @@
 """Back end ``ir``: the refined graph in its text form, for people and golden tests."""
 
-from dataclasses import dataclass
-
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, print_text
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

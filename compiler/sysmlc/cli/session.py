@@ -3,11 +3,13 @@
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
+
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend

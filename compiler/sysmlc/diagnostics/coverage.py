@@ -2,10 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 
 from sysmlc.diagnostics.rule import Rule
+from sysmlc.values import dataclass
 
 
 class Verdict(StrEnum):

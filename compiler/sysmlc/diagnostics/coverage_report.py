@@ -1,12 +1,12 @@
 """Coverage with lines, columns and names, ready to be shown."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from sysmlc.diagnostics.coverage import Coverage, Loss, Verdict, added, covered_tenths
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 LOSSES = (Verdict.UNSUPPORTED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
 """What matters of what is not mapped, the worst first."""

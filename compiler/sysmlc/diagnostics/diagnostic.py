@@ -1,8 +1,7 @@
 """Findings: a rule, the element it is about, and where that element stands."""
 
-from dataclasses import dataclass
-
 from sysmlc.diagnostics.rule import Rule, Severity
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,13 +4,13 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 
 from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.encoding import codec
 from sysmlc.sources.xml import parse, parser
+from sysmlc.values import dataclass
 
 _AROUND = 200
 """Characters of a long line that are kept on each side of a place."""

@@ -1,7 +1,8 @@
 """Rules: what can be wrong with a model, and how it is explained."""
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+from sysmlc.values import dataclass
 
 
 class Severity(StrEnum):

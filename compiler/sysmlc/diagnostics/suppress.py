@@ -1,10 +1,10 @@
 """Findings that a project accepts: ``[[suppress]]`` of its configuration."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from sysmlc.diagnostics.diagnostic import Diagnostic
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

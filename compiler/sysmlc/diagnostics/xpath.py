@@ -8,11 +8,12 @@ local name and the namespace instead.
 
 from collections.abc import Collection
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser
+from sysmlc.values import dataclass
 
 
 class Spot(NamedTuple):

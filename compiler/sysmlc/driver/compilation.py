@@ -1,7 +1,7 @@
 """One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,6 +24,7 @@ from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.sources.schema import Schemas

@@ -1,6 +1,5 @@
 """What becomes of every element of a unit's inputs, for ``sysmlc coverage``: no pass, no output."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from sysmlc.diagnostics import Coverage, Diagnostic
@@ -9,6 +8,7 @@ from sysmlc.driver import faults, registry
 from sysmlc.driver.compilation import Request, open_unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Source, SourceError
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

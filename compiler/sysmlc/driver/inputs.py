@@ -3,7 +3,6 @@
 import os
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from sysmlc.diagnostics import Rule, Sink
@@ -11,6 +10,7 @@ from sysmlc.driver import faults
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
+from sysmlc.values import dataclass
 
 SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".aml", ".amlx", ".caex", ".ir"})
 """How files in a folder end that are worth a look; files that are named may end in anything."""

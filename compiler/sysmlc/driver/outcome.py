@@ -2,7 +2,6 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from sysmlc.backends.base import InputFile
@@ -11,6 +10,7 @@ from sysmlc.diagnostics.render import Finding, make_report
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.tracing import COVERAGE, TRACE, coverage_text, trace_text
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from sysmlc.overlay import SUFFIX
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS
 from sysmlc.sources.whole import read_whole
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.overlay.model import Refinement

@@ -1,11 +1,11 @@
 """Lines and columns for back ends and for trace.json."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import locate
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,12 +4,12 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from sysmlc.driver.manifest import MANIFEST, manifest_text
 from sysmlc.driver.outcome import Outcome, digest_of
 from sysmlc.output import write
+from sysmlc.values import dataclass
 
 
 class OutputError(Exception):

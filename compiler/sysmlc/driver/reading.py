@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
@@ -11,6 +10,7 @@ from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
 from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay, models_of
 from sysmlc.frontends.base import Frontend, Mentioning
 from sysmlc.sources import Roots, Source, SourceError, load
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

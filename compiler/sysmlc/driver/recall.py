@@ -3,7 +3,7 @@
 import json
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from sysmlc.cache import Cache
 from sysmlc.diagnostics import Diagnostic, Place, Rule, Severity, Subject
 from sysmlc.diagnostics.render import Finding
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
+from sysmlc.values import dataclass
 
 _LENGTH = 8
 """Bytes that say how long the first part of an entry is; the second holds the texts."""

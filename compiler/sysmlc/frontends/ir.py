@@ -5,12 +5,12 @@ It serves tests, the examples of ``sysmlc explain``, and bug reports without the
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.text import IrSyntaxError, parse_text
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 IR_SYNTAX = rule(
     "SM176",

@@ -7,11 +7,11 @@ position among their equals: what two dialects of one model share.
 
 from collections import Counter
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge
+from sysmlc.values import dataclass
 
 _Key = tuple[object, ...]
 

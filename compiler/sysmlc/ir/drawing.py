@@ -1,8 +1,7 @@
 """Diagrams as their authors drew them, before the pass ``views`` makes them part of the graph."""
 
-from dataclasses import dataclass
-
 from sysmlc.ir.kinds import Edge
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,9 @@
 """Questions about templates: formal parameters, and what takes their places (UML 2.5.1, 7.3)."""
 
-from dataclasses import dataclass
-
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

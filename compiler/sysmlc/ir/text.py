@@ -7,7 +7,7 @@ lines the references that are not resolved yet. docs/ir.md shows the form.
 import json
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import NoReturn, TypeVar
 
@@ -15,6 +15,7 @@ from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.reference import Reference
+from sysmlc.values import dataclass
 
 _E = TypeVar("_E", bound=StrEnum)
 _BARE = re.compile(r"[\w.:/#!+~%-]+")

@@ -6,8 +6,9 @@ member, ``membership`` and ``role``. What refers to other elements by name is a 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.sources import Source

@@ -1,11 +1,11 @@
 """Loops of token graphs that the environment decides, each with the edges that lead out of it."""
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir.components import strong_components
 from sysmlc.logic.formula import Const, variables
 from sysmlc.logic.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

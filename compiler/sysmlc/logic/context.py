@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
@@ -21,6 +20,7 @@ from sysmlc.logic.expression import Literal as Constant
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.names import unique
 from sysmlc.logic.samples import arrow, machine
+from sysmlc.values import dataclass
 
 ASSUMED_RANGE = rule(
     "SM410",

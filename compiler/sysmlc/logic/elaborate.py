@@ -1,7 +1,6 @@
 """From expressions to formulas: names resolved, types checked, values as guarded cases."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import StrEnum
 
 from sysmlc.logic import domains
@@ -20,6 +19,7 @@ from sysmlc.logic.expression import (
 )
 from sysmlc.logic.expression import Literal as Written
 from sysmlc.logic.formula import Const, Formula, Op
+from sysmlc.values import dataclass
 
 
 class Fault(StrEnum):

@@ -4,9 +4,11 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import field, fields, is_dataclass
 from functools import lru_cache
 from typing import TypeVar
+
+from sysmlc.values import dataclass
 
 _DEEPEST = 150
 """Levels of nesting that are read; a tuple of arguments is one."""

@@ -4,11 +4,12 @@ A formula is built by the small functions at the end (``var``, ``eq``, ``both``,
 never by calling the classes from outside: they keep operands flat and constants folded.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
 from typing import TypeVar
 from weakref import WeakValueDictionary
+
+from sysmlc.values import dataclass
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""

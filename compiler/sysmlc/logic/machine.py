@@ -3,12 +3,13 @@
 It says what is drawn, with names for variables; it does not say what a step is.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.elaborate import Scope
 from sysmlc.logic.expression import Expression
 from sysmlc.logic.formula import Literal
+from sysmlc.values import dataclass
 
 NO_EVENT = "none"
 """Literal of ``event`` when nothing happens, and of a choice that was not made."""

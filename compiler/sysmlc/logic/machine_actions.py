@@ -1,6 +1,6 @@
 """Guards, effects and triggers of a state machine, read in the context of its owner."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
@@ -25,6 +25,7 @@ from sysmlc.logic.expression import (
 from sysmlc.logic.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine
+from sysmlc.values import dataclass
 
 
 def _guarded(guard: str) -> str:

@@ -1,6 +1,6 @@
 """From the graph to ``Machine``: vertices, regions, transitions and their variables."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
@@ -33,6 +33,7 @@ from sysmlc.logic.machine_support import initial_of, is_supported
 from sysmlc.logic.machine_triggers import Parts, occurrence_of
 from sysmlc.logic.names import Names, identifier, unique
 from sysmlc.logic.samples import arrow, machine
+from sysmlc.values import dataclass
 
 NONDETERMINISTIC = rule(
     "SM422",

@@ -1,6 +1,6 @@
 """Triggers of a state machine, and the variables that they need."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.ir import Edge, Element
 from sysmlc.logic.contract import (
@@ -25,6 +25,7 @@ from sysmlc.logic.machine_actions import (
 )
 from sysmlc.logic.machine_time import ticks_of, told_time
 from sysmlc.logic.names import unique
+from sysmlc.values import dataclass
 
 
 @dataclass(slots=True)

@@ -9,7 +9,6 @@ plays must satisfy every conjunct, and a changed run must not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.tokens import (
@@ -21,6 +20,7 @@ from sysmlc.logic.tokens import (
     TokenGraph,
     TokenNode,
 )
+from sysmlc.values import dataclass
 
 Inputs = Mapping[str, Literal]
 Choose = Callable[[TokenNode, Sequence[TokenEdge]], TokenEdge]

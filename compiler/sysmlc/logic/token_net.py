@@ -11,10 +11,11 @@ borders of regions and data stores are no places of such a net.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import combinations
 
 from sysmlc.logic.tokens import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.values import dataclass
 
 _SMALL = 2_000
 """Markings that are searched without reductions: some milliseconds."""

@@ -6,7 +6,7 @@ bit for each edge and each running node.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 
 from sysmlc.logic.tokens import (
@@ -18,6 +18,7 @@ from sysmlc.logic.tokens import (
     TokenGraph,
     TokenNode,
 )
+from sysmlc.values import dataclass
 
 _STEPS_A_STATE = 16
 """Steps that are tried for each allowed state before the search gives up."""

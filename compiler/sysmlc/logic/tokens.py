@@ -13,12 +13,12 @@ final nodes, or when nothing in it can move.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Formula
+from sysmlc.values import dataclass
 
 ACTIVITY_REGION = ""
 """The region of what no structured node owns."""

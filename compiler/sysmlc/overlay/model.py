@@ -1,10 +1,10 @@
 """What one overlay says, as values with the places where it says it."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir import AttrValue
+from sysmlc.values import dataclass
 
 
 class Spot(NamedTuple):

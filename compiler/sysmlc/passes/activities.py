@@ -6,7 +6,6 @@ stays as it is.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -17,6 +16,7 @@ from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ become structured nodes too (``Part``), so that each of them starts and ends as 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -21,6 +21,7 @@ from sysmlc.passes.activity_regions import (
     handlers_of,
     is_entered_again,
 )
+from sysmlc.values import dataclass
 
 _WORDS = {
     Kind.STRUCTURED: "structured node",

@@ -1,9 +1,9 @@
 """Which behaviours and operations may end with an exception."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.values import dataclass
 
 CALLS = ("call-behavior", "call-operation", "opaque", "call", "start-object-behavior", "")
 """Actions whose end may be an exception."""

@@ -1,9 +1,9 @@
 """Regions of activities: mere groups, interruptible regions, expansion nodes, handlers."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.values import dataclass
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 

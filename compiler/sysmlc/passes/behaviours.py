@@ -1,6 +1,5 @@
 """Pass ``behaviours``: methods of operations, calls and their arguments, behaviours of states."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -15,6 +14,7 @@ from sysmlc.passes.behaviour_rules import (
     NO_BEHAVIOR,
     TRIGGER_OF_NOTHING,
 )
+from sysmlc.values import dataclass
 
 _CALLED: dict[str, tuple[str, tuple[Kind, ...]]] = {
     "call-behavior": ("behaviour", BEHAVIORS),

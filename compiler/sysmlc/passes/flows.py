@@ -1,7 +1,6 @@
 """Pass ``flows``: item flows on connectors, and what connectors and flows must agree on."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -32,6 +31,7 @@ from sysmlc.passes.flow_rules import (
     FLOW_WITHOUT_END,
     MIXED_DOMAINS,
 )
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """Pass ``inherit``: effective features of every classifier, and rules of inheritance."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -15,6 +14,7 @@ from sysmlc.passes.inherit_rules import (
     REDEFINES_STRANGER,
     TYPE_NOT_NARROWER,
 )
+from sysmlc.values import dataclass
 
 _CLASSES = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY, Kind.STATE_MACHINE})
 _RELATIONS = {Edge.REDEFINES: "redefines", Edge.SUBSETS: "subsets"}

@@ -1,12 +1,12 @@
 """Pass ``interactions``: whether what sequence diagrams tell can happen."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query, sequence
 from sysmlc.passes import interaction_rules as rules
+from sysmlc.values import dataclass
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
 _Place = tuple[str, int]

@@ -1,7 +1,6 @@
 """The passes by name, and running them in the order that their ``after`` asks for."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from typing import cast
 
@@ -9,6 +8,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.verify import verify
 from sysmlc.passes.base import Pass
+from sysmlc.values import dataclass
 
 NAMES = (
     "resolve",

@@ -1,7 +1,6 @@
 """Pass ``ports``: type and direction of every port, as far as the model gives them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -31,6 +30,7 @@ from sysmlc.passes.port_rules import (
     UNDIRECTED_PORTS,
     UNTYPED_PORT,
 )
+from sysmlc.values import dataclass
 
 _LISTED = 8
 _CONJUGATED = ("~InterfaceBlock", "_InterfaceBlock", "ConjugatedInterfaceBlock")

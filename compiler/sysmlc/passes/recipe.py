@@ -1,12 +1,13 @@
 """The pass ``recipe``: three-level recipe models from activities (thesis 3.5, 6.5.4)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.values import dataclass
 
 _MODELS = "sysmlc.recipe.model"
 """The module of the recipe models."""

@@ -1,10 +1,11 @@
 """What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Range

@@ -2,13 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, parameter, read
 from sysmlc.recipe.expression import Expr, Lit, Var
 from sysmlc.recipe.model import Parameter
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,13 @@
 """Machines, materials, and the relations of tasks and services to machines."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, optional, value
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

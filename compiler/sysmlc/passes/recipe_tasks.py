@@ -1,7 +1,6 @@
 """Level 1: the tasks of a recipe, their machines and materials, and the order between them."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context, activity_nodes, number
@@ -15,6 +14,7 @@ from sysmlc.passes.recipe_machines import (
 )
 from sysmlc.passes.recipe_steps import activity_flows, flow_ends
 from sysmlc.recipe.model import MaterialUse, Task
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,12 @@ and how their references write them. They are read when a reference first needs 
 import json
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cache
 from urllib.parse import unquote
 
 from sysmlc import resources
 from sysmlc.ir import Kind
+from sysmlc.values import dataclass
 
 _ROLE_NAME = re.compile(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
 _ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")

@@ -1,13 +1,13 @@
 """Pass ``views``: the diagrams of authors become elements that lead to what they show."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.drawing import Drawing
 from sysmlc.ir.identity import derived_id
+from sysmlc.values import dataclass
 
 MISSING = rule(
     "SM162",

@@ -1,11 +1,12 @@
 """What the checks of recipe models share: findings, and how they are told."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import FlowGraph, Model, Parameter
+from sysmlc.values import dataclass
 
 Locate = Callable[[str], Subject]
 

@@ -1,7 +1,7 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from sysmlc.recipe.expression import Lit
 from sysmlc.recipe.flow import duration, forward_edges, reachable
@@ -19,6 +19,7 @@ from sysmlc.recipe.model import (
     SubTask,
     Task,
 )
+from sysmlc.values import dataclass
 
 _NO_TIME = Range(0, 0)
 

@@ -1,7 +1,8 @@
 """Conditions and arithmetic of recipes as typed trees."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,10 @@
 """Paths, cycles and times of a flow graph."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sysmlc.recipe.model import FlowGraph, Node, Range
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from networkx import DiGraph

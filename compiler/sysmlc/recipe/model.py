@@ -4,10 +4,10 @@ Ids are qualified names of the model; levels refer to one another by id and are 
 Times are integers in milliseconds.
 """
 
-from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from sysmlc.recipe.expression import Expr
+from sysmlc.values import dataclass
 
 Number = int | float
 Scalar = bool | int | float | str

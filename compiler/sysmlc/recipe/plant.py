@@ -1,10 +1,10 @@
 """The elements of a plant that AutomationML describes (docs/automationml.md)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.values import dataclass
 
 HIERARCHY = "instance-hierarchy"
 LIBRARIES = frozenset({"system-unit-class-lib", "role-class-lib", "interface-class-lib"})

@@ -3,7 +3,7 @@
 The JSON form is described by metamodels/sysmlc-platform.schema.json.
 """
 
-from dataclasses import dataclass
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """What can be simulated: activities and state machines behind one interface."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from sysmlc.diagnostics import Sink
@@ -19,6 +18,7 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.machine import Machine
 from sysmlc.logic.machine_reader import read_machine
 from sysmlc.logic.tokens import TokenEdge, TokenGraph, TokenNode
+from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
 _LASTING = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)

@@ -1,10 +1,11 @@
 """What came of scenarios: as text, as JUnit XML, and as a sequence diagram."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from xml.etree import ElementTree
 
 from sysmlc.logic.formula import Literal
+from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
 

@@ -3,7 +3,6 @@
 import json
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sysmlc import resources
@@ -11,6 +10,7 @@ from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.logic.formula import Literal
 from sysmlc.simulation import rules
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError

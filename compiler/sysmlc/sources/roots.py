@@ -3,9 +3,10 @@
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
+
+from sysmlc.values import dataclass
 
 _LONGEST = 4096
 """No file system has longer paths; looking for one takes a call for each of its parts."""

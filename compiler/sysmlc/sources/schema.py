@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
@@ -10,6 +9,7 @@ from lxml import etree
 
 from sysmlc.sources.roots import Roots
 from sysmlc.sources.source import Source
+from sysmlc.values import dataclass
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _LOADING = frozenset({f"{_XS}{tag}" for tag in ("include", "import", "redefine", "override")})

@@ -1,8 +1,9 @@
 """One input file, or one entry of an archive, as bytes."""
 
 import hashlib
-from dataclasses import dataclass
 from functools import cached_property
+
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True)

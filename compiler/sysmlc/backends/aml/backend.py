@@ -1,13 +1,13 @@
 """Back end ``aml``: CAEX 3.0 files that engineering tools open and our front end reads back."""
 
 import posixpath
-from dataclasses import dataclass
 
 from sysmlc.backends.aml.document import documents
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

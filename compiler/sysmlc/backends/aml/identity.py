@@ -1,10 +1,10 @@
 """The ``ID`` of every object: that of an AutomationML file as it is, else one made of it."""
 
 import re
-from dataclasses import dataclass
 
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.identity import derived_id
+from sysmlc.values import dataclass
 
 _MADE = re.compile(r"#(values|class|part|type)(~\d+)?$")
 """Ends of the ids of what the front end ``caex`` adds beside an object."""

@@ -1,7 +1,6 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.document import document
@@ -12,6 +11,7 @@ from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
 from sysmlc.output import Output, json_text
+from sysmlc.values import dataclass
 
 TOO_LARGE = rule(
     "SM520",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
+from sysmlc.values import dataclass
 
 _FOLDER = "contracts"
 _TITLES = {

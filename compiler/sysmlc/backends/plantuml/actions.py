@@ -1,12 +1,12 @@
 """How one activity node looks: its shape, its title, and its pins as rows."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
 from sysmlc.backends.plantuml.text import label, lines
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.values import dataclass
 
 _CONTROL = {
     "initial": "start",

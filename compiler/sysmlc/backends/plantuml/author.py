@@ -1,7 +1,7 @@
 """Diagrams as their authors drew them: their choice of elements and lines, our notation."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from sysmlc.backends.plantuml import (
@@ -28,6 +28,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
+from sysmlc.values import dataclass
 
 NOT_DRAWN = rule(
     "SM702",

@@ -1,9 +1,9 @@
 """What an author chose for a diagram: a View with what it leads to (docs/ir.md)."""
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.values import dataclass
 
 FEATURES = frozenset(
     [

@@ -1,7 +1,7 @@
 """Authors' internal block diagrams: parts in parts as they were drawn, ports, connectors."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.backends.plantuml import ibd, labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -12,6 +12,7 @@ from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, sm
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
+from sysmlc.values import dataclass
 
 _Ids = tuple[str, ...]
 _PORTS = (Kind.PORT,)

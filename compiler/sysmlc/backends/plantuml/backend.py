@@ -1,7 +1,6 @@
 """All diagrams of a graph: views, file names, templates, and what no diagram shows."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from itertools import groupby
 
 from sysmlc import naming
@@ -24,6 +23,7 @@ from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 BAD_TEMPLATE = rule(
     "SM700",

@@ -1,12 +1,12 @@
 """Bindings of a block's constraint properties: who is bound to whom, with the paths to both."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
 from sysmlc.backends.plantuml.connections import Path, is_parametric, path_of
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
+from sysmlc.values import dataclass
 
 OWNERS = (Kind.CLASS, Kind.COMPONENT)
 _DEEPEST = 4

@@ -1,7 +1,6 @@
 """Connections inside a block: connectors with their item flows, and item flows between parts."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.domains import coloured, styled
@@ -9,6 +8,7 @@ from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.backends.plantuml.text import keyword_label, label, stack
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import runs_both_ways
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ An instance, and a hierarchy of AutomationML whose instances are linked, have on
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -17,6 +17,7 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
+from sysmlc.values import dataclass
 
 FORMS = {"in": "portin", "out": "portout"}
 """How ports are drawn, by direction."""

@@ -1,10 +1,10 @@
 """Relations between classifiers, as lines of a block definition diagram."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind, templates
+from sysmlc.values import dataclass
 
 _SHAPES = {"composite": "*", "shared": "o"}
 _DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}

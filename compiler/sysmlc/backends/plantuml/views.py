@@ -1,7 +1,8 @@
 """View models: what the templates see. Every text in them is PlantUML text, already escaped."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,13 @@
 """One file ``platform.json`` for a unit that has recipes and a plant."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output, json_text
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.recipe.platform import Platform

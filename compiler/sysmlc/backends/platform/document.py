@@ -1,12 +1,12 @@
 """A platform as JSON (``sysmlc-platform/1``)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 from sysmlc.diagnostics import Place
 from sysmlc.ir import Element, Graph
 from sysmlc.recipe.platform import Offer, Platform, Used
+from sysmlc.values import dataclass
 
 Json = dict[str, object]
 Places = Mapping[Place, Place]

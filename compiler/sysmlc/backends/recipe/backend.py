@@ -1,7 +1,6 @@
 """One file ``recipes/<recipe>.json`` for each recipe of the graph."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from sysmlc.backends.base import EmitOptions
@@ -10,6 +9,7 @@ from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output, json_text
 from sysmlc.recipe import samples
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Model

@@ -1,7 +1,6 @@
 """Two files for each root of the model that holds requirements, and what they leave open."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from sysmlc.backends.base import EmitOptions
@@ -14,6 +13,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 _TEMPLATE = "requirements.md.j2"
 _ALWAYS = ("id", "name")

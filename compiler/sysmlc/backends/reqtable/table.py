@@ -2,10 +2,10 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph
 from sysmlc.ir.query import applications, is_requirement, lineage
+from sysmlc.values import dataclass
 
 COLUMNS = (
     "id",

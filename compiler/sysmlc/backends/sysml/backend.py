@@ -1,7 +1,6 @@
 """Back end ``sysml``: one text of SysML v2 for the unit, with our library beside it if needed."""
 
 import posixpath
-from dataclasses import dataclass
 
 from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
@@ -10,6 +9,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 LIBRARY = "SysMLC.sysml"
 """Our library of metadata definitions, which the text refers to."""

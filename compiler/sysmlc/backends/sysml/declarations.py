@@ -1,7 +1,5 @@
 """Declarations: prefixes, keyword, name, types, specialisations, multiplicity, value."""
 
-from dataclasses import dataclass
-
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
@@ -10,6 +8,7 @@ from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import bounds
+from sysmlc.values import dataclass
 
 _VISIBILITIES = ("private", "protected")
 _REFERENTIAL = frozenset({"port", "attribute", "metadata"})

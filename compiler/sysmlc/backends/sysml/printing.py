@@ -1,7 +1,9 @@
 """Members as they are written: a tree that is printed without recursion, four spaces a level."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from sysmlc.values import dataclass
 
 _STEP = "    "
 

@@ -1,10 +1,10 @@
 """From kinds and roles to the keywords of definitions and usages (SysML v2, 8.2.2)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import type_of
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

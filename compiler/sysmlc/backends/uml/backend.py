@@ -1,7 +1,6 @@
 """Back end ``uml``: one file that Papyrus opens and our XMI front end reads back."""
 
 import posixpath
-from dataclasses import dataclass
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.uml.document import document
@@ -9,6 +8,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,12 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.diagnostics.rule import Severity
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.frontends.xmi import drawing_relations
 from sysmlc.frontends.xmi.drawing_types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
+from sysmlc.values import dataclass
 
 _PLACE = ["Extension", "diagrams", "diagram"]
 _TECHNOLOGY = re.compile(r"MDGDgm=[\w.]+::(\w+)")

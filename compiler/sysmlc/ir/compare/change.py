@@ -1,7 +1,8 @@
 """What a difference of two models is, in the words of who reviews a new export."""
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+from sysmlc.values import dataclass
 
 
 class What(StrEnum):

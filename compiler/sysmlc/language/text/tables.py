@@ -2,7 +2,6 @@
 
 import hashlib
 import marshal
-from dataclasses import dataclass
 from functools import cache
 from operator import itemgetter
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from sysmlc import cache as caches
 from sysmlc import resources
 from sysmlc.language.text.scan import Types
+from sysmlc.values import dataclass
 
 _GRAMMARS = {
     "kerml": ("kerml-common.lark", "kerml.lark"),

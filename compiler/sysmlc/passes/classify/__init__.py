@@ -1,7 +1,6 @@
 """Pass ``classify``: what each element is in SysML, and at which level of a recipe."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
@@ -25,6 +24,7 @@ from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOW
 from sysmlc.passes.classify.tags import HANDLERS, give_tags, optional_with_value
 from sysmlc.passes.classify.units import give_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
+from sysmlc.values import dataclass
 
 _Meanings = dict[str, tuple[str, ...]]
 

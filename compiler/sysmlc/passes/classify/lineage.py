@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
 from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, family, mangled, parents
+from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,10 @@
 """Pass ``overlay``: what overlays add to the model (thesis 3.4)."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
+from sysmlc.values import dataclass
 
 _REFINEMENTS = "sysmlc.overlay.model"
 

@@ -1,10 +1,10 @@
 """The pass ``platform``: recipes on the plant that runs them (thesis 3.2)."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
+from sysmlc.values import dataclass
 
 _RECIPES = "sysmlc.recipe.model"
 """The module of the recipe models: most models have none, and need nothing of this imported."""

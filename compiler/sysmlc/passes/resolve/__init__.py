@@ -1,7 +1,7 @@
 """Pass ``resolve``: references become edges, what lies outside the unit becomes a stand-in."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar, NamedTuple
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
@@ -30,6 +30,7 @@ from sysmlc.passes.resolve.rules import (
 )
 from sysmlc.passes.resolve.targets import Targets
 from sysmlc.passes.standins import StandIn
+from sysmlc.values import dataclass
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},

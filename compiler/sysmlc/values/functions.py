@@ -1,0 +1,148 @@
+"""Functions of dataclasses: compiled for a number of fields, then given the names of a class."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, Field, FrozenInstanceError
+from functools import cache
+from reprlib import recursive_repr
+from types import CodeType, FunctionType
+from typing import Any, NoReturn
+
+_Fields = Mapping[str, "Field[Any]"]
+_BODY = {
+    "__eq__": """\
+def __eq__(self, other):
+    if other.__class__ is self.__class__:
+        return ({own}) == ({others})
+    return NotImplemented
+""",
+    "__hash__": """\
+def __hash__(self):
+    return hash(({own}))
+""",
+}
+
+
+def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
+    """All that a dataclass has beside ``__init__``, as the standard library has it."""
+    names = tuple(fields)
+    shown = tuple(name for name, one in fields.items() if one.repr)
+    made: dict[str, object] = {"__match_args__": names, "__repr__": _repr(shown)}
+    if frozen:
+        made |= {"__setattr__": _refuse_setting, "__delattr__": _refuse_deleting}
+        made |= _states(names)
+    if eq:
+        compared = tuple(name for name, one in fields.items() if one.compare)
+        hashed = tuple(name for name, one in fields.items() if _is_hashed(one))
+        made["__eq__"] = _named("__eq__", compared)
+        made["__hash__"] = _named("__hash__", hashed) if frozen else None
+    return made
+
+
+def _is_hashed(one: "Field[Any]") -> bool:
+    return one.compare if one.hash is None else one.hash
+
+
+def init(
+    owner: str, fields: _Fields, *, frozen: bool, post: bool
+) -> tuple[FunctionType, Callable[[type], None]]:
+    """``__init__``, and what completes it when the class is there: its slots set the fields."""
+    names = tuple(fields)
+    factories = {
+        number: one.default_factory
+        for number, one in enumerate(fields.values())
+        if one.default_factory is not MISSING
+    }
+    code = _renamed(_init_code(len(names), frozenset(factories), frozen, post), names)
+    known: dict[str, object] = {f"make_{number}": make for number, make in factories.items()}
+    known["missing"] = MISSING
+    made = FunctionType(code, known, "__init__", _defaults(fields))
+    made.__qualname__ = f"{owner}.__init__"
+    made.__annotations__ = {name: one.type for name, one in fields.items()} | {"return": None}
+
+    def complete(cls: type) -> None:
+        if frozen:
+            for number, name in enumerate(names):
+                known[f"set_{number}"] = getattr(cls, name).__set__
+
+    return made, complete
+
+
+def _defaults(fields: _Fields) -> tuple[object, ...]:
+    defaults = [
+        (name, one.default)
+        for name, one in fields.items()
+        if one.default is not MISSING or one.default_factory is not MISSING
+    ]
+    if [name for name, _ in defaults] != list(fields)[len(fields) - len(defaults) :]:
+        raise TypeError(f"of {', '.join(fields)} one without a default follows one with a default")
+    return tuple(default for _, default in defaults)
+
+
+@cache
+def _init_code(number: int, made: frozenset[int], frozen: bool, post: bool) -> CodeType:
+    lines = [f"def __init__(self{''.join(f', _{at}' for at in range(number))}):"]
+    for at in range(number):
+        value = f"_{at} if _{at} is not missing else make_{at}()" if at in made else f"_{at}"
+        lines.append(f"    set_{at}(self, {value})" if frozen else f"    self._{at} = {value}")
+    lines.append("    self.__post_init__()" if post else "    return")
+    return _compiled("\n".join(lines), "__init__")
+
+
+def _named(function: str, names: Sequence[str]) -> FunctionType:
+    code = _renamed(_code(function, len(names)), names)
+    return FunctionType(code, {"hash": hash, "NotImplemented": NotImplemented})
+
+
+@cache
+def _code(function: str, number: int) -> CodeType:
+    texts = {
+        word: "".join(f"{who}._{at}, " for at in range(number))
+        for word, who in (("own", "self"), ("others", "other"))
+    }
+    return _compiled(_BODY[function].format(**texts), function)
+
+
+def _compiled(source: str, function: str) -> CodeType:
+    known: dict[str, Any] = {}
+    exec(source, known)
+    code: CodeType = known[function].__code__
+    return code
+
+
+def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
+    """The code with the names of fields instead of ``_0``, ``_1`` and so on."""
+    new = {f"_{number}": name for number, name in enumerate(names)}
+    return code.replace(
+        co_varnames=tuple(new.get(name, name) for name in code.co_varnames),
+        co_names=tuple(new.get(name, name) for name in code.co_names),
+    )
+
+
+def _repr(names: Sequence[str]) -> Callable[[object], str]:
+    @recursive_repr("...")
+    def __repr__(self: object) -> str:  # noqa: N807
+        values = ", ".join(f"{name}={getattr(self, name)!r}" for name in names)
+        return f"{type(self).__qualname__}({values})"
+
+    return __repr__
+
+
+def _states(names: Sequence[str]) -> dict[str, object]:
+    """How frozen values with slots are pickled and copied."""
+
+    def __getstate__(self: object) -> list[object]:  # noqa: N807
+        return [getattr(self, name) for name in names]
+
+    def __setstate__(self: object, state: Sequence[object]) -> None:  # noqa: N807
+        for name, value in zip(names, state, strict=True):
+            object.__setattr__(self, name, value)
+
+    return {"__getstate__": __getstate__, "__setstate__": __setstate__}
+
+
+def _refuse_setting(_self: object, name: str, _value: object) -> NoReturn:
+    raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+
+def _refuse_deleting(_self: object, name: str) -> NoReturn:
+    raise FrozenInstanceError(f"cannot delete field {name!r}")
