@@ -164,6 +164,15 @@ def test_a_sent_signal_is_an_output_of_one_step():
     assert graph.inputs == ()
 
 
+@pytest.mark.parametrize(("written", "inputs"), [("", 1), (" synchronous=false", 0)])
+def test_nobody_waits_for_what_is_called_asynchronously(written, inputs):
+    text = sketch("initial i\naction x\ni -> x")
+    call = f'subkind="call-behavior"{written}'
+    graph = only(text.replace('subkind="opaque"', call))
+    assert [node.run for node in graph.workers()] == ["run_x"]
+    assert len(graph.inputs) == inputs
+
+
 # -- guards ------------------------------------------------------------------------------------
 
 DECISION = """

@@ -81,7 +81,8 @@ def _action(draft: Draft, node: Element, made: TokenNode) -> TokenNode:
     prefix = _OUTPUTS.get(node.subkind, "run")
     what = _called_name(draft, node) if prefix != "run" else ""
     run = draft.inputs.names.new(f"{prefix}_{identifier(what) if what else short}")
-    if node.subkind in _PULSES:
+    if node.subkind in _PULSES or node.attrs.get("synchronous") is False:
+        # Nobody waits for what is called asynchronously (UML 2.5.1, 16.3.3).
         return replace(made, duration=Duration.PULSE, run=run)
     if node.subkind in ACCEPTS:
         done, names = events(draft.inputs, node)
