@@ -50,7 +50,18 @@ def owned(node: Node) -> Owned:
             index.setdefault(name, []).append(member)
         if short is not None and short != name:
             index.setdefault(short, []).append(member)
+    if node.kind == "TransitionUsage":
+        _add_payload(index, node)
     return index
+
+
+def _add_payload(index: Owned, transition: Node) -> None:
+    """What a transition accepts is known in its guard and effect (SysML 8.3.17.9)."""
+    for trigger in transition.members:
+        if trigger.role == "trigger":
+            for payload in trigger.members:
+                for name in {payload.name, payload.short} - {None}:
+                    index.setdefault(str(name), []).append(payload)
 
 
 def naming(node: Node) -> Reference | None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names import contexts
+from sysmlc.language.names import contexts, positions
 from sysmlc.language.names.contents import NAMESPACES, TYPES, Owned, owned
 from sysmlc.language.names.filters import passes
 from sysmlc.language.names.results import result
@@ -38,6 +38,8 @@ class Lookup:
         self._active: set[Reference] = set()
         self._inheriting: set[Node] = set()
         self._importing: set[tuple[Node, bool]] = set()
+        self._positions: dict[Node, list[Node]] = {}
+        self._at_positions: dict[tuple[Node, str], list[Node]] = {}
         self._cuts = 0
         self._raw: dict[Reference, Node] = {}
 
@@ -110,7 +112,7 @@ class Lookup:
             if inherited and scope.kind in TYPES:
                 hits = iter(self._general_hits(scope, first))
             else:
-                hits = self._inside(scope, first, start.without)
+                hits = self.inside(scope, first, start.without)
             inherited = False
             for hit in hits:
                 found = self._take(hit, names, 0, kinds)
@@ -160,7 +162,7 @@ class Lookup:
             index = self._owned[scope] = owned(scope)
         return index
 
-    def _inside(self, scope: Node, name: str, without: Node | None) -> Iterator[Node]:
+    def inside(self, scope: Node, name: str, without: Node | None = None) -> Iterator[Node]:
         """Members by one name as seen from inside: all own ones, inherited, imported."""
         for hit in self.owned(scope).get(name, _NONE):
             if hit is not without or name in (hit.name, hit.short):
@@ -192,7 +194,8 @@ class Lookup:
         self._inheriting.add(scope)
         hits = self._general_hits(scope, name)
         if hits:
-            hits = tuple(hit for hit in hits if not self._hidden(scope, hit))
+            left = (self._instead(scope, hit) for hit in hits)
+            hits = tuple(dict.fromkeys(hit for hit in left if hit is not None))
         self._inheriting.discard(scope)
         if self._cuts == before:
             memo[name] = hits
@@ -203,7 +206,7 @@ class Lookup:
         for general in self.generals(scope):
             hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         if not hits:
-            for general in self._implied(scope):
+            for general in (*self.by_position(scope), *self._implied(scope)):
                 hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         return tuple(hits) if len(hits) < 2 else self._most_special(hits)
 
@@ -233,10 +236,13 @@ class Lookup:
                     if target is not None and target not in found:
                         found.add(target)
                         waiting.append(target)
+            waiting += [other for other in self.by_position(node) if other not in found]
+            found.update(self.by_position(node))
         return found
 
-    def _hidden(self, scope: Node, hit: Node) -> bool:
-        """Whether a feature that ``scope`` owns redefines ``hit``."""
+    def _instead(self, scope: Node, hit: Node) -> Node | None:
+        """What ``scope`` has instead of an inherited member: the member itself, what redefines it
+        without a name of its own, or nothing."""
         for member in scope.members:
             for relation in member.relations:
                 if relation.kind == "Redefinition" and not relation.implied:
@@ -244,8 +250,44 @@ class Lookup:
                     if name in (hit.name, hit.short) or hit.name is None:
                         target = self.target(member, relation)
                         if target is hit or (target and hit in self.redefined(target)):
-                            return True
-        return False
+                            return None
+        wanted = positions.role(hit)
+        if wanted:
+            for member in positions.own(scope, wanted):
+                if hit in self.by_position(member):
+                    return None if member.name else member
+        return hit
+
+    def by_position(self, feature: Node) -> list[Node]:
+        """What a feature redefines because of its position."""
+        known = self._positions.get(feature)
+        if known is None:
+            before = self._cuts
+            self._positions[feature] = []
+            known = positions.redefined(feature, self)
+            if self._cuts == before:
+                self._positions[feature] = known
+            else:
+                del self._positions[feature]
+        return known
+
+    def at_positions(self, scope: Node, role: str) -> list[Node]:
+        """The features of a type with one role by position, own ones before inherited ones."""
+        key = (scope, role)
+        known = self._at_positions.get(key)
+        if known is None:
+            before = self._cuts
+            self._at_positions[key] = []
+            known = positions.gather(scope, role, self)
+            if self._cuts == before:
+                self._at_positions[key] = known
+            else:
+                del self._at_positions[key]
+        return known
+
+    def all_generals(self, node: Node) -> list[Node]:
+        """What ``node`` specialises as the text says and what it may implicitly."""
+        return [*self.generals(node), *self.by_position(node), *self._implied(node)]
 
     def generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
@@ -255,7 +297,10 @@ class Lookup:
         before = self._cuts
         found: list[Node] = []
         for relation in node.relations:
-            if relation.kind in _GENERAL and not relation.implied:
+            if not relation.implied and (
+                relation.kind in _GENERAL
+                or (relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS)
+            ):
                 target = self.target(node, relation)
                 if target is not None and target not in found:
                     found.append(target)
@@ -345,7 +390,7 @@ class Lookup:
         if scope is None:
             return _NONE
         everything = bool(node.facts.get("isImportAll"))
-        hits = tuple(self._inside(scope, name, None)) if everything else self.visible(scope, name)
+        hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
         if hits or not node.facts.get("isRecursive"):
             return hits
         for nested in self._nested(scope, everything):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names import implied
+from sysmlc.language.names import implied, semantic
 from sysmlc.language.names.contents import FEATURES, TYPES, naming
 from sysmlc.language.names.lookup import Hits, Lookup
 from sysmlc.language.names.unresolved import report
@@ -61,15 +61,12 @@ class Model:
             known = {node: None}
             waiting = [node]
             while waiting:
-                for general in self._all_generals(waiting.pop(0)):
+                for general in self.lookup.all_generals(waiting.pop(0)):
                     if general not in known:
                         known[general] = None
                         waiting.append(general)
             self._supers[node] = known
         return list(known)
-
-    def _all_generals(self, node: Node) -> list[Node]:
-        return [*self.lookup.generals(node), *self.implied_generals(node)]
 
     def specializes(self, node: Node, general: Node | str) -> bool:
         """Whether ``node`` is ``general`` or specialises it, in any number of steps."""
@@ -81,7 +78,7 @@ class Model:
         found: dict[Node, None] = {}
         waiting, seen = [node], {node}
         while waiting:
-            for general in self._all_generals(waiting.pop(0)):
+            for general in self.lookup.all_generals(waiting.pop(0)):
                 if general.kind not in FEATURES:
                     found[general] = None
                 elif general not in seen:
@@ -101,7 +98,12 @@ class Model:
         while node.name is None:
             reference = naming(node)
             if reference is None:
-                return node.short
+                by_position = self.lookup.by_position(node)
+                if node.short or not by_position or by_position[0] in seen:
+                    return node.short
+                node = by_position[0]
+                seen.add(node)
+                continue
             relation = next(r for r in node.relations if r.reference is reference)
             target = self.lookup.target(node, relation)
             if target is None or target in seen:
@@ -137,10 +139,16 @@ class Model:
         """All that ``node`` may implicitly specialise, needed or not."""
         known = self._implied.get(node)
         if known is None:
-            found = (self.find(name) for _, name in implied.candidates(node))
-            known = [n for n in dict.fromkeys(found) if n is not None and n is not node]
-            self._implied[node] = known
+            known = self._implied[node] = list(dict.fromkeys(n for _, n in self._candidates(node)))
         return known
+
+    def _candidates(self, node: Node) -> list[tuple[str, Node]]:
+        """Kind of relation and target of all that ``node`` may implicitly specialise."""
+        if node.kind not in TYPES:
+            return []
+        named = ((kind, self.find(name)) for kind, name in implied.candidates(node))
+        found = [(kind, one) for kind, one in named if one is not None and one is not node]
+        return [*semantic.bases(node, self.lookup), *found]
 
     def needed_generals(self, node: Node) -> list[Node]:
         """What ``node`` implicitly specialises and no other general of it does already."""
@@ -165,16 +173,20 @@ class Model:
                     node.relations += self._implied_relations(node)
 
     def _implied_relations(self, node: Node) -> list[Relation]:
-        needed = set(self.needed_generals(node))
-        made = []
-        for kind, name in implied.candidates(node):
-            target = self.find(name)
+        needed = dict.fromkeys(self.needed_generals(node))
+        redefined = self.lookup.by_position(node)
+        made = [_relation("Redefinition", self.qualified_name(one), one) for one in redefined]
+        for kind, target in self._candidates(node):
             if target in needed:
-                needed.discard(target)
-                reference = Reference((tuple(name.split("::")),))
-                reference.targets = [target]
-                made.append(Relation(kind, reference, implied=True))
+                del needed[target]
+                made.append(_relation(kind, self.qualified_name(target), target))
         return made
+
+
+def _relation(kind: str, name: str, target: Node) -> Relation:
+    reference = Reference((tuple(name.split("::")),))
+    reference.targets = [target]
+    return Relation(kind, reference, implied=True)
 
 
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:

@@ -21,7 +21,7 @@ def result(expression: Node, lookup: "Lookup") -> Node | None:
     if kind == "FeatureReferenceExpression":
         return _referent(expression, lookup)
     if kind == "FeatureChainExpression":
-        return _named(expression, lookup)
+        return named(expression, lookup)
     if kind in _FIRST:
         return _operand(expression, 0, lookup)
     if kind == "CollectExpression":
@@ -33,7 +33,8 @@ def result(expression: Node, lookup: "Lookup") -> Node | None:
     return None
 
 
-def _named(expression: Node, lookup: "Lookup") -> Node | None:
+def named(expression: Node, lookup: "Lookup") -> Node | None:
+    """The element that an expression names: a referent, a target, a function or type."""
     for relation in expression.relations:
         if relation.kind == "Membership":
             return lookup.target(expression, relation)
@@ -43,7 +44,7 @@ def _named(expression: Node, lookup: "Lookup") -> Node | None:
 def _referent(expression: Node, lookup: "Lookup") -> Node | None:
     body = next((m for m in expression.members if m.kind == "Expression"), None)
     if body is None:
-        return _named(expression, lookup)
+        return named(expression, lookup)
     last = next((m for m in body.members if m.membership == "ResultExpressionMembership"), None)
     return result(last, lookup) if last else None
 
@@ -72,7 +73,7 @@ def _cast(expression: Node, lookup: "Lookup") -> Node | None:
 
 def _invoked(expression: Node, lookup: "Lookup") -> Node | None:
     """The result parameter of a function or calculation, else the type that is instantiated."""
-    invoked = _named(expression, lookup)
+    invoked = named(expression, lookup)
     if invoked is None or expression.kind == "ConstructorExpression":
         return invoked
     return returned(invoked, lookup, set()) or (invoked if invoked.kind not in FEATURES else None)

@@ -1,0 +1,69 @@
+"""Features that redefine others by their position: ends, parameters, results, subjects.
+
+KerML 8.4.4.1 (checkFeatureEndRedefinition, checkFeatureParameterRedefinition,
+checkFeatureResultRedefinition), SysML 8.4 (subject and objective).
+"""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.lookup import Lookup
+
+_ROLES = {
+    "EndFeatureMembership": "end",
+    "ParameterMembership": "parameter",
+    "ReturnParameterMembership": "result",
+    "SubjectMembership": "subject",
+    "ObjectiveMembership": "objective",
+}
+"""How a membership makes its member redefine others; of a role with one feature only the first."""
+_BEHAVING = kinds_of("Behavior") | kinds_of("Step")
+_SKIPPED = kinds_of("InstantiationExpression")
+
+
+def role(feature: Node) -> str:
+    """Among which features of its owner a feature is counted; empty for one that is not."""
+    found = _ROLES.get(feature.membership)
+    if found is not None:
+        return found
+    if feature.kind not in FEATURES or feature.membership != "FeatureMembership":
+        return ""
+    if feature.facts.get("isEnd"):
+        return "end"
+    owner = feature.owner
+    counted = "direction" in feature.facts and owner is not None and owner.kind in _BEHAVING
+    return "parameter" if counted else ""
+
+
+def own(scope: Node, wanted: str) -> list[Node]:
+    """The features of ``scope`` with that role, in the order of the text."""
+    return [member for member in scope.members if role(member) == wanted]
+
+
+def redefined(feature: Node, lookup: "Lookup") -> list[Node]:
+    """What a feature without a written redefinition redefines by its position."""
+    owner, wanted = feature.owner, role(feature)
+    if not wanted or owner is None or owner.kind in _SKIPPED:
+        return []
+    if any(relation.kind == "Redefinition" and not relation.implied for relation in feature.relations):
+        return []
+    index = own(owner, wanted).index(feature)
+    found: list[Node] = []
+    for general in lookup.all_generals(owner):
+        features = lookup.at_positions(general, wanted)
+        if index < len(features) and features[index] not in found:
+            found.append(features[index])
+    return [one for one in found if one is not feature]
+
+
+def gather(scope: Node, wanted: str, lookup: "Lookup") -> list[Node]:
+    """The features of ``scope`` with that role, those that it inherits after its own."""
+    features = own(scope, wanted)
+    for general in lookup.all_generals(scope):
+        inherited = lookup.at_positions(general, wanted)
+        features += inherited[len(features) :]
+    return features

@@ -1,0 +1,47 @@
+"""Semantic metadata: an element with such metadata specialises its base type (KerML 8.4.4.13)."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.results import named
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.lookup import Lookup
+
+_METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+
+
+def bases(node: Node, lookup: "Lookup") -> list[tuple[str, Node]]:
+    """Kind of relation and target of what ``node`` specialises because of its metadata."""
+    found: list[tuple[str, Node]] = []
+    for member in node.members:
+        if member.kind in _METADATA:
+            base = _base(member, lookup)
+            if base is not None:
+                found += _relations(node, base, lookup)
+    return found
+
+
+def _base(metadata: Node, lookup: "Lookup") -> Node | None:
+    """The element that the ``baseType`` of a metadata usage names."""
+    for feature in lookup.inside(metadata, "baseType"):
+        for value in feature.members:
+            if value.membership == "FeatureValue":
+                return _named(value, lookup)
+    return None
+
+
+def _named(value: Node, lookup: "Lookup") -> Node | None:
+    while value.kind == "OperatorExpression" and value.members:
+        value = value.members[0]
+    return named(value, lookup)
+
+
+def _relations(node: Node, base: Node, lookup: "Lookup") -> list[tuple[str, Node]]:
+    if node.kind in FEATURES:
+        return [("Subsetting" if base.kind in FEATURES else "FeatureTyping", base)]
+    if base.kind not in FEATURES:
+        return [("Subclassification", base)]
+    types = (general for general in lookup.generals(base) if general.kind not in FEATURES)
+    return [("Subclassification", general) for general in types]
