@@ -6,7 +6,7 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import Index, drop, every, first, put, put_new
+from sysmlc.ir.neighbours import Index, drop, every, first, put, put_all_new, put_new
 from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
@@ -197,6 +197,30 @@ class Graph:
                 put_new(self._owned, owner, made)
         return made
 
+    def new_below(
+        self, owner: str, kind: Kind, source: str, rows: Iterable[tuple[str, str, int]]
+    ) -> list[Element]:
+        """Add new elements below one that is there: as ``new`` of id, name and ordinal each.
+
+        They end before the first whose id is empty or taken.
+        """
+        made: list[Element] = []
+        known, add = self._elements.setdefault, made.append
+        for id, name, ordinal in rows:
+            one = _bare(Element)
+            if not id or known(id, one) is not one:
+                break
+            one.id = id
+            one.kind = kind
+            one.name = name
+            one.owner = owner
+            one.ordinal = ordinal
+            one.source = source
+            add(one)
+        self._fresh += made
+        put_all_new(self._owned, owner, made)
+        return made
+
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Add an edge unless it is there. Use ``move`` for ownership."""
         if edge is Edge.OWNS:
@@ -226,6 +250,20 @@ class Graph:
             else:
                 out[source.id] = target
                 drawn += (source, target)
+
+    def connect_each(
+        self, edge: Edge, sources: Iterable[Element | None], targets: Iterable[Element | None]
+    ) -> None:
+        """Add edges of one kind; those without source or target are not added."""
+        out, drawn = self._out[edge], self._drawn.get(edge)
+        for source, target in zip(sources, targets, strict=True):
+            if source is None or target is None:
+                continue
+            # An edge that is there already may be noted twice: the way back has it once.
+            if drawn is not None and out.setdefault(source.id, target) is target:
+                drawn += (source, target)
+            else:
+                self._link(edge, source, target)
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Remove an edge if it is there. Use ``move`` for ownership."""

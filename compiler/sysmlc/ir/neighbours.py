@@ -47,6 +47,18 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
         index[id] = [known, neighbour]
 
 
+def put_all_new(index: Index, id: str, neighbours: list[Element]) -> None:
+    """Add neighbours that cannot be there."""
+    known = index.get(id)
+    if known is not None or len(neighbours) > _MANY:
+        for one in neighbours:
+            put_new(index, id, one)
+    elif len(neighbours) > 1:
+        index[id] = neighbours[:]
+    elif neighbours:
+        index[id] = neighbours[0]
+
+
 def drop(index: Index, id: str, neighbour: Element) -> bool:
     """Remove a neighbour; False when it is not there."""
     known = index.get(id)

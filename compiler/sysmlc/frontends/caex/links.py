@@ -7,10 +7,11 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.sides import SIDES, End, Problem, Sides
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
+from sysmlc.frontends.caex.types import Type
 from sysmlc.ir import Edge, Element, Kind
 
-_Key = tuple[str, frozenset[tuple[str, ...]]]
-"""Owner of a link, and its ends as the parts and the port that lead there."""
+_Ends = frozenset[tuple[str, ...]]
+"""Ends of a link as the parts and the port that lead there."""
 
 
 # To look a member of an enumeration up takes ten times as long as to look these up.
@@ -28,13 +29,16 @@ class Links:
         self._context = context
         self._sites = sites
         self._sides = Sides(context, sites)
-        self._drawn: set[_Key] = set()
+        self._drawn: set[tuple[str, _Ends]] = set()
+        """Owners of links of classes, with the ends."""
         self._drawing: set[str] = set()
         """Ids of the classes with links of their own."""
+        self._drawing_above: dict[Type, list[str]] = {}
+        """Those among the classes that a class is or specialises."""
         self._steps: dict[Site, list[Element | None]] = {}
-        self._edges: list[Edge] = []
-        self._from: list[Element | str] = []
-        self._to: list[Element | None] = []
+        self._edges: dict[Edge, tuple[list[Element], list[Element | None]]] = {
+            edge: ([], []) for edge in (_END, _ROLE, _PATH)
+        }
 
     def lower(self) -> None:
         """Add a connector for each link; those of classes first, as instances repeat them."""
@@ -43,9 +47,8 @@ class Links:
                 for row in document.children(0):
                     if (document.tags[row] == "InstanceHierarchy") is are_instances:
                         self._lower_below(row, document)
-        self._context.graph.connect_all(self._edges, self._from, self._to)
-        for column in (self._edges, self._from, self._to):
-            column.clear()
+        for edge, (sources, targets) in self._edges.items():
+            self._context.graph.connect_each(edge, sources, targets)
 
     def _lower_below(self, top: int, document: Document) -> None:
         tags = document.tags
@@ -87,13 +90,15 @@ class Links:
 
     def _is_of_class(self, holder: Site, ends: list[End]) -> bool:
         """Whether the class that the element is an instance of has the link already."""
-        if not self._drawing or holder.declared is None:
+        declared = holder.declared
+        if declared is None or not self._drawing:
             return False
-        types = [type.id for type in holder.declared.chain() if type.id in self._drawing]
-        if not types or any(not _is_below(end.site, holder) for end in ends):
-            return False
-        key = _key(ends, holder)
-        return any((id, key) in self._drawn for id in types)
+        types = self._drawing_above.get(declared)
+        if types is None:
+            types = [type.id for type in declared.chain() if type.id in self._drawing]
+            self._drawing_above[declared] = types
+        key = _key(ends, holder) if types else None
+        return key is not None and any((id, key) in self._drawn for id in types)
 
     def _connector(self, row: int, document: Document, holder: Site, ends: list[End]) -> None:
         top = holder.root
@@ -107,9 +112,11 @@ class Links:
 
     def _note(self, top: Site, owner: str | None, ends: list[End]) -> None:
         """Remember the link of a class: its instances repeat it."""
-        if not top.instance and owner is not None:
-            self._drawn.add((owner, _key(ends, top)))
+        key = _key(ends, top) if not top.instance and owner is not None else None
+        if key is not None and owner is not None:
+            self._drawn.add((owner, key))
             self._drawing.add(owner)
+            self._drawing_above.clear()
 
     def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
         graph, above = self._context.graph, connector.id
@@ -120,10 +127,15 @@ class Links:
             if made is None:
                 id = f"{id}~{ordinal}"
                 made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
-            steps = self._steps_to(site)[0 if crosses else 1 :]
-            self._edges += (_END, _ROLE, *[_PATH] * len(steps))
-            self._from += (connector, *[made] * (1 + len(steps)))
-            self._to += (made, graph[port], *steps)
+            self._tie(_END, connector, made)
+            self._tie(_ROLE, made, graph[port])
+            for step in self._steps_to(site)[0 if crosses else 1 :]:
+                self._tie(_PATH, made, step)
+
+    def _tie(self, edge: Edge, source: Element, target: Element | None) -> None:
+        sources, targets = self._edges[edge]
+        sources.append(source)
+        targets.append(target)
 
     def _steps_to(self, site: Site) -> list[Element | None]:
         """The Instance at the top (if any), and the parts that lead down to an element."""
@@ -191,12 +203,10 @@ def _standing_for(site: Site) -> str:
     return site.instance or site.part or own
 
 
-def _key(ends: list[End], top: Site) -> frozenset[tuple[str, ...]]:
-    return frozenset((*end.site.parts_below(top), end.port) for end in ends)
-
-
-def _is_below(site: Site, top: Site) -> bool:
-    one: Site | None = site
-    while one is not None and one is not top:
-        one = one.parent
-    return one is top
+def _key(ends: list[End], top: Site) -> _Ends | None:
+    """The ends as seen from above; None when one of them is elsewhere."""
+    one, other = ends
+    parts, other_parts = one.site.parts_below(top), other.site.parts_below(top)
+    if parts is None or other_parts is None:
+        return None
+    return frozenset(((*parts, one.port), (*other_parts, other.port)))

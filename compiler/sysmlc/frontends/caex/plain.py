@@ -15,7 +15,6 @@ from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.reference import End
 
 _Stated = tuple[str, str, str]
 """Data type, attribute type and unit of an attribute, or nothing."""
@@ -54,8 +53,8 @@ class Plain:
         self._document = document
         self._shapes: dict[_Stated, _Shape | None] = {}
         self._ports: dict[str, _PortShape | None] = {}
-        self._sources: list[End] = []
-        self._targets: list[Element | None] = []
+        self._sources: list[Element] = []
+        self._targets: list[Element] = []
 
     def attribute(self, owner: Type, row: int) -> bool:
         """Add an attribute of a class; False when it is not plain."""
@@ -186,7 +185,6 @@ class Plain:
 
     def finish(self) -> None:
         """Tie the features to what types them."""
-        edges = [Edge.TYPED_BY] * len(self._sources)
-        self._context.graph.connect_all(edges, self._sources, self._targets)
+        self._context.graph.connect_each(Edge.TYPED_BY, self._sources, self._targets)
         self._sources.clear()
         self._targets.clear()

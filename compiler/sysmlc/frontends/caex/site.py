@@ -13,7 +13,7 @@ class Site:
     not (for a class at the top: itself). ``part`` is the property that stands for it in the
     class above, ``instance`` the Instance that holds its values (empty while there are none).
     ``ppr`` is product, process, resource or empty. ``inner`` are the rows of the internal
-    elements in it, ``roles`` those that name a role, ``members`` all others.
+    elements in it, ``roles`` those that name a role, ``members`` all others but links.
     """
 
     __slots__ = (
@@ -64,7 +64,7 @@ class Site:
                 self.roles.append(row)
                 if ends[row] > row + 1:
                     self.members.append(row)
-            else:
+            elif tag != "InternalLink":
                 self.members.append(row)
             row = ends[row]
 
@@ -88,11 +88,13 @@ class Site:
         """What types it."""
         return self.own or self.declared
 
-    def parts_below(self, top: "Site") -> list[str]:
-        """Ids of the parts that lead from ``top`` down to it."""
+    def parts_below(self, top: "Site") -> list[str] | None:
+        """Ids of the parts that lead from ``top`` down to it; None when it is not below."""
         found = []
         site: Site | None = self
-        while site is not None and site is not top:
+        while site is not top:
+            if site is None:
+                return None
             found.append(site.part)
             site = site.parent
         return found[::-1]
