@@ -57,11 +57,19 @@ def owned(node: Node) -> Owned:
 
 def _add_payload(index: Owned, transition: Node) -> None:
     """What a transition accepts is known in its guard and effect (SysML 8.3.17.9)."""
-    for trigger in transition.members:
-        if trigger.role == "trigger":
-            for payload in trigger.members:
-                for name in {payload.name, payload.short} - {None}:
-                    index.setdefault(str(name), []).append(payload)
+    payload, accepted = payload_of(transition)
+    if payload is not None and accepted is not None:
+        for name in (accepted.name, accepted.short):
+            if name is not None:
+                index.setdefault(name, []).append(payload)
+
+
+def payload_of(transition: Node) -> tuple[Node | None, Node | None]:
+    """The payload parameter of a transition and that of the accept action that triggers it."""
+    parameters = [m for m in transition.members if m.membership == "ParameterMembership"]
+    trigger = next((m for m in transition.members if m.role == "trigger"), None)
+    accepted = trigger.members[0] if trigger is not None and trigger.members else None
+    return (parameters[1] if len(parameters) > 1 else accepted), accepted
 
 
 def naming(node: Node) -> Reference | None:

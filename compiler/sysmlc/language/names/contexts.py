@@ -74,7 +74,7 @@ def start(node: Node, relation: Relation) -> Start:
     if kind == "Membership":
         return _membership(node)
     if kind == "ReferenceSubsetting" and _is_connector_end(node):
-        return Start(_outer(node.owner), without=node)
+        return Start(_beyond_transition(node.owner), without=node)
     if kind == "Redefinition":
         return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
     if kind == "FeatureTyping":
@@ -92,7 +92,7 @@ def _membership(node: Node) -> Start:
         return Start(None, operand=operand) if operand else Start(node)
     if node.kind in _SKIPPED:
         return Start(beyond_expressions(node))
-    return Start(node)
+    return Start(namespace(node)) if node.kind == "TransitionUsage" else Start(node)
 
 
 def _assigned(node: Node) -> Node | None:
@@ -112,8 +112,10 @@ def _is_connector_end(node: Node) -> bool:
     )
 
 
-def _outer(node: Node | None) -> Node | None:
-    return namespace(node) if node else None
+def _beyond_transition(connector: Node | None) -> Node | None:
+    """Where the ends of a connector are looked up; those of a transition's, around that."""
+    scope = namespace(connector) if connector else None
+    return namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
 
 
 def namespace(node: Node) -> Node | None:

@@ -41,12 +41,14 @@ class Lookup:
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
         self._cuts = 0
-        self._raw: dict[Reference, Node] = {}
 
     # References
 
     def target(self, node: Node, relation: Relation) -> Node | None:
-        """The element that a relation of ``node`` leads to; None when a name leads nowhere."""
+        """The element that a relation of ``node`` leads to; None when a name leads nowhere.
+
+        The target of ``importedMembership`` may be the Membership node of an alias.
+        """
         reference = relation.reference
         if reference.targets is not None:
             return reference.target
@@ -79,18 +81,12 @@ class Lookup:
                 hit = self.search(start, names, kinds)
             if hit is None:
                 break
-            if index == last:
-                self._raw[reference] = hit
-            element = self.element(hit)
+            imported = relation.kind == "importedMembership"
+            element = hit if imported and index == last else self.element(hit)
             if element is None:
                 break
             found.append(element)
         return found
-
-    def membership(self, node: Node, relation: Relation) -> Node | None:
-        """Like ``target``, but an alias stays one: imports bring its name."""
-        element = self.target(node, relation)
-        return self._raw.get(relation.reference, element) if element else None
 
     def element(self, hit: Node) -> Node | None:
         """What a member stands for: the element of an alias, else the member itself."""
@@ -205,7 +201,7 @@ class Lookup:
         hits: list[Node] = []
         for general in self.generals(scope):
             hits += [hit for hit in self._heritable(general, name) if hit not in hits]
-        if not hits:
+        if not hits or any(map(_is_of_library, hits)):
             for general in (*self.by_position(scope), *self._implied(scope)):
                 hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         return tuple(hits) if len(hits) < 2 else self._most_special(hits)
@@ -376,7 +372,7 @@ class Lookup:
         return _NONE
 
     def _one(self, node: Node, relation: Relation, name: str) -> Hits:
-        hit = self.membership(node, relation)
+        hit = self.target(node, relation)
         if hit is None:
             return _NONE
         names = (hit.name, hit.short) if hit.name or hit.short else (relation.reference.chain[-1][-1],)
@@ -406,3 +402,11 @@ class Lookup:
             if member.kind in NAMESPACES and (everything or member.visibility in ("", "public")):
                 yield member
                 yield from self._nested(member, everything)
+
+
+def _is_of_library(node: Node) -> bool:
+    """Whether a member is of a library package: what is implied may give a more special one."""
+    owner = node.owner
+    while owner is not None and owner.owner is not None:
+        node, owner = owner, owner.owner
+    return node.kind == "LibraryPackage"

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import implied, semantic
-from sysmlc.language.names.contents import FEATURES, TYPES, naming
+from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
 from sysmlc.language.names.lookup import Hits, Lookup
 from sysmlc.language.names.unresolved import report
 from sysmlc.language.tree import Document, Node, Reference, Relation
@@ -148,7 +148,7 @@ class Model:
             return []
         named = ((kind, self.find(name)) for kind, name in implied.candidates(node))
         found = [(kind, one) for kind, one in named if one is not None and one is not node]
-        return [*semantic.bases(node, self.lookup), *found]
+        return [*_accepted(node), *semantic.bases(node, self.lookup), *found]
 
     def needed_generals(self, node: Node) -> list[Node]:
         """What ``node`` implicitly specialises and no other general of it does already."""
@@ -181,6 +181,15 @@ class Model:
                 del needed[target]
                 made.append(_relation(kind, self.qualified_name(target), target))
         return made
+
+
+def _accepted(node: Node) -> list[tuple[str, Node]]:
+    """The payload of a transition is what its trigger accepts (SysML 8.3.17.9)."""
+    owner = node.owner
+    if owner is None or owner.kind != "TransitionUsage" or node.membership != "ParameterMembership":
+        return []
+    payload, accepted = payload_of(owner)
+    return [("Subsetting", accepted)] if node is payload and accepted is not None else []
 
 
 def _relation(kind: str, name: str, target: Node) -> Relation:
