@@ -1,0 +1,206 @@
+"""Actions and control nodes of activities."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import annotations, nodes, statements, values
+from sysmlc.frontends.sysml.connections import steps_of_value
+from sysmlc.frontends.sysml.definitions import visibility
+from sysmlc.frontends.sysml.events import trigger
+from sysmlc.frontends.sysml.parameters import pin
+from sysmlc.frontends.sysml.successions import steps
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.tree import Node
+from sysmlc.logic.expression import print_statement
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_STRUCTURED = frozenset(
+    {"conditional", "loop", "sequence", "expansion", "interruptible", "structured"}
+)
+_CONTROLS = {
+    "DecisionNode": "decision",
+    "MergeNode": "merge",
+    "ForkNode": "fork",
+    "JoinNode": "join",
+}
+
+
+def action(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A step: the call of a behaviour, a group of steps, or an action without a model."""
+    subkind = str(annotations.said(node, "Kind", "name") or "")
+    inside = [one for one in nodes.body_of(node) if _is_step(one)]
+    found = statements.sequence(node) if inside else None
+    written = None if found is None else statements.effect(found)
+    if written is not None:
+        return _opaque(low, node, owner, written, found or [])
+    if _called(node) is None and (subkind in _STRUCTURED or (inside and not subkind)):
+        return _structured(low, node, owner, subkind)
+    return _action(low, node, owner, subkind)
+
+
+def _is_step(node: Node) -> bool:
+    is_reference = node.kind == "ReferenceUsage" and not node.name
+    return not (nodes.is_text(node) or "direction" in node.facts or is_reference)
+
+
+def _start(
+    low: "Lowering", node: Node, owner: Element, subkind: str, **attrs: AttrValue
+) -> Element:
+    name = nodes.name_of(node)
+    made = low.add(node, Kind.ACTION, name, owner, subkind=subkind, **visibility(node), **attrs)
+    _partitions(low, node, owner, made)
+    return made
+
+
+def _opaque(
+    low: "Lowering", node: Node, owner: Element, written: str, found: list[Node]
+) -> Element:
+    made = _start(low, node, owner, "opaque", body=written)
+    inside = {id(one) for one in found}
+    rest = (one for one in nodes.body_of(node) if one.kind != "SuccessionAsUsage")
+    low.lower_all((one for one in rest if id(one) not in inside), made)
+    return made
+
+
+def _structured(low: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+    attrs: dict[str, AttrValue] = {"subkind": subkind or "structured"}
+    made = low.add(node, Kind.STRUCTURED, nodes.name_of(node), owner, **attrs, **visibility(node))
+    _partitions(low, node, owner, made)
+    steps(low, nodes.body_of(node), made)
+    return made
+
+
+def _called(node: Node) -> Node | None:
+    """The behaviour or operation that a step performs."""
+    kinds = ("FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition")
+    return nodes.target(node, *kinds)
+
+
+def _action(low: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+    called = _called(node)
+    made = _start(low, node, owner, subkind or ("opaque" if called is None else "call-behavior"))
+    for one in nodes.body_of(node):
+        if one.kind == "ReferenceUsage" and not one.name and "direction" not in one.facts:
+            for found in nodes.references(one, "FeatureTyping", "Subsetting"):
+                low.refer(Edge.CALLS, made, found)
+        else:
+            low.lower(one, made)
+    if called is not None:
+        low.later(lambda: _call(low, made, called))
+    return made
+
+
+def _call(low: "Lowering", made: Element, called: Node) -> None:
+    low.lead(Edge.CALLS, made, called)
+    target = low.graph.target(made, Edge.CALLS)
+    if target is not None and target.kind is Kind.OPERATION:
+        low.graph.set(made, subkind="call-operation")
+
+
+def _partitions(low: "Lowering", node: Node, owner: Element, made: Element) -> None:
+    """Partitions by the names that metadata of ours gives."""
+    given = annotations.said(node, "Partition", "names")
+    names = given if isinstance(given, tuple) else () if given is None else (given,)
+    for name in names:
+        known = [
+            one
+            for one in low.graph.owned(owner)
+            if one.kind is Kind.PARTITION and one.name == name
+        ]
+        found = known[0] if known else low.below(owner, Kind.PARTITION, str(name))
+        low.graph.connect(Edge.IN_PARTITION, made, found)
+
+
+# -- sending, accepting, assigning -------------------------------------------------------------
+
+
+def send(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A send action: the signal that it creates, its arguments, the port or receiver."""
+    made = _start(low, node, owner, "send")
+    payload, sender, receiver = [*statements.inputs(node), None, None, None][:3]
+    if payload is not None:
+        _payload(low, made, payload)
+    for end in (sender, receiver):
+        if end is not None:
+            low.later(lambda end=end: _to(low, made, end))  # type: ignore[misc]
+    _inside(low, node, made)
+    return made
+
+
+def _payload(low: "Lowering", made: Element, payload: Node) -> None:
+    created = nodes.target(payload, "Membership", "FeatureTyping")
+    is_new = payload.kind in ("ConstructorExpression", "InvocationExpression")
+    if created is not None and is_new:
+        low.later(lambda: low.lead(Edge.CALLS, made, created))
+        given = [one for one in payload.members if one.kind in nodes.EXPRESSIONS or one.members]
+        for one in given:
+            _argument(low, made, one)
+    else:
+        _argument(low, made, payload)
+
+
+def _argument(low: "Lowering", made: Element, given: Node) -> None:
+    value = nodes.value_of(given) or given
+    one = low.make(given, Kind.PIN, nodes.name_of(given), made, direction="in", subkind="argument")
+    values.give(low, one, "value", value)
+
+
+def _to(low: "Lowering", made: Element, end: Node) -> None:
+    found = steps_of_value(end)
+    known = low.element(found[-1]) if found else None
+    if known is not None and known.kind is Kind.PORT:
+        low.graph.set(made, on_port=known.id)
+
+
+def accept(low: "Lowering", node: Node, owner: Element) -> Element:
+    """An accept action with its trigger."""
+    made = _start(low, node, owner, "accept")
+    trigger(low, node, made)
+    _inside(low, node, made)
+    return made
+
+
+def _inside(low: "Lowering", node: Node, made: Element) -> None:
+    rest = (one for one in nodes.body_of(node) if one.membership != "ParameterMembership")
+    low.lower_all(rest, made)
+
+
+def assign(low: "Lowering", node: Node, owner: Element) -> Element:
+    """An assignment: an opaque action with the text of it."""
+    found = statements.statement(node)
+    made = _start(low, node, owner, "opaque")
+    if found is not None:
+        low.set(made, body=print_statement(found))
+    elif (document := low.document(node)) is not None and node.end > node.start >= 0:
+        low.set(made, body=" ".join(document.text[node.start : node.end].split()))
+    _inside(low, node, made)
+    return made
+
+
+# -- control -----------------------------------------------------------------------------------
+
+
+def control(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A decision, merge, fork or join."""
+    subkind = _CONTROLS[node.kind]
+    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, subkind=subkind)
+    low.set(made, **visibility(node))
+    _partitions(low, node, owner, made)
+    low.lower_all(nodes.body_of(node), made)
+    return made
+
+
+def terminate(low: "Lowering", node: Node, owner: Element) -> Element:
+    """The end of the behaviour; the end of something else is an action."""
+    if any(one is not None for one in statements.inputs(node)):
+        low.approximated(node, "a terminate action for something else", "an opaque action")
+        return _start(low, node, owner, "destroy")
+    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, subkind="final")
+    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    return made
+
+
+def pin_or_feature(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A parameter of a step."""
+    return pin(low, node, owner)

@@ -1,0 +1,173 @@
+"""Comments, documentation and metadata: what annotates an element."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_STAND_INS = "Stereotypes"
+"""The package of what the back end writes for stereotypes whose profile is not there."""
+
+
+def documentation(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """A comment about its owner."""
+    made = _comment(low, node, owner)
+    if owner is not None:
+        low.graph.connect(Edge.REFERENCES, made, owner)
+
+
+def comment(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """A comment about what it names, else about its owner (KerML 1.0, 8.3.2.3.2)."""
+    made = _comment(low, node, owner)
+    about = nodes.references(node, "Annotation")
+    for one in about:
+        low.refer(Edge.REFERENCES, made, one)
+    if not about and owner is not None:
+        low.graph.connect(Edge.REFERENCES, made, owner)
+
+
+def _comment(low: "Lowering", node: Node, owner: Element | None) -> Element:
+    body = str(node.facts.get("body", "")).strip()
+    return low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
+
+
+def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """A text in another language: the body of its owner, which an opaque element becomes."""
+    if owner is None:
+        low.unsupported(node)
+        return
+    body, language = str(node.facts.get("body", "")).strip(), str(node.facts.get("language", ""))
+    bodies = owner.attrs.get("bodies", owner.attrs.get("body"))
+    known = bodies if isinstance(bodies, tuple) else () if bodies is None else (bodies,)
+    spoken = owner.attrs.get("languages", owner.attrs.get("language", ""))
+    languages = spoken if isinstance(spoken, tuple) else (spoken,) * len(known)
+    if not known:
+        low.set(owner, body=body, language=language)
+    else:
+        low.set(owner, bodies=(*known, body), languages=(*languages, language))
+    if owner.kind in (Kind.ACTIVITY, Kind.ACTION) and not owner.subkind:
+        low.set(owner, subkind="opaque")
+
+
+# -- metadata ----------------------------------------------------------------------------------
+
+
+def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """Metadata of ours is read with its owner; any other is an applied stereotype."""
+    if our_name(node):
+        return
+    about = nodes.references(node, "Annotation")
+    definition = nodes.target(node, "FeatureTyping")
+    name = _definition_name(node, definition)
+    made = low.add(node, Kind.APPLICATION, name, owner, stereotype=name)
+    low.set(made, namespace=_namespace(definition))
+    if owner is not None and not about:
+        low.graph.connect(Edge.SUBJECT, made, owner)
+    for one in about:
+        low.refer(Edge.SUBJECT, made, one)
+    if definition is not None and low.document(definition) is not None:
+        low.later(lambda: _instance_of(low, made, definition))
+    for key, value in facts_of(node):
+        low.later(lambda key=key, value=value: _tag(low, made, key, value))  # type: ignore[misc]
+
+
+def _definition_name(node: Node, definition: Node | None) -> str:
+    if definition is not None:
+        return definition.name or definition.short or ""
+    found = nodes.reference(node, "FeatureTyping")
+    return "" if found is None else nodes.last_name(found)
+
+
+def _namespace(definition: Node | None) -> str:
+    """The profile of a stand-in, as it says; that of the recipe levels for our own library."""
+    if definition is None:
+        return ""
+    if nodes.path_of(definition).startswith(f"{RECIPES}::"):
+        return PROFILE
+    for one in nodes.members(definition, "MetadataUsage"):
+        if our_name(one) == "External":
+            return str(dict(constants_of(one)).get("href", ""))
+    return ""
+
+
+def is_stand_in(node: Node) -> bool:
+    """Whether a definition only stands for the stereotype of a profile that is not there."""
+    owner = node.owner
+    return owner is not None and owner.name == _STAND_INS and owner.kind == "Package"
+
+
+def _instance_of(low: "Lowering", made: Element, definition: Node) -> None:
+    stereotype = low.element(definition)
+    if stereotype is not None:
+        low.graph.connect(Edge.INSTANCE_OF, made, stereotype)
+
+
+def _tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
+    found = values.constant(value)
+    if isinstance(found, tuple):
+        low.graph.set(made, **{f"tag.{key}": tuple(_tagged(low, one) for one in found)})
+    elif found is not None:
+        low.graph.set(made, **{f"tag.{key}": _tagged(low, found)})
+    else:
+        target = nodes.target(value, "Membership")
+        known = low.element(target)
+        said = known.id if known is not None else values.texts(value, low)
+        low.graph.set(made, **{f"tag.{key}": said})
+
+
+def _tagged(low: "Lowering", value: AttrValue) -> str:
+    """A tagged value as text; the qualified name of an element of the unit is its id."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    text = str(value)
+    return low.id_of(text) or text if "::" in text else text
+
+
+def facts_of(node: Node) -> Iterator[tuple[str, Node]]:
+    """Names and expressions of the values that metadata gives."""
+    for one in node.members:
+        value = nodes.value_of(one)
+        name = nodes.name_of(one)
+        if value is not None and name:
+            yield name, value
+
+
+def constants_of(node: Node) -> Iterator[tuple[str, AttrValue]]:
+    """Names and values of what metadata gives as literals."""
+    for name, value in facts_of(node):
+        found = values.constant(value)
+        if found is not None:
+            yield name, found
+
+
+def our_name(node: Node) -> str:
+    """Name of the definition in our library that metadata is typed by, or the empty string."""
+    found = nodes.reference(node, "FeatureTyping")
+    if found is None:
+        return ""
+    target = found.target
+    if target is None or target.owner is None or target.owner.name != OUR_LIBRARY:
+        return ""
+    return target.name or target.short or ""
+
+
+def ours(node: Node) -> dict[str, Node]:
+    """Metadata of our library that a node has, by the names of the definitions."""
+    found = {}
+    for one in nodes.members(node, "MetadataUsage"):
+        name = our_name(one)
+        if name:
+            found[name] = one
+    return found
+
+
+def said(node: Node, name: str, key: str) -> AttrValue:
+    """A value that metadata of our library gives to a node, or None."""
+    one = ours(node).get(name)
+    return None if one is None else dict(constants_of(one)).get(key)

@@ -1,0 +1,110 @@
+"""Packages and definitions, and usages that stand for themselves in a package."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import annotations, nodes
+from sysmlc.frontends.sysml.kinds import CLASSIFIERS, MARKED
+from sysmlc.frontends.sysml.libraries import FILES
+from sysmlc.frontends.sysml.measures import give_measures, is_measured
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.tree import Node, Reference
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_GENERALS = ("Subclassification", "Specialization", "Subsetting", "FeatureTyping", "Redefinition")
+
+
+def package(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """A package with its members; our own libraries and stand-ins are no part of the model."""
+    if owner is None and (node.name in FILES and node.kind == "LibraryPackage"):
+        low.external(node)
+        return
+    if owner is None and node.members and all(map(_is_outside, node.members)):
+        low.external(node)
+        return
+    kind, subkind = marked(node, Kind.PACKAGE)
+    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node))
+    low.lower_all(node.members, made)
+
+
+def _is_outside(node: Node) -> bool:
+    """Whether a definition stands for what no file of the model has."""
+    return annotations.is_stand_in(node) and node.kind == "MetadataDefinition"
+
+
+def marked(node: Node, kind: Kind) -> tuple[Kind, str]:
+    """Kind and subkind of an element, as metadata of ours says; else ``kind``."""
+    name = annotations.said(node, "Kind", "name") or annotations.said(node, "AutomationML", "kind")
+    if isinstance(name, str) and name in MARKED:
+        return MARKED[name], ""
+    return kind, str(name or "")
+
+
+def visibility(node: Node) -> dict[str, AttrValue]:
+    """The attribute for a visibility that is not public."""
+    return {"visibility": node.visibility} if node.visibility in ("private", "protected") else {}
+
+
+def flags(node: Node) -> dict[str, AttrValue]:
+    """What the prefixes of a declaration say."""
+    return {
+        "abstract": bool(node.facts.get("isAbstract")),
+        "variation": bool(node.facts.get("isVariation")),
+        "individual": bool(node.facts.get("isIndividual")),
+        **visibility(node),
+    }
+
+
+def classifier(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """A definition whose members are features."""
+    kind, role = CLASSIFIERS[node.kind]
+    define(low, node, owner, kind, role)
+
+
+def item(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """An item definition: a signal when it is sent, received or said of nothing else."""
+    is_signal = id(node) in low.accepted
+    kind, role = (Kind.SIGNAL, "") if is_signal else (Kind.CLASS, "block")
+    define(low, node, owner, kind, role)
+
+
+def occurrence(low: "Lowering", node: Node, owner: Element | None) -> None:
+    """An occurrence definition: an interaction when it has lifelines or messages, else a class."""
+    is_interaction = any(map(_is_of_interaction, node.members))
+    kind = Kind.INTERACTION if is_interaction else Kind.CLASS
+    define(low, node, owner, kind, "")
+
+
+def _is_of_interaction(node: Node) -> bool:
+    is_message = node.kind == "FlowUsage" and bool(node.facts.get("isMessage"))
+    return is_message or node.kind == "EventOccurrenceUsage"
+
+
+def define(
+    low: "Lowering", node: Node, owner: Element | None, kind: Kind, role: str, **attrs: AttrValue
+) -> Element:
+    """The element of a definition with its generals and its members."""
+    kind, subkind = marked(node, kind)
+    domain = annotations.said(node, "Kind", "domain")
+    given: dict[str, AttrValue] = {"role": role, "subkind": subkind, "domain": domain}
+    made = low.add(node, kind, nodes.name_of(node), owner, **(given | flags(node) | attrs))
+    if kind is Kind.DATA_TYPE:
+        give_measures(low, node, made)
+    generalize(low, node, made)
+    low.lower_all(nodes.body_of(node), made)
+    return made
+
+
+def generalize(low: "Lowering", node: Node, made: Element) -> None:
+    """Edges to the general classifiers; a quantity of the library is told otherwise."""
+    for found in nodes.references(node, *_GENERALS):
+        if made.kind is not Kind.DATA_TYPE or not is_measured(found):
+            low.later(lambda found=found: _general(low, made, found))  # type: ignore[misc]
+
+
+def _general(low: "Lowering", made: Element, found: Reference) -> None:
+    target = found.target
+    if target is not None and target is not None and low.element(target) is made:
+        return
+    low.lead(Edge.SPECIALIZES, made, target)

@@ -1,0 +1,201 @@
+"""Features of definitions: properties, ports, parameters of constraints, literals."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import annotations, nodes, values
+from sysmlc.frontends.sysml.definitions import marked, visibility
+from sysmlc.frontends.sysml.types import types_of
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_COMPOSITE = frozenset({"PartUsage", "ItemUsage", "OccurrenceUsage", "ConstraintUsage"})
+_CLASS_ROLES = {"PortUsage": "interface block", "AttributeUsage": "value type"}
+_OWN_ROLES = frozenset({"block", "interface block", "value type", ""})
+
+
+def property_(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A feature of a classifier; one with members of its own is typed by a class made for it."""
+    kind, subkind = marked(node, Kind.PROPERTY)
+    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **_attrs(node, owner))
+    describe(low, node, made)
+    _aggregate(node, made)
+    return made
+
+
+def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
+    direction = node.facts.get("direction")
+    found: dict[str, AttrValue] = dict(visibility(node))
+    if direction is not None and owner.role != "constraint block":
+        found["direction"] = direction
+        found["role"] = "flow property" if owner.role in _OWN_ROLES else ""
+    return found
+
+
+def _aggregate(node: Node, made: Element) -> None:
+    is_own = not node.facts.get("isReference") and "direction" not in node.facts
+    if "shared" in annotations.ours(node) or "SharedAggregation" in annotations.ours(node):
+        made.attrs["aggregation"] = "shared"
+    elif node.kind in _COMPOSITE and is_own and not node.facts.get("isEnd"):
+        made.attrs["aggregation"] = "composite"
+
+
+def describe(low: "Lowering", node: Node, made: Element) -> None:
+    """What a declaration says of a feature: flags, multiplicity, types, generals, value, texts."""
+    facts = node.facts
+    low.set(
+        made,
+        abstract=bool(facts.get("isAbstract")),
+        derived=bool(facts.get("isDerived")),
+        readonly=bool(facts.get("isConstant")),
+        ordered=bool(facts.get("isOrdered")),
+        individual=bool(facts.get("isIndividual")),
+        multiplicity=values.multiplicity(low, node),
+    )
+    if facts.get("isUnique") is False:
+        low.graph.set(made, unique=False)
+    relate(low, node, made)
+    value = nodes.value_of(node)
+    if value is not None:
+        values.give(low, made, "default", value)
+    _inside(low, node, made)
+
+
+def relate(low: "Lowering", node: Node, made: Element) -> None:
+    """Types, and features that are redefined or subsetted; those of the library give types only."""
+    if any(one.kind == "ConjugatedPortTyping" for one in node.relations):
+        low.set(made, conjugated=True)
+    redefined = nodes.references(node, "Redefinition")
+    for edge, found in ((Edge.SUBSETS, nodes.subsetted(node)), (Edge.REDEFINES, redefined)):
+        for one in found:
+            if one.target is None or low.document(one.target) is not None:
+                low.refer(edge, made, one)
+    own = _own_class(low, node, made)
+    if own is not None:
+        low.graph.connect(Edge.TYPED_BY, made, own)
+        return
+    low.later(lambda: give_types(low, node, made))
+
+
+def give_types(low: "Lowering", node: Node, made: Element) -> None:
+    """Edges to the types of a feature, stated or inherited; the elements must be there."""
+    stated = nodes.references(node, "FeatureTyping", "ConjugatedPortTyping")
+    for one in stated:
+        low.lead(Edge.TYPED_BY, made, one.target)
+    if not stated:
+        for target in types_of(low, node):
+            low.lead(Edge.TYPED_BY, made, target)
+
+
+def _inside(low: "Lowering", node: Node, made: Element) -> None:
+    """Texts belong to the feature itself, other members to the class that is made for it."""
+    own = low.made_for.get(id(node))
+    for one in nodes.body_of(node):
+        if nodes.is_text(one):
+            low.lower(one, made)
+        elif own is not None:
+            low.lower(one, own)
+
+
+def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
+    """A class for what a usage has beyond its type (SysML 1.6 clause 8.3.2.10)."""
+    rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
+    rest = [one for one in rest if not _is_interface_id(low, one, made)]
+    if not rest:
+        return None
+    owner = low.graph.owner(made)
+    role = _CLASS_ROLES.get(node.kind, "block")
+    kind = Kind.DATA_TYPE if role == "value type" else Kind.CLASS
+    own = low.make(node, kind, made.name, owner, role=role, property_specific=True)
+    low.made_for[id(node)] = own
+    low.later(lambda: [low.lead(Edge.SPECIALIZES, own, one) for one in types_of(low, node)])
+    return own
+
+
+def _is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
+    """Whether a redefined port only says the id that it has in AutomationML."""
+    is_id = node.kind == "PortUsage" and "AutomationML" in annotations.ours(node)
+    if not is_id or len(nodes.body_of(node)) != 1 or nodes.target(node, "Redefinition") is None:
+        return False
+    given = annotations.said(node, "AutomationML", "id")
+    target = nodes.target(node, "Redefinition")
+    low.later(lambda: _interface_id(low, made, target, given))
+    return True
+
+
+def _interface_id(low: "Lowering", made: Element, target: Node | None, given: AttrValue) -> None:
+    port = low.element(target)
+    known = made.attrs.get("interface_ids")
+    if port is not None:
+        pairs = known if isinstance(known, tuple) else ()
+        low.graph.set(made, interface_ids=(*pairs, (port.id, given)))
+
+
+# -- ports -------------------------------------------------------------------------------------
+
+
+def port(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A port; one that only holds what flows through it is a flow port of SysML 1.2."""
+    direction = node.facts.get("direction")
+    attrs: dict[str, AttrValue] = {"role": "proxy port", "direction": direction}
+    if "AutomationML" in annotations.ours(node):
+        attrs["role"] = "port"
+    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, **(attrs | visibility(node)))
+    flowing = _flowing(node)
+    if flowing is not None:
+        _flow_port(low, node, flowing, made)
+    else:
+        describe(low, node, made)
+    return made
+
+
+def _flowing(node: Node) -> Node | None:
+    rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
+    is_only = len(rest) == 1 and rest[0].kind == "ReferenceUsage" and not nodes.name_of(rest[0])
+    return rest[0] if is_only and not node.relations else None
+
+
+def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> None:
+    low.set(
+        made,
+        role="flow port",
+        direction=flowing.facts.get("direction"),
+        multiplicity=values.multiplicity(low, node),
+    )
+    for one in nodes.references(flowing, "FeatureTyping"):
+        low.refer(Edge.TYPED_BY, made, one)
+    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+
+
+def part_port(low: "Lowering", node: Node, owner: Element, role: str) -> Element:
+    """A port of SysML v1 that a block types: a part with a keyword of ours."""
+    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, role=role, **visibility(node))
+    describe(low, node, made)
+    return made
+
+
+PART_PORTS = {"FullPort": "full port", "BlockPort": "port"}
+
+
+def literal(low: "Lowering", node: Node, owner: Element) -> Element:
+    """One value of an enumeration."""
+    made = low.add(node, Kind.ENUMERATION_LITERAL, nodes.name_of(node), owner)
+    value = nodes.value_of(node)
+    if value is not None:
+        values.give(low, made, "value", value)
+    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    return made
+
+
+def in_classifier(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A feature of a classifier by its metaclass."""
+    if owner.kind is Kind.ENUMERATION and node.kind in ("EnumerationUsage", "AttributeUsage"):
+        return literal(low, node, owner)
+    if node.kind == "PortUsage":
+        return port(low, node, owner)
+    mark = next((one for one in annotations.ours(node) if one in PART_PORTS), "")
+    if mark:
+        return part_port(low, node, owner, PART_PORTS[mark])
+    return property_(low, node, owner)

@@ -1,0 +1,52 @@
+"""The front end for SysML v2 and KerML."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.ir import Graph
+from sysmlc.sources import Source
+
+if TYPE_CHECKING:
+    from sysmlc.cache import Cache
+
+
+@dataclass(frozen=True, slots=True)
+class SysmlFrontend:
+    """Reads texts and interchange files; all files of a unit are one model.
+
+    ``library`` is where the standard library is; empty where it is usually found.
+    """
+
+    name: str = "sysml"
+    library: str = ""
+    cache: "Cache | None" = None
+
+    def with_cache(self, cache: "Cache") -> "SysmlFrontend":
+        """The same front end, with a cache for parsed files."""
+        return replace(self, cache=cache)
+
+    def with_library(self, path: str) -> "SysmlFrontend":
+        """The same front end, with the standard library from a folder or an archive."""
+        return replace(self, library=path)
+
+    def detect(self, source: Source) -> float:
+        """Sure for text that begins with a word of SysML, and for its XMI."""
+        from sysmlc.frontends.sysml.detect import score
+
+        return score(source)
+
+    def links(self, source: Source) -> Sequence[str]:
+        """Files of a model do not name one another: a folder is a unit."""
+        return ()
+
+    def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+        """Parse, resolve and lower all files of the unit."""
+        from sysmlc.frontends.sysml.reading import read
+
+        ordered = sorted(sources, key=lambda one: one.name)
+        read(ordered, graph, sink, coverage, library=self.library, cache=self.cache)
+
+
+FRONTEND = SysmlFrontend()

@@ -1,0 +1,59 @@
+"""Interactions: occurrences with lifelines and messages between them."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import annotations, nodes
+from sysmlc.frontends.sysml.connections import payloads, steps_of
+from sysmlc.frontends.sysml.types import types_of
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+
+def lifeline(low: "Lowering", node: Node, owner: Element) -> None:
+    """A lifeline: what takes part in the interaction."""
+    made = low.add(node, Kind.LIFELINE, nodes.name_of(node), owner)
+    low.later(lambda: _represent(low, node, made))
+    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+
+
+def _represent(low: "Lowering", node: Node, made: Element) -> None:
+    """The feature that is meant; where only its type is said, the one part of that type."""
+    for found in nodes.references(node, "Redefinition", "ReferenceSubsetting", "Subsetting"):
+        low.lead(Edge.REPRESENTS, made, found.target)
+        return
+    for type_ in types_of(low, node):
+        known = low.element(type_)
+        users = [] if known is None else low.graph.sources(known, Edge.TYPED_BY)
+        parts = [one for one in users if one.kind is Kind.PROPERTY]
+        named = [one for one in parts if one.name == made.name] or parts
+        if len(named) == 1:
+            low.graph.connect(Edge.REPRESENTS, made, named[0])
+
+
+def message(low: "Lowering", node: Node, owner: Element) -> None:
+    """A message from one lifeline to another."""
+    sort = annotations.said(node, "Kind", "name") or "asynch-signal"
+    made = low.add(node, Kind.MESSAGE, nodes.name_of(node), owner, subkind=str(sort))
+    for payload in payloads(node):
+        for found in nodes.references(payload, "FeatureTyping"):
+            low.refer(Edge.CALLS, made, found)
+    low.last(lambda: _join(low, node, made))
+    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+
+
+def _join(low: "Lowering", node: Node, made: Element) -> None:
+    edges = ((Edge.FLOW_SOURCE, Edge.SEND_EVENT), (Edge.FLOW_TARGET, Edge.RECEIVE_EVENT))
+    for (edge, event), end in zip(edges, nodes.ends_of(node), strict=False):
+        known = [one for step in steps_of(end) if (one := low.element(step)) is not None]
+        line = next((one for one in known if one.kind is Kind.LIFELINE), None)
+        owner = low.graph.owner(made)
+        if line is None or owner is None:
+            continue
+        at = low.below(owner, Kind.OCCURRENCE, "")
+        low.set(at, subkind="message")
+        low.graph.connect(Edge.COVERS, at, line)
+        low.graph.connect(edge, made, line)
+        low.graph.connect(event, made, at)

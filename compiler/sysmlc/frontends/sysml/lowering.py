@@ -1,0 +1,290 @@
+"""One compile unit on its way from trees into the graph: elements first, then what they refer to."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
+from sysmlc.frontends.sysml import nodes, stubs
+from sysmlc.frontends.sysml.places import Places
+from sysmlc.frontends.sysml.rules import APPROXIMATED, NOT_IN_GRAPH
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference as Pending
+from sysmlc.ir.identity import derived_id
+from sysmlc.language.tree import Document, Node, Reference, Relation
+
+if TYPE_CHECKING:
+    from sysmlc.language.names import Model
+
+Handler = Callable[["Lowering", Node, "Element | None"], None]
+"""Adds what a node is to what its owner became."""
+
+
+class Lowering:
+    """The graph as far as it is made, and which node became which element."""
+
+    def __init__(
+        self,
+        documents: Sequence[Document],
+        model: "Model",
+        graph: Graph,
+        sink: Sink,
+        handlers: dict[str, Handler],
+    ) -> None:
+        self.model = model
+        self.graph = graph
+        self.sink = sink
+        self.elements: dict[int, Element] = {}
+        self.verdicts: dict[int, Verdict] = {}
+        self.accepted: set[int] = set()
+        """Identities of item definitions that are sent or accepted: signals."""
+        self.typing: set[int] = set()
+        """Identities of definitions that type a feature."""
+        self.flowing: set[int] = set()
+        """Identities of features between which objects flow in actions."""
+        self.made_for: dict[int, Element] = {}
+        """Classes that are made for usages with members of their own, by the node's identity."""
+        self.spans: dict[int, tuple[Element, Element]] = {}
+        """Entry and exit of steps that are several nodes, by the identity of the step."""
+        self._controls: dict[tuple[str, str], Element] = {}
+        self.skipped: set[int] = set()
+        """Identities of members that are read with something else."""
+        self._handlers = handlers
+        self._documents = {id(one.root): one for one in documents}
+        self._later: list[Callable[[], None]] = []
+        self._last: list[Callable[[], None]] = []
+        self._paths: dict[str, str] = {}
+        self._taken: dict[str, int] = {}
+        self._named: dict[str, str] = {}
+        self._places = Places()
+        self._told: dict[tuple[str, str], list[Node]] = {}
+
+    # -- nodes ---------------------------------------------------------------------------------
+
+    def lower(self, node: Node, owner: Element | None) -> None:
+        """Lower a member of what ``owner`` is in the graph."""
+        if id(node) in self.skipped:
+            return
+        handler = self._handlers.get(node.kind)
+        if handler is None:
+            self.unsupported(node)
+        else:
+            handler(self, node, owner)
+
+    def lower_all(self, found: Iterable[Node], owner: Element | None) -> None:
+        """Lower several members, in order."""
+        for node in found:
+            self.lower(node, owner)
+
+    def document(self, node: Node) -> Document | None:
+        """The document of the unit that the node stands in; None for one of the library."""
+        return self._documents.get(id(nodes.root_of(node)))
+
+    def target(self, node: Node, relation: Relation) -> Node | None:
+        """What a relation of a node leads to, in the unit or in the library."""
+        found = relation.reference.target
+        return found if found is not None else self.model.target(node, relation)
+
+    def element(self, node: Node | None) -> Element | None:
+        """What the node became, if it is an element of its own."""
+        return None if node is None else self.elements.get(id(node))
+
+    def later(self, work: Callable[[], None]) -> None:
+        """Do something when all elements are there."""
+        self._later.append(work)
+
+    def last(self, work: Callable[[], None]) -> None:
+        """Do something when all edges are there."""
+        self._last.append(work)
+
+    def finish(self) -> None:
+        """Do all that waits for elements, in order, and tell what is not wholly in the graph."""
+        self.work()
+        while self._last:
+            self._last.pop(0)()
+            self.work()
+        self._report()
+
+    def work(self) -> None:
+        """Do what waits for elements, and what that brings with it."""
+        while self._later:
+            waiting, self._later = self._later, []
+            for one in waiting:
+                one()
+
+    # -- elements ------------------------------------------------------------------------------
+
+    def add(
+        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
+    ) -> Element:
+        """The element that the node is."""
+        made = self.make(node, kind, name, owner, **attrs)
+        self.elements[id(node)] = made
+        return made
+
+    def make(
+        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
+    ) -> Element:
+        """One more element that the node brings with it, at its place."""
+        document = self.document(node)
+        source = "" if document is None else document.path
+        ordinal = -1 if document is None else self._places.ordinal(document, node)
+        id_ = self._id(kind, name, owner, source)
+        given = {key: value for key, value in attrs.items() if value not in (None, "", False)}
+        above = None if owner is None else owner.id
+        return self.graph.add(Element(id_, kind, name, above, ordinal, source, given))
+
+    def below(self, owner: Element, kind: Kind, name: str) -> Element:
+        """An element that nothing in the text stands for, at the place of its owner."""
+        id_ = self._id(kind, name, owner, owner.source)
+        return self.graph.add(Element(id_, kind, name, owner.id, owner.ordinal, owner.source, {}))
+
+    def beside(self, other: Element, kind: Kind, name: str) -> Element:
+        """The same beside an element, with which it shares the owner."""
+        above = self.graph.owner(other)
+        id_ = self._id(kind, name, above, other.source)
+        return self.graph.add(
+            Element(id_, kind, name, other.owner, other.ordinal, other.source, {})
+        )
+
+    def _id(self, kind: Kind, name: str, owner: Element | None, source: str) -> str:
+        """Id of a qualified name; what has none, or shares it, is told apart by kind and number."""
+        above = "" if owner is None else f"{self._paths[owner.id]}::"
+        path = f"{above}{name}" if name else f"{above}<{kind}>"
+        if path in self._taken:
+            path = f"{path}<{kind}>" if name and owner is not None else f"{source}#{path}"
+        number = self._taken[path] = self._taken.get(path, 0) + 1
+        if number > 1:
+            path = f"{path}#{number}"
+            self._taken[path] = 1
+        found = derived_id("sysml", path)
+        self._paths[found] = path
+        self._named.setdefault(path, found)
+        return found
+
+    def set(self, element: Element, **attrs: AttrValue) -> None:
+        """Give attributes to an element; those that say nothing are left out."""
+        given = {key: value for key, value in attrs.items() if value not in (None, "", False)}
+        self.graph.set(element, **given)
+
+    # -- edges ---------------------------------------------------------------------------------
+
+    def refer(self, edge: Edge, source: Element, found: Reference | None) -> None:
+        """Let an edge lead to what a reference names, when all elements are there."""
+        if found is not None:
+            self.later(lambda: self.lead(edge, source, found.target))
+
+    def lead(self, edge: Edge, source: Element, target: Node | None) -> None:
+        """Let an edge lead to the element of a node, or to a stub of the library."""
+        if target is None:
+            self._unresolved(source, edge)
+            return
+        known = self.elements.get(id(target))
+        if known is not None:
+            self.graph.connect(edge, source, known)
+        elif self.document(target) is None:
+            self._outside(edge, source, target)
+        else:
+            self._lost(edge, source, target)
+
+    def _outside(self, edge: Edge, source: Element, target: Node) -> None:
+        name = nodes.path_of(target)
+        if stubs.is_base(name):
+            return
+        kind = stubs.kind_of(target)
+        self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
+
+    def _unresolved(self, source: Element, edge: Edge) -> None:
+        known = source.attrs.get("unresolved")
+        names = known if isinstance(known, tuple) else ()
+        if str(edge.value) not in names:
+            self.graph.set(source, unresolved=(*names, str(edge.value)))
+
+    def _lost(self, edge: Edge, source: Element, target: Node) -> None:
+        self._unresolved(source, edge)
+        name = nodes.path_of(target)
+        facts = {"edge": str(edge.value), "name": name, "type": words(target.kind)}
+        self.sink.report(NOT_IN_GRAPH, self.graph.subject(source), **facts)
+
+    # -- steps ---------------------------------------------------------------------------------
+
+    def point(self, node: Node, *, is_target: bool) -> Element | None:
+        """The node of an activity at which a step is entered, or the one at which it is left."""
+        entry_and_exit = self.spans.get(id(node))
+        if entry_and_exit is None:
+            return self.elements.get(id(node))
+        return entry_and_exit[0] if is_target else entry_and_exit[1]
+
+    def control(self, owner: Element, name: str) -> Element:
+        """The start or the end of a behaviour; made when a succession needs it.
+
+        Where a fork is, the end of one branch is not the end of all: ``done`` is a flow final.
+        """
+        known = self._controls.get((owner.id, name))
+        if known is None:
+            known = self._controls[owner.id, name] = self.below(owner, Kind.CONTROL, name)
+            beside = self.graph.owned(owner)
+            has_fork = any(one.subkind == "fork" for one in beside if one.kind is Kind.CONTROL)
+            last = "flow-final" if has_fork else "final"
+            self.set(known, subkind="initial" if name == "start" else last)
+        return known
+
+    def vertex(self, region: Element, name: str) -> Element:
+        """The initial pseudostate or the final state of a region; made when it is needed."""
+        known = self._controls.get((region.id, name))
+        if known is None:
+            is_start = name == "start"
+            kind = Kind.PSEUDOSTATE if is_start else Kind.FINAL_STATE
+            known = self._controls[region.id, name] = self.below(region, kind, "")
+            self.set(known, subkind="initial" if is_start else "")
+        return known
+
+    def id_of(self, name: str) -> str:
+        """Id of the element with a qualified name, or the empty string."""
+        return self._named.get(name, "")
+
+    # -- coverage ------------------------------------------------------------------------------
+
+    def unsupported(self, node: Node) -> None:
+        """The node, with what it owns, has no place in the graph."""
+        self.verdicts[id(node)] = Verdict.UNSUPPORTED
+        self._told.setdefault(("unsupported", node.kind), []).append(node)
+
+    def external(self, node: Node) -> None:
+        """The node belongs to a library and not to the model."""
+        self.verdicts[id(node)] = Verdict.EXTERNAL
+
+    def ignored(self, node: Node) -> None:
+        """The node means nothing beyond drawing or presentation."""
+        self.verdicts[id(node)] = Verdict.IGNORED_NOTATION
+
+    def approximated(self, node: Node, said: str, written: str) -> None:
+        """Part of the node's meaning is lost: ``said`` is kept as ``written``."""
+        self.verdicts[id(node)] = Verdict.APPROXIMATED
+        self._told.setdefault((said, written), []).append(node)
+
+    def report(self, rule: Rule, node: Node, **facts: object) -> None:
+        """Report a finding at a node."""
+        self.sink.report(rule, self.subject(node), **facts)
+
+    def subject(self, node: Node) -> Subject:
+        """The node as the subject of a diagnostic."""
+        document = self.document(node)
+        if document is None:
+            return Subject(nodes.path_of(node))
+        place = Place(document.path, self._places.ordinal(document, node))
+        return Subject(nodes.path_of(node), place=place)
+
+    def _report(self) -> None:
+        from sysmlc.frontends.sysml.rules import UNSUPPORTED
+
+        for (said, written), found in self._told.items():
+            if said == "unsupported":
+                facts: dict[str, object] = {"type": words(written), "count": len(found)}
+                self.report(UNSUPPORTED, found[0], **facts)
+            else:
+                facts = {"said": said, "written": written, "count": len(found)}
+                self.report(APPROXIMATED, found[0], **facts)
+
+
+def words(metaclass: str) -> str:
+    """A metaclass in words: ``FlowDefinition`` is ``flow definition``."""
+    return "".join(f" {c.lower()}" if c.isupper() else c for c in metaclass).strip()

@@ -1,0 +1,111 @@
+"""Questions about nodes of the tree that every part of the lowering asks."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.tree import Node, Reference
+
+EXPRESSIONS = frozenset(
+    """
+    OperatorExpression IndexExpression SelectExpression CollectExpression FeatureChainExpression
+    FeatureReferenceExpression MetadataAccessExpression InvocationExpression ConstructorExpression
+    NullExpression LiteralBoolean LiteralString LiteralInteger LiteralRational LiteralInfinity
+    LiteralExpression TriggerInvocationExpression
+    """.split()
+)
+TEXTS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
+"""Metaclasses of what annotates its owner and gives it no feature."""
+_SUBSETS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
+
+
+def references(node: Node, *kinds: str) -> list[Reference]:
+    """References of the relations of these metaclasses that the text states, in order."""
+    return [one.reference for one in node.relations if one.kind in kinds and not one.implied]
+
+
+def reference(node: Node, *kinds: str) -> Reference | None:
+    """The first of them."""
+    return next(iter(references(node, *kinds)), None)
+
+
+def target(node: Node, *kinds: str) -> Node | None:
+    """The element that the first of them leads to."""
+    found = reference(node, *kinds)
+    return None if found is None else found.target
+
+
+def subsetted(node: Node) -> list[Reference]:
+    """Features that the node subsets, in whatever way but redefinition."""
+    return references(node, *_SUBSETS)
+
+
+def members(node: Node, *kinds: str) -> Iterator[Node]:
+    """Members of these metaclasses, in order."""
+    return (one for one in node.members if one.kind in kinds)
+
+
+def held(node: Node, *memberships: str) -> Iterator[Node]:
+    """Members that these memberships own, in order."""
+    return (one for one in node.members if one.membership in memberships)
+
+
+def value_of(node: Node) -> Node | None:
+    """The expression of the node's feature value, bound, initial or default."""
+    return next(held(node, "FeatureValue"), None)
+
+
+def result_of(node: Node) -> Node | None:
+    """The result expression of a constraint, a calculation or a body."""
+    return next(held(node, "ResultExpressionMembership"), None)
+
+
+def ends_of(node: Node) -> list[Node]:
+    """The ends of a connector, in order."""
+    return [one for one in node.members if one.membership == "EndFeatureMembership"]
+
+
+def last_name(found: Reference) -> str:
+    """The last name of a reference."""
+    return found.chain[-1][-1] if found.chain and found.chain[-1] else ""
+
+
+def name_of(node: Node) -> str:
+    """The effective name (KerML 1.0, 8.3.3.3.4): its own, else that of what it redefines.
+
+    A usage that only refers to another one has the name of that.
+    """
+    own = node.name or node.short
+    if own:
+        return own
+    redefined = reference(node, "Redefinition") or reference(node, "ReferenceSubsetting")
+    return "" if redefined is None else last_name(redefined)
+
+
+def body_of(node: Node) -> list[Node]:
+    """What stands between the braces: neither multiplicity, value nor ends."""
+    return [one for one in node.members if one.membership not in _HEAD and one.kind not in _RANGE]
+
+
+_HEAD = frozenset({"FeatureValue", "EndFeatureMembership"})
+_RANGE = frozenset({"MultiplicityRange", "Multiplicity"})
+
+
+def is_text(node: Node) -> bool:
+    """Whether the node only annotates its owner."""
+    return node.kind in TEXTS
+
+
+def root_of(node: Node) -> Node:
+    """The root namespace that the node stands in."""
+    while node.owner is not None:
+        node = node.owner
+    return node
+
+
+def path_of(node: Node) -> str:
+    """Names from the root down, joined by ``::``; what has no name shows its metaclass."""
+    names = []
+    above: Node | None = node
+    while above is not None and above.owner is not None:
+        names.append(name_of(above) or f"<{above.kind}>")
+        above = above.owner
+    return "::".join(reversed(names))

@@ -1,0 +1,122 @@
+"""Parameters of behaviours and operations, their nodes, and pins of actions."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.definitions import visibility
+from sysmlc.frontends.sysml.features import describe, give_types
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_CALLS = frozenset({"call-behavior", "call-operation"})
+_SUBKINDS = {
+    ("opaque", "in"): "input-value",
+    ("opaque", "out"): "output-value",
+    ("send", "in"): "argument",
+    ("accept", "out"): "result",
+    ("value", "out"): "result",
+    ("read", "out"): "result",
+}
+
+
+def parameter(low: "Lowering", node: Node, owner: Element) -> Element:
+    """A parameter of a behaviour or an operation."""
+    direction = direction_of(node)
+    attrs = {"direction": direction} | visibility(node)
+    made = low.add(node, Kind.PARAMETER, nodes.name_of(node), owner, **attrs)
+    describe(low, node, made)
+    return made
+
+
+def direction_of(node: Node) -> str:
+    """The direction of a parameter; a result is returned."""
+    if node.membership == "ReturnParameterMembership":
+        return "return"
+    return str(node.facts.get("direction", "in"))
+
+
+def pin(low: "Lowering", node: Node, action: Element) -> Element:
+    """A pin: a parameter of an action, with the value that it is given."""
+    direction = "out" if direction_of(node) in ("out", "return") else direction_of(node)
+    made = low.add(node, Kind.PIN, nodes.name_of(node), action, direction=direction)
+    low.set(
+        made,
+        subkind=_subkind(action, direction),
+        multiplicity=values.multiplicity(low, node),
+        ordered=bool(node.facts.get("isOrdered")),
+    )
+    if node.facts.get("isUnique") is False:
+        low.graph.set(made, unique=False)
+    low.later(lambda: give_types(low, node, made))
+    value = nodes.value_of(node)
+    if value is not None:
+        _value(low, made, action, value)
+    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    return made
+
+
+def _subkind(action: Element, direction: str) -> str:
+    if action.subkind in _CALLS:
+        return "argument" if direction == "in" else "result"
+    return _SUBKINDS.get((action.subkind, direction), "")
+
+
+def _value(low: "Lowering", made: Element, action: Element, value: Node) -> None:
+    if made.attrs.get("direction") == "out":
+        low.later(lambda: _given(low, action, value))
+    else:
+        values.give(low, made, "value", value)
+
+
+def _given(low: "Lowering", action: Element, value: Node) -> None:
+    """A value or a feature that an action gives out: it reads it."""
+    literal = values.constant(value)
+    target = nodes.target(value, "Membership") if value.kind == _REFERENCE else None
+    if action.subkind in _CALLS or action.kind is not Kind.ACTION:
+        return
+    if literal is not None:
+        low.graph.set(action, subkind="value", value=literal)
+    elif target is not None and low.element(target) is not None:
+        low.graph.set(action, subkind="read")
+        low.lead(Edge.CALLS, action, target)
+    else:
+        low.graph.set(action, subkind="value")
+        values.give(low, action, "value", value)
+    for one in low.graph.owned(action):
+        if one.kind is Kind.PIN and one.subkind == "output-value":
+            low.graph.set(one, subkind="result")
+
+
+_REFERENCE = "FeatureReferenceExpression"
+
+
+def node_of(low: "Lowering", parameter_: Element) -> Element:
+    """The node of an activity that stands for its parameter; it is made when a flow needs it."""
+    for one in low.graph.sources(parameter_, Edge.REFERENCES):
+        if one.kind is Kind.ACTIVITY_PARAMETER:
+            return one
+    direction = str(parameter_.attrs.get("direction", "in"))
+    made = low.beside(parameter_, Kind.ACTIVITY_PARAMETER, parameter_.name)
+    low.set(made, direction="out" if direction == "return" else direction)
+    low.graph.connect(Edge.REFERENCES, made, parameter_)
+    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
+        low.graph.connect(Edge.TYPED_BY, made, type_)
+    return made
+
+
+def pin_of(low: "Lowering", action: Element, parameter_: Element) -> Element:
+    """The pin of an action for a parameter of what it calls; made when a flow needs it."""
+    for one in low.graph.owned(action):
+        if one.kind is Kind.PIN and one.name == parameter_.name:
+            return one
+    made = low.below(action, Kind.PIN, parameter_.name)
+    is_out = parameter_.attrs.get("direction") in ("out", "return")
+    low.set(made, direction="out" if is_out else "in")
+    low.set(made, subkind=_subkind(action, "out" if is_out else "in"))
+    low.set(made, multiplicity=parameter_.attrs.get("multiplicity"))
+    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
+        low.graph.connect(Edge.TYPED_BY, made, type_)
+    return made

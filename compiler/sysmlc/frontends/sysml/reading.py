@@ -1,0 +1,102 @@
+"""From the files of a unit to its documents, resolved with the libraries that they refer to."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from sysmlc import resources
+from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
+from sysmlc.frontends.sysml.detect import is_xml, language
+from sysmlc.frontends.sysml.libraries import FILES
+from sysmlc.frontends.sysml.rules import NO_LIBRARY, UNREADABLE
+from sysmlc.frontends.sysml.unit import lower
+from sysmlc.ir import Graph
+from sysmlc.language.tree import Document
+from sysmlc.sources import Fault, Source, SourceError
+
+if TYPE_CHECKING:
+    from sysmlc.cache import Cache
+    from sysmlc.language.library import Library
+
+
+def read(
+    sources: Sequence[Source],
+    graph: Graph,
+    sink: Sink,
+    coverage: Coverage,
+    *,
+    library: str = "",
+    cache: "Cache | None" = None,
+) -> None:
+    """Add the files to the graph. Raises SourceError for what exceeds the limits."""
+    from sysmlc.language.names import resolve
+
+    documents = [one for source in sources if (one := _document(source, sink, cache)) is not None]
+    if any(is_xml(one.source) for one in documents if one.source is not None):
+        from sysmlc.language.exchange import link
+
+        link(documents, sink)
+    own = [one for one in documents if not _is_ours(one)]
+    ours = [one for one in documents if _is_ours(one)]
+    for document in ours:
+        for node in document.root.walk():
+            coverage.file(document.path).count(node.kind, Verdict.EXTERNAL)
+    if not own:
+        return
+    ours += _missing(own, ours, cache)
+    model = resolve([*own, *ours], _library(library, cache, sink), sink)
+    lower(own, model, graph, sink, coverage)
+
+
+def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document | None:
+    """The tree of one file; a damaged one is reported."""
+    try:
+        return _read(source, sink, cache)
+    except SourceError as problem:
+        if problem.fault is Fault.LIMIT:
+            raise
+        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+        sink.report(UNREADABLE, subject, file=source.name, problem=problem.message)
+        return None
+
+
+def _read(source: Source, sink: Sink, cache: "Cache | None") -> Document:
+    if is_xml(source):
+        from sysmlc.language.exchange import read as read_exchange
+
+        return read_exchange(source, sink)
+    from sysmlc.language.stored import read as read_stored
+
+    return read_stored(source, source.name, language(source), sink, cache)
+
+
+def _is_ours(document: Document) -> bool:
+    """Whether a file is one of our libraries, as the back end ``sysml`` writes them."""
+    found = document.root.members
+    return bool(found) and all(one.kind == "LibraryPackage" and one.name in FILES for one in found)
+
+
+def _missing(
+    documents: Sequence[Document], known: Sequence[Document], cache: "Cache | None"
+) -> list[Document]:
+    """Our libraries that the documents name and that are not among the files."""
+    from sysmlc.language.stored import read as read_stored
+
+    there = {one.name for document in (*documents, *known) for one in document.root.members}
+    found = []
+    for name, file in FILES.items():
+        is_named = any(name in one.text or not one.text for one in documents)
+        if is_named and name not in there:
+            source = Source(f"sysmlc:{file}", resources.text("metamodels", file).encode())
+            found.append(read_stored(source, source.name, "sysml", Sink(), cache))
+    return found
+
+
+def _library(path: str, cache: "Cache | None", sink: Sink) -> "Library":
+    """The standard library, or our small one with what goes wrong told."""
+    from sysmlc.language.library import core, find
+
+    try:
+        return find(path or None, cache=cache)
+    except SourceError as problem:
+        sink.report(NO_LIBRARY, Subject(path), path=path, problem=problem.message)
+        return core(cache)

@@ -1,0 +1,54 @@
+"""What the front end for SysML v2 reports."""
+
+from sysmlc.diagnostics import Severity, rule
+
+UNSUPPORTED = rule(
+    "SM480",
+    "v2-unsupported",
+    Severity.WARNING,
+    "{type} is not read ({count} in the unit, with all that they own)",
+    why="The graph that contracts, recipes and diagrams are made of has no such element yet.",
+    help="the outputs are made without it; 'sysmlc coverage' lists each one",
+    wrong="package P {\n    rendering def Table;\n}\n",
+    right="package P {\n    view def Table;\n}\n",
+)
+APPROXIMATED = rule(
+    "SM481",
+    "v2-approximated",
+    Severity.INFO,
+    "{said} is read as {written} ({count} in the unit)",
+    why="The graph has no element that means quite the same; the rest of the meaning is lost.",
+    wrong="package P {\n    individual part def Gate;\n}\n",
+    right="package P {\n    part def Gate;\n}\n",
+)
+NOT_IN_GRAPH = rule(
+    "SM482",
+    "v2-refers-to-unread",
+    Severity.WARNING,
+    "'{edge}' leads to '{name}', a {type} that has no place in the graph",
+    why="The reference is right, but what it leads to is not read, so that nothing can follow it.",
+    wrong="package P {\n    rendering def Table;\n    part def Gate;\n"
+    "    dependency from Gate to Table;\n}\n",
+    right="package P {\n    part def Wall;\n    part def Gate;\n"
+    "    dependency from Gate to Wall;\n}\n",
+)
+UNREADABLE = rule(
+    "SM483",
+    "v2-unreadable",
+    Severity.ERROR,
+    "'{file}' cannot be read: {problem}",
+    why="A file that is damaged is left out whole, so that no half of it gives wrong outputs.",
+    wrong='<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>',
+    right="package P {\n    part def Gate;\n}\n",
+)
+NO_LIBRARY = rule(
+    "SM484",
+    "v2-no-library",
+    Severity.ERROR,
+    "the standard library '{path}' cannot be read: {problem}",
+    why="Names such as ScalarValues::Real are those of the standard library; without it the "
+    "small core of sysmlc serves, and what it has not is not found.",
+    help="give --library the folder or .kpar with the .sysml and .kerml files",
+    wrong="sysmlc model.sysml --library nowhere/",
+    right="sysmlc model.sysml",
+)

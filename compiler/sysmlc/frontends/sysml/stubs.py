@@ -1,0 +1,60 @@
+"""What of the standard library the graph refers to: stubs by qualified name."""
+
+from sysmlc.ir import Kind
+from sysmlc.language.tree import Node
+
+_PRIMITIVES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+"""Under this href the pass ``resolve`` knows the primitives of every dialect."""
+SCALARS = {
+    "ScalarValues::Boolean": "Boolean",
+    "ScalarValues::Integer": "Integer",
+    "ScalarValues::Natural": "UnlimitedNatural",
+    "ScalarValues::Positive": "UnlimitedNatural",
+    "ScalarValues::Real": "Real",
+    "ScalarValues::Rational": "Real",
+    "ScalarValues::String": "String",
+}
+_KINDS = {
+    "AttributeDefinition": Kind.DATA_TYPE,
+    "DataType": Kind.DATA_TYPE,
+    "EnumerationDefinition": Kind.ENUMERATION,
+    "ItemDefinition": Kind.CLASS,
+    "MetadataDefinition": Kind.STEREOTYPE,
+    "Metaclass": Kind.STEREOTYPE,
+    "ActionDefinition": Kind.ACTIVITY,
+    "CalculationDefinition": Kind.ACTIVITY,
+    "Function": Kind.ACTIVITY,
+    "StateDefinition": Kind.STATE_MACHINE,
+    "ConnectionDefinition": Kind.ASSOCIATION,
+    "InterfaceDefinition": Kind.ASSOCIATION,
+    "Package": Kind.PACKAGE,
+    "LibraryPackage": Kind.PACKAGE,
+}
+_BASES = frozenset(
+    """
+    Base::Anything Base::DataValue Occurrences::Occurrence Objects::Object Parts::Part
+    Items::Item Ports::Port Attributes::AttributeValue Actions::Action States::StateAction
+    Connections::Connection Interfaces::Interface Constraints::ConstraintCheck
+    Requirements::RequirementCheck Calculations::Calculation UseCases::UseCase
+    ScalarValues::ScalarValue ScalarValues::NumericalValue ScalarValues::Number
+    """.split()
+)
+"""What every element of a kind specialises: no edge leads there."""
+
+
+def href_of(name: str) -> str:
+    """Where the pass ``resolve`` shall look for an element of the library."""
+    scalar = SCALARS.get(name)
+    return f"{_PRIMITIVES}{scalar}" if scalar else f"sysml2:{name.partition('::')[0]}#{name}"
+
+
+def kind_of(node: Node) -> Kind:
+    """Kind of the stub that stands for an element of the library."""
+    if node.kind.endswith("Usage") or node.kind == "Feature":
+        return Kind.PROPERTY
+    return _KINDS.get(node.kind, Kind.CLASS)
+
+
+def is_base(name: str) -> bool:
+    """Whether it is one of the library's elements that say nothing beyond the kind."""
+    return name in _BASES

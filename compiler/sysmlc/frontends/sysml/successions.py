@@ -1,0 +1,144 @@
+"""Steps of a behaviour in the order of the text, and the control flows between them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes, values
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.tree import Node, Reference
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
+_STEPS = frozenset(
+    """
+    ActionUsage PerformActionUsage SendActionUsage AcceptActionUsage AssignmentActionUsage
+    IfActionUsage WhileLoopActionUsage ForLoopActionUsage TerminateActionUsage DecisionNode
+    MergeNode ForkNode JoinNode CalculationUsage StateUsage ExhibitStateUsage Step Expression
+    VerificationCaseUsage AnalysisCaseUsage CaseUsage UseCaseUsage IncludeUseCaseUsage
+    ConstraintUsage AssertConstraintUsage EventOccurrenceUsage ItemUsage
+    """.split()
+)
+"""What the next succession without a source starts at."""
+Point = "Element | Node | Reference | None"
+
+
+@dataclass(slots=True)
+class _Run:
+    """Where the reading of a body is."""
+
+    owner: Element
+    previous: "Node | Reference | None" = None
+    waiting: "list[tuple[Node | Reference | None, Node, str]]" = field(default_factory=list)
+    """Successions whose target is the next step: source, node, guard."""
+
+
+def steps(low: "Lowering", found: Iterable[Node], owner: Element) -> None:
+    """Lower the members of a behaviour with the successions between them."""
+    run = _Run(owner)
+    for node in found:
+        if node.kind in _SUCCESSIONS:
+            _succession(low, node, run)
+        elif node.kind == "TransitionUsage":
+            _guarded(low, node, run)
+        elif node.kind == "Membership" and not node.name and not node.short:
+            run.previous = nodes.reference(node, "Membership")
+        else:
+            low.lower(node, owner)
+            if node.kind in _STEPS and "direction" not in node.facts:
+                _arrive(low, node, run)
+
+
+def _arrive(low: "Lowering", node: Node, run: _Run) -> None:
+    for source, flow, _ in run.waiting:
+        _flow(low, run, flow, source, node, None)
+    run.waiting.clear()
+    run.previous = node
+
+
+def _succession(low: "Lowering", node: Node, run: _Run) -> None:
+    """A succession; ends that are not stated are the steps before and behind it."""
+    ends = nodes.ends_of(node)
+    if len(ends) < 2:
+        run.waiting.append((run.previous, node, ""))
+        return
+    source, target = (_end(end) for end in ends[:2])
+    if target is None:
+        run.waiting.append((source or run.previous, node, ""))
+    else:
+        _flow(low, run, node, source or run.previous, target, None)
+
+
+def _end(end: Node) -> Reference | None:
+    return nodes.reference(end, "ReferenceSubsetting", "Subsetting")
+
+
+def _guarded(low: "Lowering", node: Node, run: _Run) -> None:
+    """A succession with a guard, or the one for else."""
+    source = nodes.reference(node, "Membership") or run.previous
+    inner = next(nodes.members(node, *_SUCCESSIONS), None)
+    ends = [] if inner is None else nodes.ends_of(inner)
+    target = _end(ends[-1]) if ends else None
+    guard = guard_of(node)
+    if target is not None:
+        _flow(low, run, node, source, target, guard or node)
+
+
+def guard_of(node: Node) -> Node | None:
+    """The condition of a transition."""
+    found = [one for one in node.members if one.role == "guard"]
+    return found[0] if found else None
+
+
+def _flow(
+    low: "Lowering",
+    run: _Run,
+    node: Node,
+    source: "Node | Reference | None",
+    target: "Node | Reference",
+    guard: Node | None,
+) -> None:
+    """A control flow; without a guard of its own a guarded succession is the one for else."""
+    made = low.add(node, Kind.CONTROL_FLOW, node.name or "", run.owner)
+    if guard is node:
+        low.set(made, guard="else")
+    elif guard is not None:
+        low.later(lambda: low.set(made, guard=values.texts(guard, low)))
+    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+    low.last(lambda: _join(low, made, source, target))
+
+
+def _join(
+    low: "Lowering",
+    made: Element,
+    source: "Node | Reference | None",
+    target: "Node | Reference",
+) -> None:
+    owner = low.graph.owner(made)
+    assert owner is not None
+    for edge, point in ((Edge.FLOW_SOURCE, source), (Edge.FLOW_TARGET, target)):
+        found = vertex(low, owner, point, is_target=edge is Edge.FLOW_TARGET)
+        if found is None:
+            low.lead(edge, made, None)
+        else:
+            low.graph.connect(edge, made, found)
+
+
+def vertex(
+    low: "Lowering", owner: Element, point: "Node | Reference | None", *, is_target: bool
+) -> Element | None:
+    """The node of the activity that an end of a succession means."""
+    if point is None:
+        return None
+    if isinstance(point, Node):
+        return low.point(point, is_target=is_target)
+    target = point.target
+    name = nodes.last_name(point)
+    is_library = target is None or low.document(target) is None
+    if name in ("start", "done") and is_library:
+        before = (point.targets or [])[:-1]
+        holder = low.element(before[-1]) if before and len(point.chain) > 1 else owner
+        return None if holder is None else low.control(holder, name)
+    return None if target is None else low.point(target, is_target=is_target)

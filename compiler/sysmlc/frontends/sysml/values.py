@@ -1,0 +1,118 @@
+"""Values of features as attributes: literals, enumeration values, quantities, expressions."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import expressions, nodes
+from sysmlc.ir import AttrValue, Element
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+
+def give(low: "Lowering", element: Element, key: str, node: Node) -> None:
+    """Set the attribute ``key`` from an expression, with what is known of it beside.
+
+    Enumeration values have the attribute ``<key>_instance``, other expressions
+    ``<key>_language``.
+    """
+    literal = constant(node)
+    if literal is not None:
+        low.graph.set(element, **{key: literal})
+        return
+    low.later(lambda: _refer(low, element, key, node))
+
+
+def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
+    target = _literal_of(node)
+    known = low.element(target)
+    if target is not None and target.kind == "EnumerationUsage" and known is not None:
+        low.graph.set(element, **{key: known.name, f"{key}_instance": known.id})
+        return
+    document = low.document(node)
+    written = expressions.text(node, "" if document is None else document.text)
+    low.graph.set(element, **{key: written, f"{key}_language": ""})
+
+
+def _literal_of(node: Node) -> Node | None:
+    if node.kind != "FeatureReferenceExpression":
+        return None
+    return nodes.target(node, "Membership")
+
+
+def constant(node: Node) -> AttrValue:
+    """The literal that an expression is; None when it must be computed.
+
+    The number of a quantity is its value: the unit is that of the type (``measure``).
+    """
+    if node.kind in _LITERALS:
+        return node.facts.get("value")
+    if node.kind == "OperatorExpression":
+        return _operation(node)
+    return None
+
+
+def _operation(node: Node) -> AttrValue:
+    operator, args = node.facts.get("operator"), expressions.arguments(node)
+    if operator == "-" and len(args) == 1:
+        found = constant(args[0])
+        is_number = isinstance(found, int | float) and not isinstance(found, bool)
+        return -found if is_number and isinstance(found, int | float) else None
+    if operator == "[" and len(args) == 2:
+        return constant(args[0])
+    if operator == "," and len(args) == 2:
+        return _sequence(args)
+    return None
+
+
+def _sequence(args: list[Node]) -> AttrValue:
+    found: list[AttrValue] = []
+    for one in args:
+        value = constant(one)
+        if value is None:
+            return None
+        is_inner = one.facts.get("operator") == ","
+        found += value if is_inner and isinstance(value, tuple) else [value]
+    return tuple(found)
+
+
+_LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
+
+
+def measure(node: Node) -> str:
+    """Name of the unit of a quantity (``5 [SI::mm]`` gives ``mm``), or the empty string."""
+    if node.kind == "OperatorExpression" and node.facts.get("operator") == "[":
+        args = expressions.arguments(node)
+        found = nodes.reference(args[1], "Membership") if len(args) == 2 else None
+        return "" if found is None else nodes.last_name(found)
+    return ""
+
+
+def multiplicity(low: "Lowering", node: Node) -> str:
+    """The multiplicity of a feature in UML notation; empty when it is exactly one."""
+    range_ = next(nodes.members(node, "MultiplicityRange"), None)
+    if range_ is None:
+        return ""
+    document = low.document(node)
+    source = "" if document is None else document.text
+    bounds = [_bound(one, source) for one in range_.members if one.kind in nodes.EXPRESSIONS]
+    if not bounds:
+        return ""
+    if len(bounds) == 1 or bounds[0] == bounds[1]:
+        return "" if bounds[0] == "1" else bounds[0]
+    return "*" if bounds == ["0", "*"] else "..".join(bounds)
+
+
+def _bound(node: Node, source: str) -> str:
+    return "*" if node.kind == "LiteralInfinity" else expressions.text(node, source)
+
+
+def texts(node: Node | None, low: "Lowering") -> str:
+    """A condition as text in our grammar; the name of a text feature is that text."""
+    if node is None:
+        return ""
+    target = _literal_of(node)
+    if target is not None and target.name and not target.name.isidentifier():
+        return target.name
+    document = low.document(node)
+    return expressions.text(node, "" if document is None else document.text)
