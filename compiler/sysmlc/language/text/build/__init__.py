@@ -1,0 +1,35 @@
+"""The functions that build the tree, by the names that the grammars give them."""
+
+from collections.abc import Mapping
+from types import ModuleType
+
+from sysmlc.language.text.build import (
+    actions,
+    connections,
+    definitions,
+    expressions,
+    features,
+    kerml,
+    lists,
+    names,
+    namespaces,
+    operators,
+    references,
+    relationships,
+    transitions,
+    usages,
+)
+from sysmlc.language.text.machine import Action
+
+_COMMON = (lists, names, namespaces, features, operators, expressions)
+_SYSML = (definitions, usages, connections, actions, references, transitions)
+
+
+def _actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
+    return {name: action for module in modules for name, action in module.ACTIONS.items()}
+
+
+ACTIONS: Mapping[str, Mapping[str, Action]] = {
+    "kerml": _actions((*_COMMON, connections, relationships, kerml)),
+    "sysml": _actions(_COMMON + _SYSML),
+}

@@ -1,0 +1,290 @@
+"""Connections, interfaces, bindings, successions, flows and their ends (SysML 8.2.2.13 to 8.2.2.16)."""
+
+from collections.abc import Callable
+from dataclasses import field
+from typing import NamedTuple
+
+from sysmlc.language.text.build.definitions import USAGES, Keyword, whole
+from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
+from sysmlc.language.text.build.names import Names, call
+from sysmlc.language.text.build.owning import FEATURE, OWNING, made
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.tree import Node, Reference, Relation
+from sysmlc.values import dataclass
+
+_END = "EndFeatureMembership"
+
+
+class End(NamedTuple):
+    """One end as written: its multiplicity, its name, what it refers to, its tokens."""
+
+    bounds: Node | None
+    name: str | None
+    reference: Reference
+    begin: int
+    at: int
+
+
+@dataclass(slots=True)
+class Tail:
+    """What follows the declaration of a usage and decides what it is.
+
+    ``kind`` is empty where the keyword says it; ``ends`` become features as that kind has them.
+    """
+
+    kind: str = ""
+    members: list[Node] = field(default_factory=list)
+    relations: list[Relation] = field(default_factory=list)
+    ends: list[End] = field(default_factory=list)
+
+
+def apply(node: Node, tail: Tail, tokens: Tokens) -> Node:
+    """Make the usage what its tail says."""
+    node.kind = tail.kind or node.kind
+    node.relations += tail.relations
+    for member in tail.members:
+        node.own(member)
+    make = _ENDS.get(node.kind, end_feature)
+    if make is _flow_end and "isAbstract" in node.facts:
+        make = _message_end
+    for end in tail.ends:
+        node.own(make(end, tokens))
+    return node
+
+
+def end_feature(end: End, tokens: Tokens) -> Node:
+    """The end of a connector (8.2.2.13.1)."""
+    return _connector_end("ReferenceUsage", end, tokens)
+
+
+def _interface_end(end: End, tokens: Tokens) -> Node:
+    return _connector_end("PortUsage", end, tokens)
+
+
+def _connector_end(kind: str, end: End, tokens: Tokens) -> Node:
+    node = made(kind, _END, tokens, end.begin, end.at)
+    node.name = end.name
+    if end.bounds is not None:
+        cross = node.own(made("Feature", OWNING, tokens, end.begin, end.at))
+        cross.own(multiplicity(end.bounds, tokens, end.begin, end.at))
+    node.relations.append(Relation("ReferenceSubsetting", end.reference))
+    return node
+
+
+def _flow_end(end: End, tokens: Tokens) -> Node:
+    """The end of a flow: what has the feature, and the feature (8.2.2.16)."""
+    node = made("FlowEnd", _END, tokens, end.begin, end.at)
+    chain, start, stop = end.reference.chain, end.reference.start, end.reference.end
+    if len(chain) > 1:
+        node.relations.append(
+            Relation("ReferenceSubsetting", Reference(chain[:-1], start, tokens.starts[end.at - 1]))
+        )
+        start = tokens.starts[end.at - 1]
+    feature = node.own(made("ReferenceUsage", FEATURE, tokens, end.begin, end.at))
+    feature.relations.append(Relation("Redefinition", Reference(chain[-1:], start, stop)))
+    return node
+
+
+def _message_end(end: End, tokens: Tokens) -> Node:
+    node = made("EventOccurrenceUsage", "ParameterMembership", tokens, end.begin, end.at)
+    node.relations.append(Relation("ReferenceSubsetting", end.reference))
+    return node
+
+
+def _kernel_end(end: End, tokens: Tokens) -> Node:
+    return _connector_end("Feature", end, tokens)
+
+
+def _kernel_flow_end(end: End, tokens: Tokens) -> Node:
+    node = _flow_end(end, tokens)
+    node.members[0].kind = "Feature"
+    return node
+
+
+_ENDS: dict[str, Callable[[End, Tokens], Node]] = {
+    "Connector": _kernel_end,
+    "BindingConnector": _kernel_end,
+    "Succession": _kernel_end,
+    "Flow": _kernel_flow_end,
+    "SuccessionFlow": _kernel_flow_end,
+    "InterfaceUsage": _interface_end,
+    "FlowUsage": _flow_end,
+    "SuccessionFlowUsage": _flow_end,
+}
+
+
+def _end(tokens: Tokens, at: int, begin: int, bounds: Node | None, reference: Reference) -> End:
+    return End(bounds, None, reference, begin, at)
+
+
+def _named_end(
+    tokens: Tokens, at: int, begin: int, bounds: Node | None, name: int, reference: Reference
+) -> End:
+    return End(bounds, tokens.name(name), reference, begin, at)
+
+
+def _binary(_tokens: Tokens, _at: int, _begin: int, first: End, second: End) -> list[End]:
+    return [first, second]
+
+
+def _nary(_tokens: Tokens, _at: int, _begin: int, first: End, rest: list[End]) -> list[End]:
+    return [first, *rest]
+
+
+def _connect(_tokens: Tokens, _at: int, _begin: int, ends: list[End]) -> Tail:
+    return Tail(ends=ends)
+
+
+def _allocate(_tokens: Tokens, _at: int, _begin: int, ends: list[End]) -> Tail:
+    return Tail("AllocationUsage", ends=ends)
+
+
+def _bind(_tokens: Tokens, _at: int, _begin: int, left: End, right: End) -> Tail:
+    return Tail("BindingConnectorAsUsage", ends=[left, right])
+
+
+def _first_then(_tokens: Tokens, _at: int, _begin: int, source: End, target: End) -> Tail:
+    return Tail("SuccessionAsUsage", ends=[source, target])
+
+
+def _first_only(_tokens: Tokens, _at: int, _begin: int, end: End) -> Tail:
+    return Tail("Membership", relations=[Relation("Membership", end.reference)])
+
+
+def _flow_of(_tokens: Tokens, _at: int, _begin: int, payload: Node) -> Tail:
+    payload.membership = FEATURE
+    payload.kind = "PayloadFeature"
+    return Tail(members=[payload])
+
+
+def _flow_of_between(
+    tokens: Tokens, at: int, begin: int, payload: Node, source: End, target: End
+) -> Tail:
+    tail = _flow_of(tokens, at, begin, payload)
+    tail.ends = [source, target]
+    return tail
+
+
+def _flow_between(_tokens: Tokens, _at: int, _begin: int, source: End, target: End) -> Tail:
+    return Tail(ends=[source, target])
+
+
+def payload(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    reference: Reference,
+    parts: list[Part] | None,
+    value: Node | None,
+) -> Node:
+    """What a flow carries or an action accepts: a name with its type, or only the type."""
+    node = made("ReferenceUsage", "ParameterMembership", tokens, begin, at)
+    is_name = len(reference.chain) == 1 and len(reference.chain[0]) == 1
+    is_typed = any(isinstance(part, Relation) for part in parts or ())
+    if is_name and (is_typed or value is not None):
+        node.name = reference.chain[0][0]
+    else:
+        node.relations.append(Relation("FeatureTyping", reference))
+    return give(specialize(node, parts, tokens), value)
+
+
+def _payload_short(
+    tokens: Tokens, at: int, begin: int, names: Names, parts: list[Part] | None, value: Node | None
+) -> Node:
+    node = call(made("ReferenceUsage", "ParameterMembership", tokens, begin, at), names, tokens)
+    return give(specialize(node, parts, tokens), value)
+
+
+def _payload_nameless(
+    tokens: Tokens, at: int, begin: int, parts: list[Part], value: Node | None
+) -> Node:
+    node = made("ReferenceUsage", "ParameterMembership", tokens, begin, at)
+    return give(specialize(node, parts, tokens), value)
+
+
+def _payload_many(
+    tokens: Tokens, at: int, begin: int, bounds: Node, reference: Reference
+) -> Node:
+    node = made("ReferenceUsage", "ParameterMembership", tokens, begin, at)
+    node.relations.append(Relation("FeatureTyping", reference))
+    node.own(multiplicity(bounds, tokens, begin, at))
+    return node
+
+
+def _usage_tail(
+    tokens: Tokens, at: int, _begin: int, node: Node, tail: Tail, body: list[Node] | None = None
+) -> Node:
+    return whole(apply(node, tail, tokens), tokens, at, body or [])
+
+
+def tail_usage(
+    tokens: Tokens, at: int, begin: int, tail: Tail, body: list[Node] | None = None
+) -> Node:
+    """A usage without a declaration of its own."""
+    kind = tail.kind or "ConnectionUsage"
+    membership = "" if kind == "Membership" else FEATURE
+    node = apply(made(kind, membership, tokens, begin, at), tail, tokens)
+    return whole(node, tokens, at, body or [])
+
+
+def _usage_ends(
+    tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]
+) -> Node:
+    word = keyword if isinstance(keyword, str) else tokens[keyword]
+    kind, membership = USAGES[word]
+    node = made(kind, membership, tokens, begin, at)
+    if word == "message":
+        node.facts["isAbstract"] = True
+    ends = [end for end in rest if isinstance(end, End)]
+    node = apply(node, Tail(ends=ends), tokens)
+    body = rest[-1]
+    return whole(node, tokens, at, body if isinstance(body, list) else [])
+
+
+def _usage_many_ends(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    keyword: Keyword,
+    first: End,
+    rest: list[End],
+    body: list[Node],
+) -> Node:
+    return _usage_ends(tokens, at, begin, keyword, first, *rest, body)
+
+
+def _usage_named_end(
+    tokens: Tokens, at: int, begin: int, node: Node, end: End, body: list[Node]
+) -> Node:
+    """``interface a ::> x to y``: what was read as declaration is the first end."""
+    if not node.relations:
+        return _usage_tail(tokens, at, begin, node, Tail(ends=[end]), body)
+    first = End(None, node.name, node.relations.pop().reference, begin + 1, end.begin - 1)
+    node.name = None
+    node.name_start = node.start
+    return _usage_tail(tokens, at, begin, node, Tail(ends=[first, end]), body)
+
+
+ACTIONS = {
+    "end": _end,
+    "named_end": _named_end,
+    "binary": _binary,
+    "nary": _nary,
+    "connect": _connect,
+    "allocate": _allocate,
+    "bind": _bind,
+    "first_then": _first_then,
+    "first_only": _first_only,
+    "flow_of": _flow_of,
+    "flow_of_between": _flow_of_between,
+    "flow_between": _flow_between,
+    "payload": payload,
+    "payload_short": _payload_short,
+    "payload_nameless": _payload_nameless,
+    "payload_many": _payload_many,
+    "usage_tail": _usage_tail,
+    "tail_usage": tail_usage,
+    "usage_ends": _usage_ends,
+    "usage_many_ends": _usage_many_ends,
+    "usage_named_end": _usage_named_end,
+}

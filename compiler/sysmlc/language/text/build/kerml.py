@@ -1,0 +1,326 @@
+"""Types, features and prefixes of KerML (8.2.4, 8.2.5)."""
+
+from sysmlc.language.text.build import definitions, namespaces, usages
+from sysmlc.language.text.build.connections import End, Tail, apply
+from sysmlc.language.text.build.definitions import lead, loose, whole
+from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
+from sysmlc.language.text.build.names import Names, call
+from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
+from sysmlc.language.text.build.usages import Prefix
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.tree import Fact, Node, Reference, Relation
+
+_TYPES = {
+    "type": "Type",
+    "classifier": "Classifier",
+    "datatype": "DataType",
+    "class": "Class",
+    "struct": "Structure",
+    "metaclass": "Metaclass",
+    "assoc": "Association",
+    "assoc struct": "AssociationStructure",
+    "interaction": "Interaction",
+    "behavior": "Behavior",
+    "function": "Function",
+    "predicate": "Predicate",
+}
+_FEATURES = {
+    "feature": "Feature",
+    "step": "Step",
+    "expr": "Expression",
+    "bool": "BooleanExpression",
+    "inv": "Invariant",
+    "connector": "Connector",
+    "succession": "Succession",
+    "flow": "Flow",
+    "succession flow": "SuccessionFlow",
+}
+_FACTS: dict[str, tuple[tuple[str, Fact], ...]] = {
+    "in": (("direction", "in"),),
+    "out": (("direction", "out"),),
+    "inout": (("direction", "inout"),),
+    "derived": (("isDerived", True),),
+    "abstract": (("isAbstract", True),),
+    "composite": (("isComposite", True),),
+    "portion": (("isPortion", True),),
+    "var": (("isVariable", True),),
+    "const": (("isConstant", True), ("isVariable", True)),
+    "end": (("isEnd", True),),
+    "standard": (("isStandard", True),),
+}
+Keyword = int | str
+
+
+def _words(tokens: Tokens, _at: int, _begin: int, *words: int) -> str:
+    return " ".join(tokens[word] for word in words)
+
+
+def _word(tokens: Tokens, keyword: Keyword) -> str:
+    return keyword if isinstance(keyword, str) else tokens[keyword]
+
+
+def _type(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    keyword: Keyword,
+    sufficient: int | None,
+    names: Names | None,
+    parts: list[Part] | None,
+    body: list[Node],
+) -> Node:
+    kind = _TYPES[_word(tokens, keyword)]
+    node = call(made(kind, OWNING, tokens, begin, at), names, tokens)
+    if sufficient is not None:
+        node.facts["isSufficient"] = True
+    specialize(node, parts, tokens)
+    if kind != "Type":
+        for relation in node.relations:
+            if relation.kind == "Specialization":
+                relation.kind = "Subclassification"
+    return own(node, body)
+
+
+def _declared(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    keyword: Keyword,
+    sufficient: int | None,
+    names: Names | None,
+    parts: list[Part] | None,
+    value: Node | None,
+) -> Node:
+    words = _word(tokens, keyword).removesuffix(" true")
+    negated = words.endswith(" false")
+    kind = _FEATURES[words.removesuffix(" false")]
+    node = call(made(kind, FEATURE, tokens, begin, at), names, tokens)
+    if negated:
+        node.facts["isNegated"] = True
+    if sufficient is not None:
+        node.facts["isSufficient"] = True
+    return give(specialize(node, parts, tokens), value)
+
+
+def _ends(
+    tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]
+) -> Node:
+    node = _declared(tokens, at, begin, keyword, None, None, None, None)
+    apply(node, Tail(ends=[end for end in rest if isinstance(end, End)]), tokens)
+    body = rest[-1]
+    return whole(node, tokens, at, body if isinstance(body, list) else [])
+
+
+def _ends_all(
+    tokens: Tokens, at: int, begin: int, keyword: Keyword, _all: int, *rest: End | list[Node]
+) -> Node:
+    node = _ends(tokens, at, begin, keyword, *rest)
+    node.facts["isSufficient"] = True
+    return node
+
+
+def _many_ends(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    keyword: Keyword,
+    first: End,
+    rest: list[End],
+    body: list[Node],
+) -> Node:
+    return _ends(tokens, at, begin, keyword, first, *rest, body)
+
+
+def _declared_many_ends(
+    tokens: Tokens, at: int, _begin: int, node: Node, first: End, rest: list[End], body: list[Node]
+) -> Node:
+    return whole(apply(node, Tail(ends=[first, *rest]), tokens), tokens, at, body)
+
+
+def _bound_name(
+    tokens: Tokens, _at: int, _begin: int, name: int, parts: list[Part]
+) -> tuple[Names, list[Part]]:
+    return Names(None, tokens.name(name), name), parts
+
+
+def _bound_name_of(
+    tokens: Tokens, _at: int, _begin: int, name: int
+) -> tuple[Names, list[Part]]:
+    return Names(None, tokens.name(name), name), []
+
+
+def _binding(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    sufficient: int | None,
+    name: tuple[Names, list[Part]] | None,
+    ends: list[End] | None,
+    body: list[Node],
+) -> Node:
+    node = made("BindingConnector", FEATURE, tokens, begin, at)
+    if name is not None:
+        specialize(call(node, name[0], tokens), name[1], tokens)
+    if sufficient is not None:
+        node.facts["isSufficient"] = True
+    return whole(apply(node, Tail(ends=ends or []), tokens), tokens, at, body)
+
+
+def _namespace(
+    tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]
+) -> Node:
+    return own(call(made("Namespace", OWNING, tokens, begin, at), names, tokens), body)
+
+
+def _multiplicity_range(
+    tokens: Tokens, at: int, begin: int, names: Names | None, bounds: Node, body: list[Node]
+) -> Node:
+    return own(call(multiplicity(bounds, tokens, begin, at), names, tokens), body)
+
+
+def _multiplicity_subset(
+    tokens: Tokens, at: int, begin: int, names: Names | None, subset: Reference, body: list[Node]
+) -> Node:
+    node = call(made("Multiplicity", OWNING, tokens, begin, at), names, tokens)
+    node.relations.append(Relation("Subsetting", subset))
+    return own(node, body)
+
+
+def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
+    """Apply what stands before a member."""
+    node.start = tokens.starts[begin]
+    for given in prefixes:
+        if isinstance(given, Node):
+            continue
+        word = tokens[given]
+        if word == "library":
+            node.kind = "LibraryPackage"
+        elif word == "member":
+            node.membership = OWNING
+        else:
+            node.facts.update(_FACTS[word])
+    return lead(node, [given for given in prefixes if isinstance(given, Node)])
+
+
+def _prefixed(tokens: Tokens, _at: int, begin: int, prefixes: list[Prefix], node: Node) -> Node:
+    return prefix(tokens, begin, prefixes, node)
+
+
+def _prefixed_nothing(
+    tokens: Tokens, at: int, begin: int, prefixes: list[Prefix], body: list[Node]
+) -> Node:
+    return prefix(tokens, begin, prefixes, _feature(loose(tokens, at, begin, None, None, None, body)))
+
+
+def _feature(node: Node) -> Node:
+    node.kind = "Feature"
+    return node
+
+
+def _loose(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    names: Names | None,
+    parts: list[Part] | None,
+    value: Node | None,
+    body: list[Node],
+) -> Node:
+    return _feature(loose(tokens, at, begin, names, parts, value, body))
+
+
+def _loose_all(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    names: Names | None,
+    parts: list[Part] | None,
+    value: Node | None,
+    body: list[Node],
+) -> Node:
+    node = _loose(tokens, at, begin, names, parts, value, body)
+    node.facts["isSufficient"] = True
+    return node
+
+
+def _loose_nameless(
+    tokens: Tokens, at: int, begin: int, parts: list[Part], value: Node | None, body: list[Node]
+) -> Node:
+    return _loose(tokens, at, begin, None, parts, value, body)
+
+
+def _loose_value(tokens: Tokens, at: int, begin: int, value: Node, body: list[Node]) -> Node:
+    return _loose(tokens, at, begin, None, None, value, body)
+
+
+def _cross(
+    tokens: Tokens, at: int, begin: int, names: Names | None, parts: list[Part] | None
+) -> usages.Cross:
+    node = call(made("Feature", OWNING, tokens, begin, at), names, tokens)
+    return usages.Cross(specialize(node, parts, tokens))
+
+
+def _cross_nameless(tokens: Tokens, at: int, begin: int, parts: list[Part]) -> usages.Cross:
+    return _cross(tokens, at, begin, None, parts)
+
+
+def _crossed(
+    tokens: Tokens,
+    _at: int,
+    begin: int,
+    prefixes: list[Prefix],
+    cross: usages.Cross,
+    *rest: Node | list[Prefix],
+) -> Node:
+    node, more = rest[-1], rest[0]
+    given = [*prefixes, *more] if isinstance(more, list) else prefixes
+    assert isinstance(node, Node)
+    return lead(prefix(tokens, begin, given, node), [cross.node])
+
+
+def _metadata(tokens: Tokens, at: int, begin: int, *given: object) -> Node:
+    node: Node = namespaces.ACTIONS["metadata"](tokens, at, begin, *given)
+    node.kind = "MetadataFeature"
+    return node
+
+
+def _prefix_metadata(tokens: Tokens, at: int, begin: int, name: Reference) -> Node:
+    node: Node = namespaces.ACTIONS["prefix_metadata"](tokens, at, begin, name)
+    node.kind = "MetadataFeature"
+    return node
+
+
+ACTIONS = {
+    "inv": _words,
+    "assoc_struct": _words,
+    "succession_flow": _words,
+    "type": _type,
+    "declared_all": _declared,
+    "usage": definitions.ACTIONS["usage"],
+    "usage_ends": _ends,
+    "usage_ends_all": _ends_all,
+    "usage_many_ends": _many_ends,
+    "declared_many_ends": _declared_many_ends,
+    "bound_name": _bound_name,
+    "bound_name_of": _bound_name_of,
+    "binding": _binding,
+    "namespace": _namespace,
+    "multiplicity_range": _multiplicity_range,
+    "multiplicity_subset": _multiplicity_subset,
+    "prefixed": _prefixed,
+    "prefixed_loose": _prefixed,
+    "prefixed_nothing": _prefixed_nothing,
+    "loose": _loose,
+    "loose_all": _loose_all,
+    "loose_nameless": _loose_nameless,
+    "loose_value": _loose_value,
+    "cross": _cross,
+    "cross_nameless": _cross_nameless,
+    "crossed": _crossed,
+    "crossed_prefixed": _crossed,
+    "crossed_prefixed_loose": _crossed,
+    "metadata": _metadata,
+    "prefix_metadata": _prefix_metadata,
+    "return": usages.ACTIONS["return"],
+    "visible_return": usages.ACTIONS["visible_return"],
+}

@@ -1,0 +1,77 @@
+"""Lists of the grammar, bodies, and what has no value of its own."""
+
+from typing import Any
+
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.tree import Node
+
+
+def _first(_tokens: Tokens, _at: int, _begin: int, item: Any) -> list[Any]:
+    return [item]
+
+
+def _more(_tokens: Tokens, _at: int, _begin: int, items: list[Any], item: Any) -> list[Any]:
+    items.append(item)
+    return items
+
+
+def _items_first(_tokens: Tokens, _at: int, _begin: int, item: Any) -> list[Node]:
+    return item if type(item) is list else [item]
+
+
+def _items_more(
+    _tokens: Tokens, _at: int, _begin: int, items: list[Node], item: Any
+) -> list[Node]:
+    if type(item) is list:
+        items += item
+    else:
+        items.append(item)
+    return items
+
+
+def _join(_tokens: Tokens, _at: int, _begin: int, items: list[Any], more: list[Any]) -> list[Any]:
+    items += more
+    return items
+
+
+def _same(_tokens: Tokens, _at: int, _begin: int, value: Any = None) -> Any:
+    return value
+
+
+def _nothing(_tokens: Tokens, _at: int, _begin: int, *_ignored: object) -> list[Node]:
+    return []
+
+
+def _result(node: Node) -> Node:
+    node.membership = "ResultExpressionMembership"
+    return node
+
+
+def _only_result(_tokens: Tokens, _at: int, _begin: int, result: Node) -> list[Node]:
+    return [_result(result)]
+
+
+def _with_result(
+    _tokens: Tokens, _at: int, _begin: int, items: list[Node], result: Node
+) -> list[Node]:
+    items.append(_result(result))
+    return items
+
+
+ACTIONS = {
+    "first": _first,
+    "more": _more,
+    "items_first": _items_first,
+    "items_more": _items_more,
+    "join": _join,
+    "nothing": _nothing,
+    "block": _same,
+    "only_result": _only_result,
+    "with_result": _with_result,
+    "bracket": _same,
+    "arguments": _same,
+    "commas": _same,
+    "general": _same,
+    "from": _nothing,
+    "typed_by": _nothing,
+}

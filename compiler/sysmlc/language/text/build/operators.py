@@ -1,0 +1,142 @@
+"""Operands and operators are grouped by precedence (KerML 8.2.5.8.1, Table 6)."""
+
+from typing import Any
+
+from sysmlc.language.text.build.owning import made
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.tree import Node, Reference, Relation
+
+ARGUMENT = "ParameterMembership"
+_LEVELS = (
+    ("??",),
+    ("implies",),
+    ("or", "|"),
+    ("xor",),
+    ("and", "&"),
+    ("==", "!=", "===", "!=="),
+    ("istype", "hastype", "@", "as", "@@", "meta"),
+    ("<", ">", "<=", ">="),
+    ("..",),
+    ("+", "-"),
+    ("*", "/", "%"),
+    ("^", "**"),
+)
+_PRECEDENCE = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
+_RIGHT = _PRECEDENCE["^"]
+_CONDITIONAL = {"??", "or", "and", "implies"}
+_CASTS = {"as", "meta"}
+_METADATA = {"@@", "meta"}
+
+
+def grouped(tokens: Tokens, parts: list[Any]) -> Node:
+    """The expression of operands and operators in turn, operators as numbers of tokens."""
+    operands: list[Any] = [parts[0]]
+    pending: list[str] = []
+    for index in range(1, len(parts), 2):
+        operator = tokens[parts[index]]
+        level = _PRECEDENCE[operator]
+        while pending and _before(_PRECEDENCE[pending[-1]], level):
+            _reduce(operands, pending.pop())
+        pending.append(operator)
+        operands.append(parts[index + 1])
+    while pending:
+        _reduce(operands, pending.pop())
+    node: Node = operands[0]
+    return node
+
+
+def _before(left: int, right: int) -> bool:
+    return left > right or (left == right and left != _RIGHT)
+
+
+def _reduce(operands: list[Any], operator: str) -> None:
+    right, left = operands.pop(), operands.pop()
+    operands.append(operation(operator, left, right))
+
+
+def operation(operator: str, left: Node, right: Node | Reference) -> Node:
+    """A binary operation; the right side of a classification is the name of a type."""
+    node = Node("OperatorExpression", start=left.start, end=right.end)
+    node.facts["operator"] = operator
+    node.own(argument(left))
+    if isinstance(right, Node):
+        node.own(argument(right))
+        if operator in _CONDITIONAL:
+            right.role = "expression"
+    else:
+        node.own(type_reference(operator, right))
+        if operator in _METADATA and left.kind == "FeatureReferenceExpression":
+            left.kind = "MetadataAccessExpression"
+    return node
+
+
+def argument(node: Node) -> Node:
+    """Make an expression an argument."""
+    node.membership = ARGUMENT
+    return node
+
+
+def type_reference(operator: str, name: Reference) -> Node:
+    """The type that an operator takes as argument, or gives as result."""
+    membership = "ReturnParameterMembership" if operator in _CASTS else ARGUMENT
+    feature = Node("Feature", membership=membership, start=name.start, end=name.end)
+    feature.relations.append(Relation("FeatureTyping", name))
+    return feature
+
+
+def _grouped(tokens: Tokens, _at: int, _begin: int, parts: list[Any]) -> Node:
+    return grouped(tokens, parts)
+
+
+def _first_infix(_tokens: Tokens, _at: int, _begin: int, *parts: Any) -> list[Any]:
+    return list(parts)
+
+
+def _more_infix(
+    _tokens: Tokens, _at: int, _begin: int, parts: list[Any], operator: int, operand: Any
+) -> list[Any]:
+    parts += (operator, operand)
+    return parts
+
+
+def _conditional(
+    tokens: Tokens, at: int, begin: int, condition: Node, then: Node, other: Node
+) -> Node:
+    node = made("OperatorExpression", "", tokens, begin, at)
+    node.facts["operator"] = "if"
+    for member in (condition, then, other):
+        node.own(argument(member))
+    then.role = other.role = "expression"
+    return node
+
+
+def _unary(tokens: Tokens, at: int, begin: int, operator: int, operand: Node) -> Node:
+    node = made("OperatorExpression", "", tokens, begin, at)
+    node.facts["operator"] = tokens[operator]
+    node.own(argument(operand))
+    return node
+
+
+def _unary_type(tokens: Tokens, at: int, begin: int, operator: int, name: Reference) -> Node:
+    node = made("OperatorExpression", "", tokens, begin, at)
+    node.facts["operator"] = tokens[operator]
+    node.own(type_reference(tokens[operator], name))
+    return node
+
+
+def _extent(tokens: Tokens, at: int, begin: int, name: Reference) -> Node:
+    node = made("OperatorExpression", "", tokens, begin, at)
+    node.facts["operator"] = "all"
+    node.own(type_reference("all", name))
+    return node
+
+
+ACTIONS = {
+    "grouped": _grouped,
+    "first_infix": _first_infix,
+    "more_infix": _more_infix,
+    "conditional": _conditional,
+    "unary": _unary,
+    "unary_type": _unary_type,
+    "extent": _extent,
+}
