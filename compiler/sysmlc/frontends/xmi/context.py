@@ -4,15 +4,15 @@ from collections.abc import Callable
 from itertools import islice
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
+from sysmlc.diagnostics import Sink, Subject, Verdict
 from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.dangling import Loose, Names
+from sysmlc.frontends.xmi.rows import Rows
 from sysmlc.frontends.xmi.shapes import PASSED_OVER
 from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.identity import derived_id
 from sysmlc.ir.reference import End, id_of
 from sysmlc.sources import DEFAULT_LIMITS
 
@@ -29,20 +29,14 @@ class Event(NamedTuple):
     is_relative: bool
 
 
-class Context:
+class Context(Rows):
     """The lowering of one document.
 
     Readers leave in ``deferred`` what can only be said when every document is read.
     """
 
     def __init__(self, unit: Unit, lowered: Lowered, sink: Sink) -> None:
-        self.unit = unit
-        self.graph = unit.graph
-        self.sink = sink
-        self.lowered = lowered
-        self.document = lowered.document
-        self.gids = lowered.gids
-        self.verdicts = lowered.verdicts
+        super().__init__(unit, lowered, sink)
         self.applications: list[int] = []
         self.applied: set[str] = set()
         """Tags whose rows, as roots, are applications of stereotypes."""
@@ -59,10 +53,6 @@ class Context:
         self.opaque: dict[str, tuple[Element, int]] = {}
         self.guards: list[tuple[Element, str, int]] = []
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
-        self.lost: dict[int, str] = {}
-        """What approximated rows are read without, where SM114 tells of it."""
-        self.told: dict[int, tuple[Rule, str]] = {}
-        """Rules that tell of other approximated rows, and why those are."""
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
         self.naming: dict[Names, list[bool]] = {}
@@ -71,41 +61,8 @@ class Context:
         self.computed: set[str] = set()
         """Elements with a bound that is an expression."""
         self.bounds: dict[str, list[AttrValue]] = {}
-        self._positions: dict[tuple[str, str], int] = {}
         self._conditions: list[tuple[str, str]] = []
         self._late: list[tuple[Element, str, list[str], bool]] = []
-
-    # -- rows ----------------------------------------------------------------------------------
-
-    def inherit(self, row: int) -> None:
-        """The row is mapped as part of what is above it."""
-        parent = self.document.parents[row]
-        self.gids[row] = self.gids[parent] if parent >= 0 else ""
-        self.verdicts[row] = Verdict.MAPPED
-
-    def owner(self, row: int) -> Element | None:
-        """Element of the nearest row above that has one."""
-        parent = self.document.parents[row]
-        if parent < 0:
-            return None
-        return self.lowered.own[parent] or self.graph.get(self.gids[parent])
-
-    def subtree(self, row: int, verdict: Verdict) -> int:
-        """Give the row and all its content one verdict; return the row after."""
-        end, above = self.document.ends[row], self.document.parents[row]
-        gid = self.gids[row] or (self.gids[above] if above >= 0 else "")
-        if end == row + 1:
-            self.verdicts[row], self.gids[row] = verdict, gid
-        else:
-            self.verdicts[row:end] = [verdict] * (end - row)
-            self.gids[row:end] = [gid] * (end - row)
-        return end
-
-    def next_row(self, row: int) -> int:
-        """Where the walk goes on: after the row's content if that has its verdict already."""
-        following = row + 1
-        end = self.document.ends[row]
-        return end if following < end and self.verdicts[following] is not None else following
 
     # -- elements ------------------------------------------------------------------------------
 
@@ -116,7 +73,7 @@ class Context:
         if kind in metaclasses.OWNERS and not self.may_own(owner, kind):
             return False
         values = document.attributes[row]
-        id = self._id(row, owner, feature)
+        id = self.new_id(row, owner, feature)
         element = Element(
             id, kind, values.get("name", ""), owner or None, document.ordinals[row], document.name
         )
@@ -143,39 +100,6 @@ class Context:
         """Whether elements of the kind can stand below the owner."""
         above = self.graph.get(owner)
         return above is not None and above.kind in metaclasses.OWNERS[kind]
-
-    def _id(self, row: int, owner: str, feature: str) -> str:
-        id = self.document.attributes[row].get(self.document.id_key)
-        if not id:
-            return derived_id(owner or self.document.name, self._position(owner, feature))
-        known = self.unit.graph_id(self.document.name, id)
-        if id in self.document.repeated and known in self.graph:
-            self._report_repeated(row, id)
-            return derived_id(known, str(self.document.ordinals[row]))
-        return known
-
-    def _position(self, owner: str, feature: str) -> str:
-        number = self._positions.get((owner, feature), 0)
-        self._positions[owner, feature] = number + 1
-        return f"{feature}[{number}]"
-
-    def _report_repeated(self, row: int, id: str) -> None:
-        if self.document.is_in_extension(row):
-            return
-        subject = Subject(self.qualified_name(row), id, self.place(row))
-        self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
-
-    def qualified_name(self, row: int) -> str:
-        """Name of a row, also of one that has no element of its own."""
-        if self.lowered.own[row]:
-            return self.graph.qualified_name(self.graph[self.gids[row]])
-        owner = self.owner(row)
-        name = self.document.attributes[row].get("name") or f"<{self.document.features[row]}>"
-        return f"{self.graph.qualified_name(owner)}::{name}" if owner is not None else name
-
-    def place(self, row: int) -> Place:
-        """Place of the row."""
-        return Place(self.document.name, self.document.ordinals[row])
 
     # -- attributes and references -------------------------------------------------------------
 
@@ -350,11 +274,6 @@ class Context:
             add = links.add_reversed if is_reversed else links.add
             for target, at in zip(targets, found, strict=True):
                 add(edge, element, target, at, row)
-
-    def approximate(self, row: int, lost: str) -> None:
-        """The row is in the graph without part of its meaning."""
-        self.verdicts[row] = Verdict.APPROXIMATED
-        self.lost[row] = lost
 
     def conditions(self, targets: list[str], feature: str) -> None:
         """The constraints with these ids are pre- or postconditions."""
