@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 
+from sysmlc.language.tree import Node
 from sysmlc.values import dataclass
 
 _SKIPPED = r"(?:[ \t\r\n\f\v\ufeff]+|//\*(?s:.)*?\*/|//(?!\*)[^\r\n]*)*+"
@@ -24,7 +25,8 @@ class Tokens:
     """The tokens of ``text``: their types by number, where each starts and ends.
 
     The last one is the end of the text. ``bad`` has the numbers of those that are no token of
-    the language; they have the type 0.
+    the language; they have the type 0. ``referential`` is for the builder: usages that say
+    `ref`; whether that adds anything is known when their owners are.
     """
 
     text: str
@@ -32,6 +34,7 @@ class Tokens:
     starts: list[int]
     ends: list[int]
     bad: list[int]
+    referential: list[Node]
 
     def __getitem__(self, index: int) -> str:
         return self.text[self.starts[index] : self.ends[index]]
@@ -68,7 +71,7 @@ def scan(text: str, types: Types) -> Tokens:
         if not group:
             break
     bad = [index for index, kind in enumerate(kinds) if kind == 0] if 0 in kinds else []
-    return Tokens(text, kinds, starts, ends, bad)
+    return Tokens(text, kinds, starts, ends, bad, [])
 
 
 def unquoted(written: str) -> str:

@@ -202,9 +202,7 @@ def _payload_nameless(
     return give(specialize(node, parts, tokens), value)
 
 
-def _payload_many(
-    tokens: Tokens, at: int, begin: int, bounds: Node, reference: Reference
-) -> Node:
+def _payload_many(tokens: Tokens, at: int, begin: int, bounds: Node, reference: Reference) -> Node:
     node = made("ReferenceUsage", "ParameterMembership", tokens, begin, at)
     node.relations.append(Relation("FeatureTyping", reference))
     node.own(multiplicity(bounds, tokens, begin, at))

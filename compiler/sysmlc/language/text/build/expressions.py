@@ -10,7 +10,9 @@ from sysmlc.language.tree import Node, Reference, Relation
 _NAMES = ("FeatureReferenceExpression", "FeatureChainExpression")
 
 
-def _literal(kind: str, value: str | bool | int | float, tokens: Tokens, begin: int, at: int) -> Node:
+def _literal(
+    kind: str, value: str | bool | int | float, tokens: Tokens, begin: int, at: int
+) -> Node:
     node = made(kind, "", tokens, begin, at)
     node.facts["value"] = value
     return node
@@ -130,11 +132,15 @@ def _is_open(tokens: Tokens, primary: Node, begin: int) -> bool:
 
 
 def _collected(tokens: Tokens, at: int, begin: int, primary: Node, body: list[Node]) -> Node:
-    return _applied("CollectExpression", tokens, begin, at, primary, _body(tokens, at, primary, body))
+    return _applied(
+        "CollectExpression", tokens, begin, at, primary, _body(tokens, at, primary, body)
+    )
 
 
 def _selected(tokens: Tokens, at: int, begin: int, primary: Node, body: list[Node]) -> Node:
-    return _applied("SelectExpression", tokens, begin, at, primary, _body(tokens, at, primary, body))
+    return _applied(
+        "SelectExpression", tokens, begin, at, primary, _body(tokens, at, primary, body)
+    )
 
 
 def _body(tokens: Tokens, at: int, before: Node | Reference, body: list[Node]) -> Node:
@@ -191,9 +197,7 @@ def _metadata_access(_tokens: Tokens, at: int, begin: int, primary: Node) -> Nod
     return primary
 
 
-def _invocation(
-    tokens: Tokens, at: int, begin: int, primary: Node, arguments: list[Node]
-) -> Node:
+def _invocation(tokens: Tokens, at: int, begin: int, primary: Node, arguments: list[Node]) -> Node:
     name = chain_of(primary)
     if name is None:
         return primary

@@ -37,9 +37,7 @@ def _conjugated(_tokens: Tokens, _at: int, _begin: int, name: Reference) -> Rela
     return Relation("ConjugatedPortTyping", name)
 
 
-def _typings(
-    _tokens: Tokens, _at: int, _begin: int, *types: list[Relation]
-) -> list[Relation]:
+def _typings(_tokens: Tokens, _at: int, _begin: int, *types: list[Relation]) -> list[Relation]:
     return types[-1]
 
 

@@ -102,9 +102,7 @@ def _declared(
     return give(specialize(node, parts, tokens), value)
 
 
-def _ends(
-    tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]
-) -> Node:
+def _ends(tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]) -> Node:
     node = _declared(tokens, at, begin, keyword, None, None, None, None)
     apply(node, Tail(ends=[end for end in rest if isinstance(end, End)]), tokens)
     body = rest[-1]
@@ -143,9 +141,7 @@ def _bound_name(
     return Names(None, tokens.name(name), name), parts
 
 
-def _bound_name_of(
-    tokens: Tokens, _at: int, _begin: int, name: int
-) -> tuple[Names, list[Part]]:
+def _bound_name_of(tokens: Tokens, _at: int, _begin: int, name: int) -> tuple[Names, list[Part]]:
     return Names(None, tokens.name(name), name), []
 
 
@@ -166,9 +162,7 @@ def _binding(
     return whole(apply(node, Tail(ends=ends or []), tokens), tokens, at, body)
 
 
-def _namespace(
-    tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]
-) -> Node:
+def _namespace(tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]) -> Node:
     return own(call(made("Namespace", OWNING, tokens, begin, at), names, tokens), body)
 
 
@@ -209,7 +203,9 @@ def _prefixed(tokens: Tokens, _at: int, begin: int, prefixes: list[Prefix], node
 def _prefixed_nothing(
     tokens: Tokens, at: int, begin: int, prefixes: list[Prefix], body: list[Node]
 ) -> Node:
-    return prefix(tokens, begin, prefixes, _feature(loose(tokens, at, begin, None, None, None, body)))
+    return prefix(
+        tokens, begin, prefixes, _feature(loose(tokens, at, begin, None, None, None, body))
+    )
 
 
 def _feature(node: Node) -> Node:

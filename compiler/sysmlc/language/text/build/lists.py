@@ -19,9 +19,7 @@ def _items_first(_tokens: Tokens, _at: int, _begin: int, item: Any) -> list[Node
     return item if type(item) is list else [item]
 
 
-def _items_more(
-    _tokens: Tokens, _at: int, _begin: int, items: list[Node], item: Any
-) -> list[Node]:
+def _items_more(_tokens: Tokens, _at: int, _begin: int, items: list[Node], item: Any) -> list[Node]:
     if type(item) is list:
         items += item
     else:

@@ -7,35 +7,48 @@ from sysmlc.language.text.build.owning import OWNING, made, own
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
-_OPENING = re.compile(r"[ \t\f\v]*(?:\r\n|\r|\n)?")
+_OPENING = re.compile(r"\A[ \t\f\v]*(?:(?:\r\n|\r|\n)[ \t\f\v]*\*? ?)?")
 _LINE_START = re.compile(r"(\r\n|\r|\n)[ \t\f\v]*\*? ?")
 
 
 def body_text(written: str) -> str:
     """The body of a comment as KerML 8.2.3.3.2, note 1, takes it from the text."""
     inner = written[2:-2]
-    opening = _OPENING.match(inner)
-    end = opening.end() if opening and opening[0].endswith(("\n", "\r")) else 0
-    head = re.match(r"[ \t\f\v]*\*? ?", inner[end:]) if end else None
-    rest = inner[end + (head.end() if head else 0) :]
-    return _LINE_START.sub(r"\1", rest)
+    return _LINE_START.sub(r"\1", _OPENING.sub("", inner, count=1))
 
 
 def root(tokens: Tokens, members: list[Node]) -> Node:
     """The root namespace of a text."""
     node = Node("Namespace", start=0, end=len(tokens.text))
-    return own(node, members)
+    own(node, members)
+    if tokens.referential:
+        _drop_redundant(tokens.referential)
+    return node
 
 
-def _package(
-    tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]
-) -> Node:
+def _drop_redundant(nodes: list[Node]) -> None:
+    """The word `ref` says nothing about what is referential anyway (SysML 8.2.2.6.2, note 1)."""
+    from sysmlc.language.exchange.composition import is_composite
+
+    for node in nodes:
+        node.facts.pop("isReference", None)
+        if is_composite(node):
+            node.facts["isReference"] = True
+
+
+def _package(tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]) -> Node:
     node = call(made("Package", OWNING, tokens, begin, at), names, tokens)
     return own(node, body)
 
 
 def _annotation(
-    kind: str, tokens: Tokens, at: int, begin: int, names: Names | None, locale: int | None, body: int
+    kind: str,
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    names: Names | None,
+    locale: int | None,
+    body: int,
 ) -> Node:
     node = call(made(kind, OWNING, tokens, begin, at), names, tokens)
     if locale is not None:
@@ -149,7 +162,9 @@ def _alias(
     return own(node, body)
 
 
-def _imported(kind: str, recursive: bool, tokens: Tokens, at: int, begin: int, name: Reference) -> Node:
+def _imported(
+    kind: str, recursive: bool, tokens: Tokens, at: int, begin: int, name: Reference
+) -> Node:
     node = made(kind, "", tokens, begin, at)
     node.relations.append(Relation(f"imported{kind.removesuffix('Import')}", name))
     if recursive:
@@ -206,7 +221,9 @@ def _filter(tokens: Tokens, at: int, begin: int, condition: Node) -> Node:
     return condition
 
 
-def visible(tokens: Tokens, _at: int, begin: int, visibility: int, item: Node | list[Node]) -> Node | list[Node]:
+def visible(
+    tokens: Tokens, _at: int, begin: int, visibility: int, item: Node | list[Node]
+) -> Node | list[Node]:
     """Give the visibility to all of an item."""
     for node in item if type(item) is list else [item]:
         node.visibility = tokens[visibility]

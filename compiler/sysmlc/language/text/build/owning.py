@@ -7,7 +7,13 @@ from sysmlc.language.tree import Node, Relation
 
 FEATURE = "FeatureMembership"
 OWNING = "OwningMembership"
-_ANNOTATING = {"Comment", "Documentation", "TextualRepresentation", "MetadataUsage", "MetadataFeature"}
+_ANNOTATING = {
+    "Comment",
+    "Documentation",
+    "TextualRepresentation",
+    "MetadataUsage",
+    "MetadataFeature",
+}
 _STATES = ("StateDefinition", "StateUsage", "ExhibitStateUsage")
 
 
@@ -55,14 +61,6 @@ def _in_interface(_owner: Node, members: Sequence[Node]) -> None:
         if member.kind == "ReferenceUsage" and "isEnd" in member.facts:
             if "isReference" not in member.facts:
                 member.kind = "PortUsage"
-            else:
-                del member.facts["isReference"]
-
-
-def _with_ends(_owner: Node, members: Sequence[Node]) -> None:
-    for member in members:
-        if member.kind == "ReferenceUsage" and "isEnd" in member.facts:
-            member.facts.pop("isReference", None)
 
 
 def _in_metadata(_owner: Node, members: Sequence[Node]) -> None:
@@ -106,7 +104,9 @@ def _is_parameter(member: Node) -> bool:
 
 
 def _parameter(member: Node) -> Node:
-    return Node("ReferenceUsage", membership="ParameterMembership", start=member.start, end=member.start)
+    return Node(
+        "ReferenceUsage", membership="ParameterMembership", start=member.start, end=member.start
+    )
 
 
 def _lead(member: Node, first: list[Node]) -> None:
@@ -138,10 +138,6 @@ _ADAPT: dict[str, Callable[[Node, Sequence[Node]], None]] = {
     "EnumerationDefinition": _in_enumeration,
     "InterfaceDefinition": _in_interface,
     "InterfaceUsage": _in_interface,
-    "ConnectionDefinition": _with_ends,
-    "AllocationDefinition": _with_ends,
-    "FlowDefinition": _with_ends,
-    "ConnectionUsage": _with_ends,
     "MetadataUsage": _in_metadata,
     "MetadataFeature": _in_metadata,
     **dict.fromkeys(_STATES, _in_state),

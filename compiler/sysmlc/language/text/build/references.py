@@ -28,7 +28,6 @@ _REFERRERS = {
 }
 
 
-
 def _asserted(tokens: Tokens, at: int, _begin: int, *words: int) -> tuple[str, bool]:
     written = [tokens[word] for word in words]
     return ("satisfy" if "satisfy" in written else "assert", "not" in written)
@@ -126,9 +125,7 @@ def _step(
     return whole(node, tokens, at, body if isinstance(body, list) else [])
 
 
-def _nothing(
-    tokens: Tokens, at: int, begin: int, referrer: int | tuple[str, bool]
-) -> Node:
+def _nothing(tokens: Tokens, at: int, begin: int, referrer: int | tuple[str, bool]) -> Node:
     node = _usage(tokens, at, begin, referrer, None)
     if node.membership == _SUBACTION:
         node.kind = "ActionUsage"

@@ -55,6 +55,14 @@ def _featuring(
     return _named_featuring(tokens, at, begin, None, first, second, body)
 
 
+def _chaining(_tokens: Tokens, _at: int, _begin: int, chain: Reference) -> list[Relation]:
+    """A feature is a chain itself: a relationship to each link."""
+    return [
+        Relation("FeatureChaining", Reference((link,), chain.start, chain.end))
+        for link in chain.chain
+    ]
+
+
 ACTIONS = {
     "relationship_name": _name,
     "of": _name,
@@ -64,7 +72,7 @@ ACTIONS = {
     "unioning_part": _each("Unioning"),
     "intersecting_part": _each("Intersecting"),
     "differencing_part": _each("Differencing"),
-    "chaining_part": _each("FeatureChaining"),
+    "chaining_part": _chaining,
     "inverting_part": _each("FeatureInverting"),
     "featuring_part": _each("TypeFeaturing"),
     "specialization": _between("Specialization", "specific", "general"),

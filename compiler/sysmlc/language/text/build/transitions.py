@@ -52,9 +52,7 @@ def _effect_declared(
     return whole(node, tokens, at, body or [])
 
 
-def _effect_step(
-    tokens: Tokens, at: int, begin: int, tail: Tail, body: list[Node] | None
-) -> Node:
+def _effect_step(tokens: Tokens, at: int, begin: int, tail: Tail, body: list[Node] | None) -> Node:
     node = apply(made(tail.kind, FEATURE, tokens, begin, at), tail, tokens)
     return own(node, body or [])
 

@@ -40,8 +40,8 @@ def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> No
         if word == "library":
             node.kind = "LibraryPackage"
             continue
-        if word == "ref" and node.kind == "ReferenceUsage" and "end" not in words:
-            continue
+        if word == "ref":
+            tokens.referential.append(node)
         name, value = _FACTS[word]
         node.facts[name] = value
         if name == "portionKind":
