@@ -153,6 +153,13 @@ def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeyp
     assert files(tmp_path) == ALL
 
 
+@pytest.mark.parametrize("backends", [(), (Outlines(),)])
+def test_trace_is_laid_out_as_all_our_json(tmp_path, backends):
+    publish(tmp_path, PLANT.replace('"Gate"', '"Ga\\"te ü"'), backends=backends)
+    text = (tmp_path / "out/trace.json").read_text(encoding="utf-8")
+    assert text == json.dumps(json.loads(text), ensure_ascii=False, indent=1) + "\n"
+
+
 def test_trace_leads_from_files_to_elements_to_lines(tmp_path):
     publish(tmp_path, backends=(Outlines(),))
     trace = json.loads((tmp_path / "out/trace.json").read_text())

@@ -3,8 +3,9 @@
 import pytest
 
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import Location, locate
+from sysmlc.diagnostics.locate import Location, locate, positions, start_tags
 from sysmlc.sources import Source
+from sysmlc.sources.xml import parse, parser
 
 
 def where(text, *places, encoding="utf-8"):
@@ -49,6 +50,46 @@ def test_what_is_not_there_is_not_found():
 
 def test_elements_before_damage_are_still_found():
     assert where("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
+
+
+HIDDEN = [
+    "<a><b x='/>'/>\n<c>t</c><d\n/></a>",
+    "<?xml version='1.0'?><!-- <b/> --><a><b/></a>",
+    "<a><![CDATA[<b/>]]><b/></a>",
+    "<a><?say <b/>?><b/></a>",
+    "<?xml-stylesheet href='<b/>'?><a><b/></a>",
+    "\ufeff<a><é/>\r<b/>\r\n<c/></a>",
+    "<?xml version='1.0' encoding='windows-1252'?><a><é/><b/></a>",
+]
+
+
+@pytest.mark.parametrize("text", HIDDEN)
+def test_start_tags_are_where_a_parser_sees_them(text):
+    encoding = "windows-1252" if "1252" in text else "utf-8"
+    source = Source("f", text.encode(encoding))
+    seen, made = [], parser()
+    made.StartElementHandler = lambda *_: seen.append(made.CurrentByteIndex)
+    parse(source, made)
+    assert start_tags(source.data) in (seen, None)
+    places = [Place("f", ordinal) for ordinal in range(len(seen))]
+    located = locate([source], places)
+    assert [(located[p].line, located[p].column) for p in places] == (
+        positions([source], [("f", ordinal) for ordinal in range(len(seen))])
+    )
+
+
+def test_only_plain_text_is_searched_for_tags():
+    assert start_tags(b"<a><b/></a>") == [0, 3]
+    assert start_tags("<?xml version='1.0' encoding='utf-16'?><a/>".encode("utf-16")) is None
+    assert start_tags(b"<a><!-- <b/> --></a>") is None
+    assert start_tags(b"<?xml version='1.0'") is None
+
+
+def test_positions_of_what_is_not_there_are_zero():
+    source = Source("f", b"<a>\n<b/></a>")
+    assert positions([source], [("f", 1), ("f", 2), ("g", 0), ("f", -1), ("f", 1)]) == (
+        [(2, 1), (0, 0), (0, 0), (0, 0), (2, 1)]
+    )
 
 
 def test_of_a_long_line_the_part_around_the_place_is_kept():

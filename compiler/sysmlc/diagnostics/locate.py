@@ -4,6 +4,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from itertools import accumulate
 
 from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
@@ -15,6 +16,9 @@ from sysmlc.values import dataclass
 _AROUND = 200
 """Characters of a long line that are kept on each side of a place."""
 _NEWLINE = re.compile("\r\n|\r|\n")
+_START_TAG = re.compile(rb"<[^/]")
+_LIKE_ASCII = frozenset({"utf-8", "ascii", "latin-1", "iso8859-1", "cp1252"})
+"""Codecs in which a byte below 128 is always the character of ASCII."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,23 +52,24 @@ def locate(
     return found
 
 
-def positions(sources: Iterable[Source], places: Sequence[Place]) -> list[tuple[int, int]]:
-    """Line and column of each place, in order; 0 where they are not known. Excerpts take longer."""
-    found = [(place.line, place.column) for place in places]
+def positions(
+    sources: Iterable[Source], starts: Sequence[tuple[str, int]]
+) -> list[tuple[int, int]]:
+    """Line and column of each element, given by file and ordinal, in order; 0 if not known.
+
+    Excerpts take longer; see ``locate`` for them.
+    """
+    found = [(0, 0)] * len(starts)
     in_file: dict[str, list[int]] = {}
-    for index, place in enumerate(places):
-        in_file.setdefault(place.file, []).append(index)
+    for index, (file, _) in enumerate(starts):
+        in_file.setdefault(file, []).append(index)
     for source in sources:
         indexes = in_file.get(source.name, [])
-        ordinals = {places[index].ordinal for index in indexes if places[index].ordinal >= 0}
-        offsets = _offsets(source, ordinals)
-        spots = [(_offset(places[index], offsets), index) for index in indexes]
+        offsets = _offsets(source, {starts[index][1] for index in indexes} - {-1})
         text = _Text(source)
-        for offset, index in sorted(spots):
-            if offset >= 0:
-                found[index] = text.position(offset)
-            elif places[index].line > 0:
-                found[index] = (places[index].line, max(places[index].column, 1))
+        places = {ordinal: text.position(offset) for ordinal, offset in sorted(offsets.items())}
+        for index in indexes:
+            found[index] = places.get(starts[index][1], (0, 0))
     return found
 
 
@@ -107,6 +112,26 @@ def _offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
         return {}
     if not xpath.is_xml(source.data):
         return {ordinal: ordinal for ordinal in ordinals if ordinal <= len(source.data)}
+    scanned = start_tags(source.data)
+    if scanned is not None:
+        return {ordinal: scanned[ordinal] for ordinal in ordinals if ordinal < len(scanned)}
+    return _parsed(source, ordinals)
+
+
+def start_tags(data: bytes) -> list[int] | None:
+    """Offsets of all start tags of XML; None where only a parser can tell.
+
+    Nothing but comments, CDATA and instructions may hold a ``<`` that starts no tag.
+    """
+    mark, encoding = codec(data)
+    body = data.find(b"?>", mark) if data.startswith(b"<?xml", mark) else mark
+    is_plain = body >= 0 and encoding in _LIKE_ASCII
+    if not is_plain or data.find(b"<!", body) >= 0 or data.find(b"<?", body) >= 0:
+        return None
+    return [found.start() for found in _START_TAG.finditer(data, body)]
+
+
+def _parsed(source: Source, ordinals: set[int]) -> dict[int, int]:
     found: dict[int, int] = {}
     made = parser()
     last = max(ordinals)
@@ -131,10 +156,11 @@ class _Text:
     def __init__(self, source: Source) -> None:
         mark, self._encoding = codec(source.data)
         self._data = source.data
+        self._is_ascii = self._encoding in _LIKE_ASCII and source.data.isascii()
         self._offset = mark
         self._before = 0
         self._text = self._decode(source.data[mark:])
-        self._starts = [0, *(found.end() for found in _NEWLINE.finditer(self._text))]
+        self._starts = _line_starts(self._text)
 
     def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
@@ -143,7 +169,8 @@ class _Text:
     def position(self, offset: int) -> tuple[int, int]:
         """Line and column of a byte."""
         if offset > self._offset:
-            self._before += len(self._decode(self._data[self._offset : offset]))
+            between = self._data[self._offset : offset]
+            self._before += len(between if self._is_ascii else self._decode(between))
             self._offset = offset
         line = bisect_right(self._starts, self._before)
         return line, self._before - self._starts[line - 1] + 1
@@ -167,3 +194,9 @@ class _Text:
             return 0, 0
         end = self._starts[line] if line < len(self._starts) else len(self._text)
         return self._starts[line - 1], end
+
+
+def _line_starts(text: str) -> list[int]:
+    if "\r" in text:
+        return [0, *(found.end() for found in _NEWLINE.finditer(text))]
+    return [0, *accumulate(len(line) + 1 for line in text.split("\n")[:-1])]

@@ -1,8 +1,9 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
 from collections.abc import Iterable
+from json.encoder import encode_basestring
 
-from sysmlc.diagnostics import Place, Subject
+from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import positions
 from sysmlc.driver.compilation import Compilation
 from sysmlc.ir import Element, Graph
@@ -21,42 +22,48 @@ def trace_text(compilation: Compilation) -> str:
     """Which elements each file comes from, and where those stand in the inputs."""
     written = compilation.written()
     ids = dict.fromkeys(id for artefact in written for id in artefact.trace)
-    return as_text(
-        {
-            "schema": "sysmlc-trace/1",
-            "outputs": [{"path": a.path, "elements": list(a.trace)} for a in written],
-            "elements": _elements(compilation, ids),
-        }
-    )
+    outputs = [{"path": a.path, "elements": list(a.trace)} for a in written]
+    head = as_text({"schema": "sysmlc-trace/1", "outputs": outputs}).removesuffix("\n}\n")
+    elements = ",".join(_elements(compilation, ids))
+    end = "\n " if elements else ""
+    return f'{head},\n "elements": [{elements}{end}]\n}}\n'
 
 
-def _elements(compilation: Compilation, ids: Iterable[str]) -> list[dict[str, object]]:
+def _elements(compilation: Compilation, ids: Iterable[str]) -> list[str]:
     graph = compilation.graph
     names: dict[str, str] = {}
     found = (element for element in map(graph.get, ids) if element is not None)
-    known = sorted((_subject(graph, element, names) for element in found), key=_by_name)
-    standing = [subject.place for subject in known if subject.place]
-    lines = iter(positions(compilation.sources, standing))
+    known = sorted(_start(graph, element, names) for element in found)
+    files = {name: encode_basestring(name) for name in {file for _, _, file, _ in known}}
+    places = positions(compilation.sources, [(file, ordinal) for _, _, file, ordinal in known])
     return [
-        {
-            "id": subject.id,
-            "qualified_name": subject.name,
-            "source": _source(subject.place.file, *next(lines)) if subject.place else None,
-        }
-        for subject in known
+        _element(id, name, files[file] if file else "", *place)
+        for (name, id, file, _), place in zip(known, places, strict=True)
     ]
 
 
-def _by_name(subject: Subject) -> tuple[str, str]:
-    return subject.name, subject.id
+def _element(id: str, name: str, file: str, line: int, column: int) -> str:
+    """One element as ``json_text`` would write it: there are thousands of the same shape."""
+    source = (
+        f'{{\n    "file": {file},\n    "line": {line or "null"},\n'
+        f'    "column": {column or "null"}\n   }}'
+        if file
+        else "null"
+    )
+    return (
+        f'\n  {{\n   "id": {encode_basestring(id)},\n'
+        f'   "qualified_name": {encode_basestring(name)},\n   "source": {source}\n  }}'
+    )
 
 
-def _subject(graph: Graph, element: Element, names: dict[str, str]) -> Subject:
-    """``graph.subject``; most have a source of their own, and share the names above them."""
-    if not element.source:
-        return graph.subject(element)
-    name = _qualified_name(graph, element, names)
-    return Subject(name, element.id, Place(element.source, element.ordinal))
+def _start(graph: Graph, element: Element, names: dict[str, str]) -> tuple[str, str, str, int]:
+    """Name, id, file and ordinal of ``graph.subject``; most have a source of their own."""
+    if element.source:
+        name = _qualified_name(graph, element, names)
+        return name, element.id, element.source, element.ordinal
+    subject = graph.subject(element)
+    place = subject.place or Place("")
+    return subject.name, subject.id, place.file, place.ordinal
 
 
 def _qualified_name(graph: Graph, element: Element, names: dict[str, str]) -> str:
@@ -67,10 +74,6 @@ def _qualified_name(graph: Graph, element: Element, names: dict[str, str]) -> st
     if above is None:
         names[element.owner] = above = graph.qualified_name(graph[element.owner])
     return f"{above}::{own}"
-
-
-def _source(file: str, line: int, column: int) -> dict[str, object]:
-    return {"file": file, "line": line or None, "column": column or None}
 
 
 def as_text(value: object) -> str:
