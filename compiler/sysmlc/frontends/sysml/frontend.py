@@ -1,12 +1,13 @@
 """The front end for SysML v2 and KerML."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.cache import Cache
