@@ -23,7 +23,7 @@ def is_composite(node: Node) -> bool:
     Referential are attributes, events and performances, binding and succession connectors,
     parameters, ends, what no type owns as a feature, and ports except within ports.
     """
-    if node.kind in _REFERENTIAL or node.facts.get("isReference") or node.facts.get("isEnd"):
+    if node.kind in _REFERENTIAL or node.facts.get("isReference") or is_end(node):
         return False
     if node.membership not in _FEATURE_MEMBERSHIPS or node.membership in _PARAMETERS:
         return False
@@ -33,3 +33,8 @@ def is_composite(node: Node) -> bool:
     if is_a(node.kind, "PortUsage"):
         return owner in _PORT_OWNERS
     return owner not in _ATTRIBUTES
+
+
+def is_end(node: Node) -> bool:
+    """Whether a feature is an end: it says so, or its membership does."""
+    return node.membership == "EndFeatureMembership" or node.facts.get("isEnd") is True

@@ -250,8 +250,17 @@ def _visibility(frame: Frame, owner: Frame) -> str:
 
 
 def _settle(node: Node) -> None:
-    """Keep of the facts only what a text would say."""
+    """Keep only what a text would say."""
     facts = node.facts
+    if node.kind == "SuccessionAsUsage" and _leads_on(node):
+        del node.members[1]
+    if node.membership == "EndFeatureMembership":
+        facts.pop("isEnd", None)
+        facts.pop("isConstant", None)
+    if facts.get("isVariation") or node.kind == "EnumerationDefinition":
+        facts.pop("isAbstract", None)
+    if node.kind == "EnumerationDefinition":
+        facts.pop("isVariation", None)
     if node.kind in USAGES:
         was_composite = facts.pop("isComposite", False)
         if facts.get("isEnd"):
@@ -260,6 +269,12 @@ def _settle(node: Node) -> None:
             facts["isReference"] = True
     if node.owner is not None and node.owner.kind == "FlowEnd":
         facts.pop("direction", None)
+
+
+def _leads_on(node: Node) -> bool:
+    """Whether it is a ``then`` before an element: its end there is empty (SysML 8.2.2.9.3)."""
+    ends = [one for one in node.members if one.membership == "EndFeatureMembership"]
+    return node.members == ends and len(ends) == 2 and _is_bare(ends[1])
 
 
 def _text(node: Node, feature: str) -> str | None:

@@ -29,8 +29,7 @@ def identify(root: Element, document: Document) -> None:
     else:
         stem = document.path.rpartition(".")[0] or document.path
         base, path = uuid5(NAMESPACE_URL, f"urn:sysmlc:{stem}"), ""
-    ids = _Ids(base, document.root)
-    ids.element(root, path, "")
+    _Ids(base, document.root).give(root, path)
     if package is not None and standard:
         _name_package(root, str(base))
 
@@ -47,11 +46,18 @@ class _Ids:
     def __init__(self, base: UUID, root: Node) -> None:
         self._base = base
         self._root = root
+        self._todo: list[tuple[Element, str, str]] = []
+
+    def give(self, root: Element, path: str) -> None:
+        """Give ids to the root namespace and to all below it."""
+        self._todo.append((root, path, ""))
+        while self._todo:
+            self._element(*self._todo.pop())
 
     def _of(self, path: str) -> str:
         return str(uuid5(self._base, path))
 
-    def element(self, element: Element, path: str, qualified: str) -> None:
+    def _element(self, element: Element, path: str, qualified: str) -> None:
         """Ids of an element that is no owned relationship, and of all below it.
 
         ``qualified`` is its qualified name, empty when it has none.
@@ -64,18 +70,18 @@ class _Ids:
             first = name if name not in taken else ""
             taken.add(name)
             inner = _joined("" if is_root else qualified, first)
-            self.relationship(owned, path, index, inner)
+            self._relationship(owned, path, index, inner)
 
-    def relationship(self, element: Element, above: str, index: int, qualified: str) -> None:
+    def _relationship(self, element: Element, above: str, index: int, qualified: str) -> None:
         """Ids of an owned relationship, and of all below it; ``qualified`` names its member."""
         path = f"{qualified}/owningMembership" if qualified else f"{above}/{index}"
         element.id = self._of(path)
         for position, owned in enumerate(element.owned, 1):
             if _is_relationship(owned):
-                self.relationship(owned, path, position, "")
+                self._relationship(owned, path, position, "")
             else:
                 inner = qualified if position == 1 else ""
-                self.element(owned, inner or f"{path}/{position}", inner)
+                self._todo.append((owned, inner or f"{path}/{position}", inner))
 
 
 def _joined(above: str, name: str) -> str:

@@ -25,13 +25,15 @@ class Naming:
 
         What has no name counts by its position: ``#3`` is the third member of its owner.
         """
-        found = self._qualified.get(node)
-        if found is None:
-            owner = node.owner
-            above = self.qualified(owner) if owner is not None and owner.owner else ()
-            found = (*above, effective(node) or _position(node)) if owner else ()
-            self._qualified[node] = found
-        return found
+        above: list[Node] = []
+        while node not in self._qualified and node.owner is not None:
+            above.append(node)
+            node = node.owner
+        names = self._qualified.setdefault(node, ())
+        for below in reversed(above):
+            names = (*names, effective(below) or _position(below))
+            self._qualified[below] = names
+        return names
 
 
 def effective(node: Node, depth: int = 0) -> str:

@@ -8,9 +8,11 @@ from sysmlc.language.exchange.frames import Frame
 from sysmlc.language.exchange.naming import Naming, shown
 from sysmlc.language.exchange.references import ExchangeDocument, References, name, resolve
 from sysmlc.language.tree import Node
-from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
+from sysmlc.sources import Fault, Limits, Source, SourceError
 from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep
 
+_LIMITS = Limits(depth=20_000)
+"""A list of n elements nests 6 n deep (KerML 1.0, 8.2.5.8.2); nothing here recurses."""
 _RELATIONSHIP = "ownedRelationship"
 _RELATED = "ownedRelatedElement"
 _SCHEMA = "http://www.w3.org/2001/XMLSchema-instance"
@@ -75,8 +77,8 @@ class _Reader:
         if self._skipped:
             self._skipped += 1
             return
-        if len(self._tags) >= DEFAULT_LIMITS.depth:
-            too_deep(self._source, self._made)
+        if len(self._tags) >= _LIMITS.depth:
+            too_deep(self._source, self._made, _LIMITS)
         self._text.clear()
         space, _, local = tag.rpartition(SEPARATOR)
         said = self._said(attributes)

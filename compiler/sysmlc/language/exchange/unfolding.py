@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.exchange.composition import USAGES, is_composite
+from sysmlc.language.exchange.composition import USAGES, is_composite, is_end
 from sysmlc.language.exchange.features import stated
 from sysmlc.language.exchange.folding import ENDS, NAMING, RELATIONS
 from sysmlc.language.metaclasses import is_a, kinds_of
@@ -26,6 +26,7 @@ _INSTANTIATIONS = kinds_of("InstantiationExpression")
 _EXPRESSIONS = kinds_of("Expression")
 _PARAMETERS = kinds_of("ParameterMembership")
 _IMPORTS = {"MembershipImport": "importedMembership", "NamespaceImport": "importedNamespace"}
+_END = "EndFeatureMembership"
 _RESULTLESS = {"ConstructorExpression", "AssignmentActionUsage", "TransitionUsage"}
 _KINDS = kinds_of("StateSubactionMembership") | kinds_of("TransitionFeatureMembership")
 _REQUIREMENTS = kinds_of("RequirementConstraintMembership")
@@ -77,19 +78,44 @@ class Link:
 
 
 def unfold(node: Node) -> Element:
-    """The element of a node with all that it owns."""
-    element = Element(node.kind, node)
+    """The element of a node with all that it owns, however deep it nests."""
+    root = Element(node.kind, node)
+    todo = [root]
+    while todo:
+        _fill(todo.pop(), todo)
+    return root
+
+
+def walk(root: Element) -> Iterator[tuple[Element, Element | None]]:
+    """The element and all below it, owners first, each with what owns it."""
+    stack: list[tuple[Element, Element | None]] = [(root, None)]
+    while stack:
+        element, owner = stack.pop()
+        yield element, owner
+        stack.extend((owned, element) for owned in reversed(element.owned))
+
+
+def _fill(element: Element, todo: list[Element]) -> None:
+    """State what the element says and own what its node owns; ``todo`` gets what is empty yet."""
+    node = element.node
+    if node is None:
+        return
     _state(element, node)
     if node.kind in ENDS and node.membership:
-        _stand(element, node)
+        _stand(element, node, todo)
     else:
         for item in _in_order(node):
             if isinstance(item, Relation):
                 element.own(_relationship(item, element))
             else:
-                _own(element, item)
+                _own(element, item, todo)
     _add_implicit(element, node)
-    return element
+
+
+def _empty(node: Node, todo: list[Element]) -> Element:
+    made = Element(node.kind, node)
+    todo.append(made)
+    return made
 
 
 def _in_order(node: Node) -> Iterator[Relation | Node]:
@@ -111,8 +137,12 @@ def _state(element: Element, node: Node) -> None:
     element.attributes.update({name: text for name, text in names.items() if text is not None})
     known = stated(node.kind)
     element.attributes.update({name: fact for name, fact in node.facts.items() if name in known})
-    if node.membership in _PARAMETERS:
+    if node.membership in _PARAMETERS and not _is_argument(node):
         element.attributes.setdefault("direction", _direction(node))
+    if is_end(node):
+        element.attributes["isEnd"] = True
+    if node.facts.get("isVariation") or node.kind == "EnumerationDefinition":
+        element.attributes["isAbstract"] = True
     if node.kind in USAGES:
         _complete_usage(element, node)
 
@@ -127,11 +157,11 @@ def _complete_usage(element: Element, node: Node) -> None:
         element.attributes["isComposite"] = True
     owner = node.owner.kind if node.owner else ""
     varies = is_a(owner, "OccurrenceDefinition") or is_a(owner, "OccurrenceUsage")
-    if node.facts.get("isEnd") and varies:
+    if is_end(node) and varies:
         element.attributes["isConstant"] = True
 
 
-def _stand(element: Element, node: Node) -> None:
+def _stand(element: Element, node: Node, todo: list[Element]) -> None:
     """A relationship for itself: its ends are features, chains are owned by it."""
     for relation in node.relations:
         if len(relation.reference.chain) > 1:
@@ -139,7 +169,7 @@ def _stand(element: Element, node: Node) -> None:
         else:
             element.targets.append((relation.kind, Link(relation.reference)))
     for member in node.members:
-        _own(element, member)
+        _own(element, member, todo)
 
 
 # -- relationships ---------------------------------------------------------------------------
@@ -183,18 +213,18 @@ def _chain(reference: Reference) -> Element:
 # -- members ---------------------------------------------------------------------------------
 
 
-def _own(owner: Element, node: Node) -> None:
+def _own(owner: Element, node: Node, todo: list[Element]) -> None:
     if is_a(node.kind, "Import"):
-        owner.own(_import(node))
+        owner.own(_import(node, todo))
     elif node.kind == "Membership":
-        owner.own(_alias(node))
+        owner.own(_alias(node, todo))
     elif not node.membership:
-        owner.own(unfold(node))
+        owner.own(_empty(node, todo))
     else:
-        owner.own(_membership(owner, node))
+        owner.own(_membership(owner, node, todo))
 
 
-def _import(node: Node) -> Element:
+def _import(node: Node, todo: list[Element]) -> Element:
     """An import; the package of a filtered one is owned by it."""
     made = Element(node.kind, node)
     made.attributes.update(node.facts)
@@ -205,13 +235,13 @@ def _import(node: Node) -> Element:
     feature = next(end for kind, end in _IMPORTS.items() if is_a(node.kind, kind))
     for member in node.members:
         if is_a(member.kind, "Package"):
-            made.targets.append((feature, made.own(unfold(member))))
+            made.targets.append((feature, made.own(_empty(member, todo))))
         else:
-            _own(made, member)
+            _own(made, member, todo)
     return made
 
 
-def _alias(node: Node) -> Element:
+def _alias(node: Node, todo: list[Element]) -> Element:
     made = Element("Membership", node)
     names = {"memberName": node.name, "memberShortName": node.short}
     names["visibility"] = node.visibility or None
@@ -219,24 +249,32 @@ def _alias(node: Node) -> Element:
     for relation in node.relations:
         made.targets.append(("memberElement", Link(relation.reference)))
     for member in node.members:
-        _own(made, member)
+        _own(made, member, todo)
     return made
 
 
-def _membership(owner: Element, node: Node) -> Element:
+def _membership(owner: Element, node: Node, todo: list[Element]) -> Element:
     made = Element(node.membership, node)
     if node.visibility:
         made.attributes["visibility"] = node.visibility
     made.attributes.update(_role(node))
     if node.membership == "Annotation":
         made.targets.append(("annotatedElement", owner))
-    inner = unfold(node)
-    is_argument = owner.kind in _INSTANTIATIONS and node.kind in _EXPRESSIONS
-    if is_argument and node.membership == "ParameterMembership":
-        inner.attributes.pop("direction", None)
+    inner = _empty(node, todo)
+    if _is_argument(node):
         inner = _argument(_late(inner) if node.role == "expression" else inner)
     made.own(inner)
     return made
+
+
+def _is_argument(node: Node) -> bool:
+    """Whether it is an expression that a parameter carries to the one that owns it."""
+    return (
+        node.membership == "ParameterMembership"
+        and node.kind in _EXPRESSIONS
+        and node.owner is not None
+        and node.owner.kind in _INSTANTIATIONS
+    )
 
 
 def _role(node: Node) -> dict[str, Fact]:
@@ -273,6 +311,8 @@ def _add_implicit(element: Element, node: Node) -> None:
             element.own(_result())
     elif node.kind == "PortDefinition":
         element.own(Element("OwningMembership")).own(_conjugate(element))
+    elif node.kind == "SuccessionAsUsage" and [one.membership for one in node.members] == [_END]:
+        element.own(Element(_END)).own(Element("ReferenceUsage")).attributes["isEnd"] = True
     elif node.facts.get("isIndividual") and is_a(node.kind, "OccurrenceDefinition"):
         element.own(Element("OwningMembership")).own(Element("Multiplicity"))
 

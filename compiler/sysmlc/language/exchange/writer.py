@@ -1,14 +1,14 @@
 """Writes the tree of KerML and SysML v2 as XMI (.kermlx, .sysmlx; KerML 1.0, 10.2)."""
 
 from collections.abc import Iterator, Sequence
-from posixpath import dirname, relpath
+from posixpath import dirname, relpath, splitext
 from urllib.parse import quote
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.identity import identify
 from sysmlc.language.exchange.naming import shown
-from sysmlc.language.exchange.unfolding import Element, Link, unfold
+from sysmlc.language.exchange.unfolding import Element, Link, unfold, walk
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
 from sysmlc.language.tree import Document, Node
 
@@ -31,8 +31,7 @@ def write(document: Document, others: Sequence[Document], sink: Sink) -> bytes:
 def interchange_path(document: Document) -> str:
     """The path of the interchange file of a document: another suffix, archives as folders."""
     path = document.path.replace("!", "/")
-    stem = path.rpartition(".")[0] or path
-    return stem + _SUFFIXES[document.language]
+    return splitext(path)[0] + _SUFFIXES[document.language]
 
 
 class _File:
@@ -44,23 +43,24 @@ class _File:
         identify(self.root, document)
         self.elements: dict[Node, Element] = {}
         self.memberships: dict[Node, Element] = {}
-        self.conjugates: dict[Node, Element] = {}
-        self._enter(self.root, None)
-
-    def _enter(self, element: Element, owner: Element | None) -> None:
-        node = element.node
-        if node is not None:
-            self.memberships.setdefault(node, element)
-            self.elements[node] = element
-        for owned in element.owned:
-            self._enter(owned, element)
-            if owned.kind == "ConjugatedPortDefinition" and owner and owner.node:
-                self.conjugates[owner.node] = owned
+        self.conjugates: dict[Node | None, Element] = {}
+        for element, owner in walk(self.root):
+            if element.node is not None:
+                self.memberships.setdefault(element.node, element)
+                self.elements[element.node] = element
+            if element.kind == "ConjugatedPortDefinition" and owner is not None:
+                self.conjugates[_definition(element)] = element
 
     def target(self, node: Node, feature: str) -> Element | None:
         if feature == "conjugatedPortDefinition":
             return self.conjugates.get(node)
         return (self.memberships if feature in _MEMBERSHIPS else self.elements).get(node)
+
+
+def _definition(conjugate: Element) -> Node | None:
+    """The port definition that is conjugated."""
+    targets = (target for _, target in conjugate.owned[0].targets)
+    return next((one.node for one in targets if isinstance(one, Element) and one.node), None)
 
 
 class _Writer:
@@ -71,7 +71,7 @@ class _Writer:
         self._files: dict[Node, _File] = {document.root: _File(document)}
         self._folder = dirname(interchange_path(document)) or "."
         self.root = self._files[document.root].root
-        self._prune(self.root, document.root)
+        self._prune()
 
     def targets(self, element: Element) -> Targets:
         """What the features of an element refer to."""
@@ -106,20 +106,17 @@ class _Writer:
 
     # -- what cannot be written ------------------------------------------------------------------
 
-    def _prune(self, element: Element, about: Node) -> None:
+    def _prune(self) -> None:
         """Report and take out the relationships whose targets are not known."""
-        about = element.node or about
-        for feature in is_writable(element):
-            self._report(rules.UNWRITABLE_TEXT, about, feature)
-        kept = []
-        for owned in element.owned:
-            lost = next(_lost(owned), None)
-            if lost is None:
-                self._prune(owned, about)
-                kept.append(owned)
-            else:
-                self._report(rules.UNWRITTEN_REFERENCE, about, lost)
-        element.owned[:] = kept
+        about = self._document.root
+        for element, _ in walk(self.root):
+            about = element.node or about
+            for feature in is_writable(element):
+                self._report(rules.UNWRITABLE_TEXT, about, feature)
+            lost = {owned: next(_lost(owned), None) for owned in element.owned}
+            for name in filter(None, lost.values()):
+                self._report(rules.UNWRITTEN_REFERENCE, about, name)
+            element.owned[:] = [owned for owned in element.owned if lost[owned] is None]
 
     def _report(self, rule: Rule, node: Node, what: str) -> None:
         place = Place(self._document.path, offset=node.start)

@@ -33,42 +33,44 @@ def lines(root: Element, targets: Callable[[Element], Targets]) -> Iterator[str]
     """The lines of the file with this root namespace."""
     yield '<?xml version="1.0" encoding="UTF-8"?>'
     tag = f"sysml:{root.kind}"
-    yield from _lines(root, tag, f"{tag} {_ROOT} {_ids(root)}", targets, "")
+    stack: list[str | tuple[Element, str, str, str]] = [(root, tag, f"{tag} {_ROOT}", "")]
+    while stack:
+        item = stack.pop()
+        if isinstance(item, str):
+            yield item
+        else:
+            yield _begin(*item, stack, targets(item[0]))
 
 
-def _lines(
+def _begin(
     element: Element,
     tag: str,
     start: str,
-    targets: Callable[[Element], Targets],
     indent: str,
-) -> Iterator[str]:
-    found = targets(element)
+    stack: list[str | tuple[Element, str, str, str]],
+    found: Targets,
+) -> str:
+    """The start tag of an element; what comes after it is put on the stack, last things first."""
     local = {name: [id for id, kind in ones if not kind] for name, ones in found.items()}
     texts = {name: _text(fact) for name, fact in element.attributes.items()}
     texts |= {name: " ".join(ids) for name, ids in local.items() if ids}
     said = "".join(f' {name}="{text.translate(_ESCAPES)}"' for name, text in texts.items())
-    hrefs = list(_hrefs(found, indent + "  "))
+    inner = f"{indent}  "
+    hrefs = list(_hrefs(found, inner))
+    begun = f'{indent}<{start} xmi:id="{element.id}" elementId="{element.id}"{said}'
     if not element.owned and not hrefs:
-        yield f"{indent}<{start}{said}/>"
-        return
-    yield f"{indent}<{start}{said}>"
-    for owned in element.owned:
-        inner = _tag(element, owned)
-        begin = f'{inner} xsi:type="sysml:{owned.kind}" {_ids(owned)}'
-        yield from _lines(owned, inner, begin, targets, f"{indent}  ")
-    yield from hrefs
-    yield f"{indent}</{tag}>"
+        return f"{begun}/>"
+    stack += [f"{indent}</{tag}>", *reversed(hrefs)]
+    for owned in reversed(element.owned):
+        name = _tag(element, owned)
+        stack.append((owned, name, f'{name} xsi:type="sysml:{owned.kind}"', inner))
+    return f"{begun}>"
 
 
 def _tag(element: Element, owned: Element) -> str:
     """What owns it: a plain relationship owns elements, but annotations as relationships."""
     is_plain = is_a(element.kind, "Relationship") and not is_a(element.kind, "Namespace")
     return _RELATED if is_plain and owned.kind != "Annotation" else _RELATIONSHIP
-
-
-def _ids(element: Element) -> str:
-    return f'xmi:id="{element.id}" elementId="{element.id}"'
 
 
 def _hrefs(found: Targets, indent: str) -> Iterable[str]:
