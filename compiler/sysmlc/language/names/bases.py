@@ -125,6 +125,7 @@ BY_MEMBERSHIP: dict[tuple[str, str], str] = {
     ("TransitionFeatureMembership", "effect"): "Actions::TransitionAction::effect",
     ("RequirementConstraintMembership", "assumption"): "Requirements::RequirementCheck::assumptions",
     ("RequirementConstraintMembership", "requirement"): "Requirements::RequirementCheck::constraints",
+    ("ViewRenderingMembership", ""): "Views::View::viewRendering",
     ("FramedConcernMembership", ""): "Requirements::RequirementCheck::concerns",
     ("StakeholderMembership", ""): "Requirements::RequirementCheck::stakeholders",
     ("RequirementVerificationMembership", ""): (
@@ -132,7 +133,9 @@ BY_MEMBERSHIP: dict[tuple[str, str], str] = {
     ),
 }
 """What a member specialises because of its membership and the role that this gives it."""
-REDEFINED_BY_MEMBERSHIP = frozenset({"StateSubactionMembership", "ViewRenderingMembership"})
+REDEFINED_BY_MEMBERSHIP = frozenset(
+    {"StateSubactionMembership", "TransitionFeatureMembership", "ViewRenderingMembership"}
+)
 """Memberships whose members redefine that feature."""
 
 

@@ -59,13 +59,15 @@ class Start(NamedTuple):
 
     ``inherited`` looks in the generals of the scope first and not at what it owns: a feature
     redefines what its owner inherits (KerML 8.2.3.5.2). ``without`` is not found by its
-    effective name, which the search is to give.
+    effective name, which the search is to give. ``before`` is the link of a chain that the
+    name follows.
     """
 
     scope: Node | None
     operand: Node | None = None
     inherited: bool = False
     without: Node | None = None
+    before: Relation | None = None
 
 
 def start(node: Node, relation: Relation) -> Start:
@@ -79,7 +81,14 @@ def start(node: Node, relation: Relation) -> Start:
         return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
     if kind == "FeatureTyping":
         return Start(beyond_expressions(node), without=node)
-    return Start(namespace(node), without=node)
+    before = _before(node, relation) if kind == "FeatureChaining" else None
+    return Start(namespace(node), without=node, before=before)
+
+
+def _before(node: Node, relation: Relation) -> Relation | None:
+    chain = [r for r in node.relations if r.kind == "FeatureChaining"]
+    index = chain.index(relation)
+    return chain[index - 1] if index else None
 
 
 def _membership(node: Node) -> Start:

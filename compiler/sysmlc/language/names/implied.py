@@ -70,13 +70,17 @@ def candidates(node: Node) -> list[tuple[str, str]]:
         return []
     if kind not in FEATURES:
         return [("Subclassification", name) for name in _bases(node)]
-    role = BY_MEMBERSHIP.get((node.membership, node.role)) or BY_MEMBERSHIP.get(
-        (node.membership, "")
-    )
-    redefines = node.membership in REDEFINED_BY_MEMBERSHIP
-    found = [("Redefinition" if redefines else "Subsetting", role)] if role else []
-    names = [*_placed(node), *_bases(node)]
-    return [*found, *(("Subsetting", name) for name in names)]
+    role = by_role(node) if node.membership not in REDEFINED_BY_MEMBERSHIP else None
+    if node.role == "trigger":
+        return []
+    names = [*([role] if role else []), *_placed(node), *_bases(node)]
+    return [("Subsetting", name) for name in names]
+
+
+def by_role(node: Node) -> str | None:
+    """The feature that a member specialises because of its membership and role, by name."""
+    membership = node.membership
+    return BY_MEMBERSHIP.get((membership, node.role)) or BY_MEMBERSHIP.get((membership, ""))
 
 
 def _bases(node: Node) -> list[str]:

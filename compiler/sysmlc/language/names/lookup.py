@@ -3,33 +3,38 @@
 from collections.abc import Callable, Iterator
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names import contexts, positions
+from sysmlc.language.names import contexts, positions, results
 from sysmlc.language.names.contents import NAMESPACES, TYPES, Owned, owned
 from sysmlc.language.names.filters import passes
-from sysmlc.language.names.results import result
 from sysmlc.language.tree import Node, Reference, Relation
 
 Hits = tuple[Node, ...]
 """Members found by one name, the nearest first; an alias is its Membership node."""
 _NONE: Hits = ()
 _IMPORTS = kinds_of("Import")
-_GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+_EXPOSES = kinds_of("Expose")
+GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
 """Relations whose target gives its members to the node that has them."""
 
 
 class Lookup:
     """Finds what names lead to, each once; ``roots`` gives the members of the global scope.
 
-    ``implied`` gives the elements that a type specialises though the text does not say so.
+    ``implied`` gives the elements that a type specialises though the text does not say so,
+    ``by_role`` those that a member redefines because of its membership.
     References that are being looked up already lead nowhere meanwhile: what was found while one
     was cut is not remembered, so cycles end and change no other answer.
     """
 
     def __init__(
-        self, roots: Callable[[str], Hits], implied: Callable[[Node], list[Node]]
+        self,
+        roots: Callable[[str], Hits],
+        implied: Callable[[Node], list[Node]],
+        by_role: Callable[[Node], list[Node]],
     ) -> None:
         self._roots = roots
         self._implied = implied
+        self._by_role = by_role
         self._owned: dict[Node, Owned] = {}
         self._generals: dict[Node, list[Node]] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
@@ -38,9 +43,10 @@ class Lookup:
         self._active: set[Reference] = set()
         self._inheriting: set[Node] = set()
         self._importing: set[tuple[Node, bool]] = set()
+        self._redefining: dict[Node, list[Node]] = {}
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
-        self._cuts = 0
+        self.cuts = 0
 
     # References
 
@@ -53,13 +59,13 @@ class Lookup:
         if reference.targets is not None:
             return reference.target
         if reference in self._active:
-            self._cuts += 1
+            self.cuts += 1
             return None
-        before = self._cuts
+        before = self.cuts
         self._active.add(reference)
         targets = self._follow(node, relation)
         self._active.discard(reference)
-        if len(targets) == len(reference.chain) or self._cuts == before or not self._active:
+        if len(targets) == len(reference.chain) or self.cuts == before or not self._active:
             reference.targets = targets
         return targets[-1] if len(targets) == len(reference.chain) else None
 
@@ -72,10 +78,11 @@ class Lookup:
         found: list[Node] = []
         for index, names in enumerate(reference.chain):
             kinds = wanted if index == last else contexts.WANTED["Subsetting"]
-            if index:
-                hit = self.descend(found[-1], names, 0, kinds)
+            if index or start.before is not None:
+                scope = found[-1] if index else self._link(node, start.before)
+                hit = self.descend(scope, names, 0, kinds) if scope else None
             elif start.operand is not None:
-                scope = result(start.operand, self)
+                scope = results.result(start.operand, self)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             else:
                 hit = self.search(start, names, kinds)
@@ -87,6 +94,9 @@ class Lookup:
                 break
             found.append(element)
         return found
+
+    def _link(self, node: Node, relation: Relation | None) -> Node | None:
+        return self.target(node, relation) if relation is not None else None
 
     def element(self, hit: Node) -> Node | None:
         """What a member stands for: the element of an alias, else the member itself."""
@@ -186,14 +196,14 @@ class Lookup:
             return hits
         if scope in self._inheriting:
             return _NONE
-        before = self._cuts
+        before = self.cuts
         self._inheriting.add(scope)
         hits = self._general_hits(scope, name)
         if hits:
             left = (self._instead(scope, hit) for hit in hits)
             hits = tuple(dict.fromkeys(hit for hit in left if hit is not None))
         self._inheriting.discard(scope)
-        if self._cuts == before:
+        if self.cuts == before:
             memo[name] = hits
         return hits
 
@@ -202,7 +212,7 @@ class Lookup:
         for general in self.generals(scope):
             hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         if not hits or any(map(_is_of_library, hits)):
-            for general in (*self.by_position(scope), *self._implied(scope)):
+            for general in self._silent_generals(scope):
                 hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         return tuple(hits) if len(hits) < 2 else self._most_special(hits)
 
@@ -247,21 +257,28 @@ class Lookup:
                         target = self.target(member, relation)
                         if target is hit or (target and hit in self.redefined(target)):
                             return None
-        wanted = positions.role(hit)
-        if wanted:
-            for member in positions.own(scope, wanted):
-                if hit in self.by_position(member):
-                    return None if member.name else member
+        for member in self._silent(scope):
+            if hit in self.by_position(member):
+                return None if member.name else member
         return hit
 
+    def _silent(self, scope: Node) -> list[Node]:
+        """The members of ``scope`` that redefine something though the text does not say so."""
+        known = self._redefining.get(scope)
+        if known is None:
+            known = self._redefining[scope] = [m for m in scope.members if positions.counts(m)]
+        return known
+
     def by_position(self, feature: Node) -> list[Node]:
-        """What a feature redefines because of its position."""
+        """What a feature redefines because of its position or its membership."""
         known = self._positions.get(feature)
         if known is None:
-            before = self._cuts
+            if not positions.counts(feature):
+                return []
+            before = self.cuts
             self._positions[feature] = []
-            known = positions.redefined(feature, self)
-            if self._cuts == before:
+            known = positions.redefined(feature, self) or self._by_role(feature)
+            if self.cuts == before:
                 self._positions[feature] = known
             else:
                 del self._positions[feature]
@@ -272,10 +289,10 @@ class Lookup:
         key = (scope, role)
         known = self._at_positions.get(key)
         if known is None:
-            before = self._cuts
+            before = self.cuts
             self._at_positions[key] = []
             known = positions.gather(scope, role, self)
-            if self._cuts == before:
+            if self.cuts == before:
                 self._at_positions[key] = known
             else:
                 del self._at_positions[key]
@@ -283,24 +300,33 @@ class Lookup:
 
     def all_generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says and what it may implicitly."""
-        return [*self.generals(node), *self.by_position(node), *self._implied(node)]
+        return [*self.generals(node), *self._silent_generals(node)]
+
+    def _silent_generals(self, node: Node) -> list[Node]:
+        value = results.of_value(node, self) if not self.generals(node) else None
+        found = [*self.by_position(node), *self._implied(node)]
+        return [value, *found] if value is not None and value is not node else found
 
     def generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
         known = self._generals.get(node)
         if known is not None:
             return known
-        before = self._cuts
+        before = self.cuts
         found: list[Node] = []
+        links: list[Node] = []
         for relation in node.relations:
             if not relation.implied and (
-                relation.kind in _GENERAL
+                relation.kind in GENERAL
                 or (relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS)
             ):
                 target = self.target(node, relation)
                 if target is not None and target not in found:
+                    if relation.kind == "FeatureChaining":
+                        found = [one for one in found if one not in links]
+                        links.append(target)
                     found.append(target)
-        if self._cuts == before:
+        if self.cuts == before:
             self._generals[node] = found
         return found
 
@@ -339,13 +365,13 @@ class Lookup:
         if hits is not None:
             return hits
         if key in self._importing:
-            self._cuts += 1
+            self.cuts += 1
             return _NONE
-        before, first = self._cuts, not self._importing
+        before, first = self.cuts, not self._importing
         self._importing.add(key)
         hits = self._gather(scope, imports, name, inside)
         self._importing.discard(key)
-        if self._cuts == before or (first and not self._active):
+        if self.cuts == before or (first and not self._active):
             memo[name] = hits
         return hits
 
@@ -385,7 +411,7 @@ class Lookup:
     def _many(self, node: Node, scope: Node | None, name: str) -> Hits:
         if scope is None:
             return _NONE
-        everything = bool(node.facts.get("isImportAll"))
+        everything = node.kind in _EXPOSES or bool(node.facts.get("isImportAll"))
         hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
         if hits or not node.facts.get("isRecursive"):
             return hits

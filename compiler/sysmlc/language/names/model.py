@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import implied, semantic
+from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
 from sysmlc.language.names.lookup import Hits, Lookup
 from sysmlc.language.names.unresolved import report
@@ -20,7 +21,7 @@ class Model:
     def __init__(self, documents: Sequence[Document], library: Library) -> None:
         self.documents = sorted(documents, key=lambda document: document.path)
         self.library = library
-        self.lookup = Lookup(self._roots, self.implied_generals)
+        self.lookup = Lookup(self._roots, self.implied_generals, self._by_role)
         self._by_root = {document.root: document for document in self.documents}
         self._named: dict[str, list[Node]] = {}
         for document in self.documents:
@@ -139,8 +140,16 @@ class Model:
         """All that ``node`` may implicitly specialise, needed or not."""
         known = self._implied.get(node)
         if known is None:
-            known = self._implied[node] = list(dict.fromkeys(n for _, n in self._candidates(node)))
+            before = self.lookup.cuts
+            known = list(dict.fromkeys(one for _, one in self._candidates(node)))
+            if self.lookup.cuts == before:
+                self._implied[node] = known
         return known
+
+    def _by_role(self, node: Node) -> list[Node]:
+        name = implied.by_role(node) if node.membership in REDEFINED_BY_MEMBERSHIP else None
+        target = self.find(name) if name else None
+        return [target] if target is not None and target is not node else []
 
     def _candidates(self, node: Node) -> list[tuple[str, Node]]:
         """Kind of relation and target of all that ``node`` may implicitly specialise."""

@@ -7,6 +7,7 @@ checkFeatureResultRedefinition), SysML 8.4 (subject and objective).
 from typing import TYPE_CHECKING
 
 from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
 
@@ -39,6 +40,13 @@ def role(feature: Node) -> str:
     return "parameter" if counted else ""
 
 
+def counts(feature: Node) -> bool:
+    """Whether a feature may redefine another though the text does not say so."""
+    if feature.membership not in REDEFINED_BY_MEMBERSHIP and not role(feature):
+        return False
+    return not any(r.kind == "Redefinition" and not r.implied for r in feature.relations)
+
+
 def own(scope: Node, wanted: str) -> list[Node]:
     """The features of ``scope`` with that role, in the order of the text."""
     return [member for member in scope.members if role(member) == wanted]
@@ -48,8 +56,6 @@ def redefined(feature: Node, lookup: "Lookup") -> list[Node]:
     """What a feature without a written redefinition redefines by its position."""
     owner, wanted = feature.owner, role(feature)
     if not wanted or owner is None or owner.kind in _SKIPPED:
-        return []
-    if any(relation.kind == "Redefinition" and not relation.implied for relation in feature.relations):
         return []
     index = own(owner, wanted).index(feature)
     found: list[Node] = []

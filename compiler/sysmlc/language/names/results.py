@@ -79,6 +79,27 @@ def _invoked(expression: Node, lookup: "Lookup") -> Node | None:
     return returned(invoked, lookup, set()) or (invoked if invoked.kind not in FEATURES else None)
 
 
+def of_value(feature: Node, lookup: "Lookup") -> Node | None:
+    """What a feature that specialises nothing has its members from: the result of its value.
+
+    KerML 8.4.4.10.2, checkFeatureValuationSpecialization; a loop variable has those of the
+    sequence, what is given to a constructor those of the type.
+    """
+    membership = feature.membership
+    if membership == "ReturnParameterMembership" and feature.owner is not None:
+        if feature.owner.kind == "ConstructorExpression":
+            return named(feature.owner, lookup)
+    owner = feature.owner
+    if owner is not None and owner.kind == "ForLoopActionUsage" and feature is owner.members[0]:
+        feature = next((m for m in owner.members if m.membership == "ParameterMembership"), feature)
+    elif "direction" in feature.facts:
+        return None
+    for member in feature.members:
+        if member.membership == "FeatureValue":
+            return result(member, lookup)
+    return None
+
+
 def returned(function: Node, lookup: "Lookup", seen: set[Node]) -> Node | None:
     """The result parameter that a function or expression owns or inherits."""
     seen.add(function)

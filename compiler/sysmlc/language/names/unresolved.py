@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.names import contexts
-from sysmlc.language.names.lookup import Lookup
+from sysmlc.language.names.lookup import GENERAL, Lookup
 from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import UNRESOLVED
-from sysmlc.language.tree import Document, Node, Relation
+from sysmlc.language.tree import Document, Node, Reference, Relation
 from sysmlc.suggest import did_you_mean
 
 
@@ -18,10 +18,12 @@ def report(
     reference = relation.reference
     index = len(reference.targets or ())
     start = contexts.start(node, relation)
-    if index == 0 and start.operand is not None and result(start.operand, lookup) is None:
+    before = _before(node, lookup, reference, start)
+    if before is None and (index or start.operand is not None or start.before is not None):
+        return
+    if _is_incomplete(before or (start.scope if start.inherited else None), lookup):
         return
     name = "::".join(reference.chain[index])
-    before = reference.targets[-1] if reference.targets else None
     inside = f" in '{before.name}'" if before is not None and before.name else ""
     sink.report(
         UNRESOLVED,
@@ -30,6 +32,34 @@ def report(
         inside=inside,
         advice=did_you_mean(reference.chain[index][-1], _known(lookup, before or start.scope)),
     )
+
+
+def _before(
+    node: Node, lookup: Lookup, reference: Reference, start: contexts.Start
+) -> Node | None:
+    """The element in which the name that was not found should be, if it is not a scope."""
+    if reference.targets:
+        return reference.targets[-1]
+    if start.operand is not None:
+        return result(start.operand, lookup)
+    return lookup.target(node, start.before) if start.before is not None else None
+
+
+def _is_incomplete(scope: Node | None, lookup: Lookup) -> bool:
+    """Whether a general of ``scope`` was not found: the name may come from it, once is enough."""
+    waiting = [scope] if scope is not None else []
+    seen = set(waiting)
+    while waiting:
+        node = waiting.pop()
+        for relation in node.relations:
+            if relation.kind in GENERAL:
+                general = lookup.target(node, relation)
+                if general is None:
+                    return True
+                if general not in seen:
+                    seen.add(general)
+                    waiting.append(general)
+    return False
 
 
 def _known(lookup: Lookup, scope: Node | None) -> Iterable[str]:
