@@ -8,7 +8,7 @@ from html import unescape
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
-from sysmlc.frontends.caex import fitting, measures, rules
+from sysmlc.frontends.caex import fitting, measures, rules, strange
 from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
@@ -40,6 +40,7 @@ def links(source: Source) -> list[str]:
 
 def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
     """Count every element of each file once, and report what is not read or leads nowhere."""
+    strange.report(context, sources)
     for document in context.documents:
         _count(document, coverage.file(document.name))
         lost: dict[str, list[Node]] = {}

@@ -53,8 +53,9 @@ def fill(document: "Document", source: Source) -> None:
     """Fill the columns. Raises SourceError."""
     made = parser()
     try:
-        _handle(document, source, made)
+        stray = _handle(document, source, made)
         parse(source, made)
+        document.has_stray = any(map(str.strip, stray))
         document.has_changes = "ChangeMode" in made.intern
         local = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
         document.tags = [local[tag] for tag in document.tags]
@@ -65,12 +66,14 @@ def fill(document: "Document", source: Source) -> None:
         made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
 
 
-def _handle(document: "Document", source: Source, made: Parser) -> None:
-    """Set the handlers.
+def _handle(document: "Document", source: Source, made: Parser) -> set[str]:
+    """Set the handlers; the set that they return will hold what stands where CAEX has no text.
 
-    Text is listened to only where CAEX has some: between the other elements stand line ends.
+    Text is kept only where CAEX has some: between the other elements stand line ends.
     The text of what is inside a folded element is its parent's, too.
     """
+    stray: set[str] = set()
+    hear = stray.add
     tags, ends, texts = document.tags, document.ends, document.texts
     stack = [-1]
     kinds = _Kinds(texts)
@@ -114,7 +117,7 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
 
     def end_of_text(_tag: str) -> None:
         nonlocal folding
-        made.CharacterDataHandler = None
+        made.CharacterDataHandler = hear
         if folding is None:
             made.EndElementHandler = end
         elif len(stack) == depth:
@@ -130,3 +133,5 @@ def _handle(document: "Document", source: Source, made: Parser) -> None:
 
     made.StartElementHandler = start
     made.EndElementHandler = end
+    made.CharacterDataHandler = hear
+    return stray

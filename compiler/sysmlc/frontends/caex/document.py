@@ -111,7 +111,9 @@ class Document:
     ``tags`` are local names; ``ends[row]`` is the first row after the row's content;
     ``ordinals`` are places among all elements of the file. ``texts`` holds by tag the texts of
     folded children, and under the empty name the row's own, for the rows that have some.
-    ``has_changes`` tells whether some row may have a ChangeMode. ``elements`` are ids of what
+    ``has_changes`` tells whether some row may have a ChangeMode, ``has_stray`` whether text
+    may stand where CAEX has none. ``shapes`` are the pairs of a tag and the names of its attributes
+    that occur, where they are known (else it is empty). ``elements`` are ids of what
     the rows became in the graph.
 
     ``ids`` are the IDs, empty where there is none. ``alike`` is the first row with the same tag
@@ -125,11 +127,13 @@ class Document:
         "elements",
         "ends",
         "has_changes",
+        "has_stray",
         "ids",
         "is_built_in",
         "name",
         "ordinals",
         "parents",
+        "shapes",
         "tags",
         "texts",
         "verdicts",
@@ -153,6 +157,8 @@ class Document:
         self.verdicts: list[Verdict | None] = []
         self.elements: list[str] = []
         self.has_changes = True
+        self.has_stray = False
+        self.shapes: set[tuple[str, tuple[str, ...]]] = set()
         self._nodes: dict[int, Node] = {}
 
     @property

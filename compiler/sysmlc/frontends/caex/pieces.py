@@ -119,9 +119,12 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
     add_end, add_alike, push, pop = ends.append, document.alike.append, stack.append, stack.pop
     pieces = chain.from_iterable(_chunks(text))
     _start(document, next(pieces), root)
+    ended: set[str] = set()
+    end = ended.add
     ordinal, row, state = 0, 1, _LISTENING
     for piece in pieces:
         if piece[0] == "/":
+            end(piece)
             if state != _FOLDING:
                 ends[pop()] = row
             state = _SILENT
@@ -161,6 +164,13 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
             if len(stack) > deepest:
                 raise NotPlainError
     document.has_changes = reader.has_changes
+    document.has_stray = reader.has_stray or _has_stray(ended)
+    document.shapes = {("CAEXFile", tuple(root)), *reader.shapes}
+
+
+def _has_stray(ended: set[str]) -> bool:
+    """Whether text stands behind an end tag."""
+    return any(piece.partition(">")[2].strip() for piece in ended)
 
 
 def _listen(

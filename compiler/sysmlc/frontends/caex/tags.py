@@ -42,6 +42,9 @@ class Reader:
         """Tags with an ID, by their text before it and behind it."""
         self._shapes: dict[tuple[str, ...], _Shape] = {}
         self.has_changes = False
+        self.has_stray = False
+        self.shapes: set[tuple[str, tuple[str, ...]]] = set()
+        """Tags with the names of their attributes, as they occur."""
 
     def read(self, piece: str, row: int) -> tuple[Tag, str]:
         """What a tag says and its ID, which is empty in attributes that several rows share.
@@ -93,6 +96,9 @@ class Reader:
             raise NotPlainError
         self.has_changes = self.has_changes or "ChangeMode" in names
         name = found[1].rpartition(":")[2]
+        is_over = bool(found[3]) or name in STRUCTURE
+        self.has_stray = self.has_stray or (is_over and bool(found[4].strip()))
+        self.shapes.add((name, names))
         return name, names, bool(found[3]), name not in STRUCTURE
 
 
