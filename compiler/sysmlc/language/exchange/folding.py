@@ -1,6 +1,6 @@
 """Folding: what the relationships of a file become in the tree (docs/sysml-v2-tree.md)."""
 
-from sysmlc.language.exchange.composition import USAGES, is_composite
+from sysmlc.language.composition import USAGES, is_composite
 from sysmlc.language.exchange.frames import Frame, complete
 from sysmlc.language.exchange.references import References
 from sysmlc.language.metaclasses import kinds_of

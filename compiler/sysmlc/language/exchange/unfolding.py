@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.exchange.composition import USAGES, is_composite, is_end
+from sysmlc.language.composition import USAGES, is_composite, is_end
 from sysmlc.language.exchange.features import stated
 from sysmlc.language.exchange.folding import ENDS, NAMING, RELATIONS
 from sysmlc.language.metaclasses import is_a, kinds_of

@@ -28,7 +28,7 @@ def root(tokens: Tokens, members: list[Node]) -> Node:
 
 def _drop_redundant(nodes: list[Node]) -> None:
     """The word `ref` says nothing about what is referential anyway (SysML 8.2.2.6.2, note 1)."""
-    from sysmlc.language.exchange.composition import is_composite
+    from sysmlc.language.composition import is_composite
 
     for node in nodes:
         node.facts.pop("isReference", None)
