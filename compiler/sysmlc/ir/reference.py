@@ -76,6 +76,16 @@ class References:
         self.targets.append(target)
         self.ordinals.append(ordinal)
 
+    def add(
+        self, edge: Edge, source: End, target: str, kind: Kind, name: str, ordinal: int = -1
+    ) -> None:
+        """Add a reference to an external target, of which kind and name are said."""
+        self.said[len(self.edges)] = (kind, name)
+        self.edges.append(edge)
+        self.sources.append(source)
+        self.targets.append(target)
+        self.ordinals.append(ordinal)
+
     def __setitem__(self, number: int, reference: Reference) -> None:
         edge, source, target, kind, name, ordinal = reference
         if name or kind is not Kind.CLASS:

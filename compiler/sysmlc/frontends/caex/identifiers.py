@@ -1,6 +1,6 @@
 """IDs of the elements of a unit: which row has which, and how one is found."""
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Iterator
 
 from sysmlc.frontends.caex.document import Document, Node
@@ -27,13 +27,14 @@ class Identifiers:
         self._paths: bool | None = None
         self._lower: str | None = None
         self._asked = 0
-        written = [id for one in documents for id in one.ids]
-        self._without = [number for number, id in enumerate(written) if not id]
+        written = documents[0].ids if len(documents) == 1 else [i for d in documents for i in d.ids]
         self._know(written)
 
     def _know(self, written: list[str]) -> None:
-        numbers = {id: n for n, id in enumerate(written) if id}
-        if len(numbers) < len(written) - len(self._without):
+        numbers = dict(zip(written, range(len(written)), strict=True))
+        without = written.count("")
+        numbers.pop("", None)
+        if len(numbers) < len(written) - without:
             numbers = {}
             for number, id in enumerate(written):
                 if id and numbers.setdefault(id, number) != number:
@@ -55,11 +56,8 @@ class Identifiers:
 
     def without(self, document: Document, tag: str) -> list[int]:
         """Rows of a file with this tag that have no ID."""
-        index, tags = self._documents.index(document), document.tags
-        start, end = self._starts[index : index + 2]
-        without = self._without
-        found = without[bisect_left(without, start) : bisect_left(without, end)]
-        return [number - start for number in found if tags[number - start] == tag]
+        pairs = enumerate(zip(document.tags, document.ids, strict=True))
+        return [row for row, (name, id) in pairs if not id and name == tag]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:
         """The node with the ID: literally, else without regard to braces, case and alias.
@@ -97,7 +95,7 @@ class Identifiers:
     def _has_paths(self) -> bool:
         """Whether some ID looks like the path of a class: next to never."""
         if self._paths is None:
-            self._paths = any("/" in id for id in self._numbers)
+            self._paths = "/" in "".join(self._numbers)
         return self._paths
 
     def spot(self, id: str) -> tuple[Document, int] | None:

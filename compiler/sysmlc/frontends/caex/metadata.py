@@ -34,8 +34,9 @@ def lower(context: Context, document: Document) -> None:
             continue
         if element.kind is not Kind.DOCUMENT:
             _texts(context, node, element)
-        for child in node.children:
-            _child(context, document, child, element)
+        for row in document.children(node.row):
+            if document.tags[row] in _SAID:
+                _child(context, document, document.node(row), element)
 
 
 def _holders(document: Document) -> list[int]:

@@ -37,6 +37,10 @@ class _Shape(NamedTuple):
     read: Callable[[str], AttrValue] | None
 
 
+_Named = tuple[str, str, _Shape | None]
+"""Name and data type of an attribute, and its shape, None where it is not plain."""
+
+
 class _PortShape(NamedTuple):
     """What interfaces of one class have in common."""
 
@@ -52,7 +56,12 @@ class Plain:
         self._context = context
         self._document = document
         self._shapes: dict[_Stated, _Shape | None] = {}
+        self._named: dict[int, _Named] = {}
+        """By the first row that states the same."""
+        self._values = document.texts["Value"]
+        self._defaults = document.texts["DefaultValue"]
         self._ports: dict[str, _PortShape | None] = {}
+        self._told: dict[tuple[int, str | None], dict[str, AttrValue]] = {}
         self._sources: list[Element] = []
         self._targets: list[Element] = []
 
@@ -61,35 +70,36 @@ class Plain:
         document = self._document
         if document.ends[row] > row + 1:
             return False
-        values, texts = document.attributes[row], document.texts
-        name = values.get("Name", "")
-        stated = (
-            values.get("AttributeDataType", ""),
-            values.get("RefAttributeType", ""),
-            values.get("Unit", ""),
-        )
-        shape = self._shapes[stated] if stated in self._shapes else self._shape(stated, row)
-        if shape is None or document.ids[row] or row in texts["DefaultValue"]:
+        name, data_type, shape = self._named.get(document.alike[row]) or self._name(row)
+        if shape is None or document.ids[row] or row in self._defaults:
             return False
         if owner.base is not None and owner.base.find("Attribute", name) is not None:
             return False
-        id = f"{owner.id}/{name or 'Attribute'}"
-        made = self._new(id, name, owner.id, row, shape.attrs)
+        made = self._new(f"{owner.id}/{name or 'Attribute'}", name, owner.id, row, shape.attrs)
         if made is None:
             return False
-        text = texts["Value"].get(row)
+        text = self._values.get(row)
         if text:
             try:
                 made.attrs["default"] = text if shape.read is None else shape.read(text)
             except ValueError:
-                made.attrs["default"] = self._unfit(row, text, stated[0], shape)
+                made.attrs["default"] = self._unfit(row, text, data_type, shape)
         if shape.target is not None:
             self._sources.append(made)
             self._targets.append(shape.target)
         else:
-            measures.refer(self._context, _TYPED_BY, id, stated[0], made.ordinal)
-        owner.members["Attribute", name] = Member(id, shape.type, document, row)
+            measures.refer(self._context, _TYPED_BY, made, data_type, made.ordinal)
+        owner.members["Attribute", name] = Member(made.id, shape.type, document, row)
         return True
+
+    def _name(self, row: int) -> _Named:
+        """The name, data type and shape of an attribute, and of all that state the same."""
+        values = self._document.attributes[row]
+        name, data_type = values.get("Name", ""), values.get("AttributeDataType", "")
+        stated = (data_type, values.get("RefAttributeType", ""), values.get("Unit", ""))
+        shape = self._shapes[stated] if stated in self._shapes else self._shape(stated, row)
+        found = self._named[self._document.alike[row]] = name, data_type, shape
+        return found
 
     def _unfit(self, row: int, text: str, stated: str, shape: _Shape) -> AttrValue:
         data_type = fitting.data_type_of(stated, shape.type)
@@ -153,11 +163,25 @@ class Plain:
         owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
         inside = document.ends[row] - row - 1
         if inside:
-            made.attrs = ports.said_of(context, document.node(row))
+            made.attrs = self._said(row)
             document.verdicts[row + 1 : row + 1 + inside] = [_MAPPED] * inside
         if shape.meaning:
             self._mean(shape.meaning, owner, made, row)
         return True
+
+    def _said(self, row: int) -> dict[str, AttrValue]:
+        """What the attributes of an interface say, told once of a single one and its value."""
+        document, context = self._document, self._context
+        if document.ends[row] > row + 2 or row + 1 in self._defaults:
+            return ports.said_of(context, document.node(row))
+        key = document.alike[row + 1], self._values.get(row + 1)
+        known = self._told.get(key)
+        if known is None:
+            unfit = len(context.unfit)
+            known = ports.said_of(context, document.node(row))
+            if len(context.unfit) == unfit and key[1] not in {text for _, _, text in context.unfit}:
+                self._told[key] = known
+        return known.copy()
 
     def _mean(self, meaning: str, owner: Type, made: Element, row: int) -> None:
         """What a port of a special class is for; it may name a file of another language."""

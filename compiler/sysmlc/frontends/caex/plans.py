@@ -8,13 +8,15 @@ from sysmlc.frontends.caex.types import Member, Type
 class Known:
     """An attribute of a class, and how instances repeat it."""
 
-    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "stated", "text")
+    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "stated", "suffix", "text")
 
     def __init__(self, context: Context, member: Member) -> None:
         node = member.node
         self.member = member
         self.element = context.graph[member.id]
         self.name = node.name
+        self.suffix = f"/{node.name or 'Attribute'}"
+        """What makes the id of a slot of the id of its owner."""
         self.text = node.text("Value")
         self.stated = node.attributes.get("AttributeDataType", "")
         self.read = fitting.reader(self.stated, member.type)

@@ -11,6 +11,9 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 _Given = tuple[int, Known, str, tuple[Element, ...]]
 """A row, the attribute that it repeats, its value, and the features that this one lies in."""
 
+# To look a member of an enumeration up takes ten times as long as to look this up.
+_SLOT = Kind.SLOT
+
 
 class Slots:
     """Makes the slots of one file, those of an internal element in one go."""
@@ -31,39 +34,40 @@ class Slots:
         if not waiting:
             return
         owner = site.instance or instance(self._context, site)
-        start = 0
-        while start < len(waiting):
-            made = self._alike(owner, waiting[start:])
+        while waiting:
+            made = self._alike(owner)
             if not made:
-                made = [self._context.add_at(Kind.SLOT, self._document, waiting[start][0], owner)]
-            for slot, given in zip(made, waiting[start:], strict=False):
-                self._fill(slot, given)
-            start += len(made)
-        waiting.clear()
+                made.append(self._context.add_at(_SLOT, self._document, waiting[0][0], owner))
+            self._fill(made)
+            del waiting[: len(made)]
 
-    def _alike(self, owner: str, waiting: list[_Given]) -> list[Element]:
+    def _alike(self, owner: str) -> list[Element]:
         """Slots named by their attributes, up to the first that has an ID, or no free one."""
         ids, ordinals = self._document.ids, self._document.ordinals
         rows = [
-            ("" if ids[row] else f"{owner}/{known.name or 'Attribute'}", known.name, ordinals[row])
-            for row, known, _, _ in waiting
+            ("" if ids[row] else owner + known.suffix, known.name, ordinals[row])
+            for row, known, _, _ in self.waiting
         ]
-        return self._context.graph.new_below(owner, Kind.SLOT, self._document.name, rows)
+        return self._context.graph.new_below(owner, _SLOT, self._document.name, rows)
 
-    def _fill(self, slot: Element, given: _Given) -> None:
-        row, known, text, path = given
-        try:
-            value: AttrValue = text if known.read is None else known.read(text)
-        except ValueError:
-            value = self._unfit(row, known, text)
-        if value != "":
-            slot.attrs = {"value": value}
-        self._document.elements[row] = slot.id
-        self._slots.append(slot)
-        self._features.append(known.element)
-        if path:
-            self._inner += [slot] * len(path)
-            self._outer += path
+    def _fill(self, slots: list[Element]) -> None:
+        """Give the first slots that wait their values."""
+        elements, inner = self._document.elements, self._inner
+        for slot, (row, known, text, path) in zip(slots, self.waiting, strict=False):
+            value: AttrValue = text
+            if known.read is not None:
+                try:
+                    value = known.read(text)
+                except ValueError:
+                    value = self._unfit(row, known, text)
+            if value != "":
+                slot.attrs = {"value": value}
+            elements[row] = slot.id
+            if path:
+                inner += [slot] * len(path)
+                self._outer += path
+        self._slots += slots
+        self._features += [known.element for _, known, _, _ in self.waiting[: len(slots)]]
 
     def _unfit(self, row: int, known: Known, text: str) -> AttrValue:
         data_type = fitting.data_type_of(known.stated, known.member.type)

@@ -8,6 +8,7 @@ from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id, is_made_by_tools
 from sysmlc.ir.query import ids_in
+from sysmlc.ir.reference import id_of
 from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.libraries import (
     PRIMITIVE_TYPES,
@@ -45,6 +46,9 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.STRUCTURED: dict.fromkeys(("test", "body_part", "setup_part", "clauses"), Kind.ACTION),
 }
 """Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
+
+_UNSAID = (Kind.CLASS, "")
+"""What a reference says of its target that says nothing of it."""
 
 _LISTED = 10
 _SINGLY = 4
@@ -109,12 +113,14 @@ class Resolve:
 
 def _elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, _Use]:
     """The references, by number, whose target is no id of the graph."""
-    uses: dict[int, _Use] = {}
-    for number in [number for number, target in enumerate(targets) if target is None]:
-        one = graph.pending[number]
-        holder = graph.get(one.source)
+    pending, uses = graph.pending, {}
+    numbers = [number for number, target in enumerate(targets) if target is None]
+    holders = graph.find_all(pending.sources[number] for number in numbers)
+    for number, holder in zip(numbers, holders, strict=True):
         if holder is not None:
-            uses[number] = _Use(holder, one.target, one.kind, one.name, one.ordinal, one.edge)
+            kind, name = pending.said.get(number, _UNSAID)
+            target, ordinal = id_of(pending.targets[number]), pending.ordinals[number]
+            uses[number] = _Use(holder, target, kind, name, ordinal, pending.edges[number])
     return uses
 
 
@@ -142,15 +148,14 @@ class _Answers:
     known: dict[str, StandIn] = field(default_factory=dict)
     """Those of ``outside`` that are elements of a known library."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
-    _outside: set[tuple[str, str]] = field(default_factory=set)
     _stubs: dict[str, str] = field(default_factory=dict)
 
     def find(self, uses: list[_Use]) -> None:
         """Look for every target, and make the stand-ins for those outside the unit."""
         distant: dict[str, list[_Use]] = {}
-        for use in uses:
-            if use.target not in self.graph and self._is_outside(use):
-                distant.setdefault(use.target, []).append(use)
+        for (file, target), together in _by_target(uses).items():
+            if target not in self.graph and self._is_outside(file, target):
+                distant.setdefault(target, []).extend(together)
         for target in sorted(distant):
             href = self._canonical(target, distant[target])
             self._stubs[target] = _stand_in_id(href)
@@ -165,16 +170,12 @@ class _Answers:
         found = self._found.get((holder.source, target))
         return self.graph.get(found or self._stubs.get(target))
 
-    def _is_outside(self, use: _Use) -> bool:
-        key = (use.holder.source, use.target)
-        if key not in self._found:
-            element = self.targets.find(*key)
-            self._found[key] = element.id if element else None
-            if element is None and is_href(use.target):
-                library, _ = split(use.target)
-                if not self.targets.files(use.holder.source, library):
-                    self._outside.add(key)
-        return key in self._outside
+    def _is_outside(self, file: str, target: str) -> bool:
+        element = self.targets.find(file, target)
+        self._found[file, target] = element.id if element else None
+        if element is not None or not is_href(target):
+            return False
+        return not self.targets.files(file, split(target)[0])
 
     def _canonical(self, target: str, uses: list[_Use]) -> str:
         # All uses are asked, for the order in which they come must not matter.
@@ -196,6 +197,19 @@ class _Answers:
             add(self.graph, self.known[href], origin)
         else:
             _stand_in(self.graph, href, uses)
+
+
+def _by_target(uses: list[_Use]) -> dict[tuple[str, str], list[_Use]]:
+    """Uses by the file that they stand in, and what they name."""
+    found: dict[tuple[str, str], list[_Use]] = {}
+    for use in uses:
+        key = (use.holder.source, use.target)
+        known = found.get(key)
+        if known is None:
+            found[key] = [use]
+        else:
+            known.append(use)
+    return found
 
 
 def _stand_in_id(href: str) -> str:
