@@ -353,7 +353,10 @@ package Plant {
 }
 
 package Stereotypes {
+    private import SysMLC::*;
+
     metadata def Cell {
+        @External { href = "urn:cells"; }
         attribute speed : ScalarValues::Integer[0..1];
         attribute tools : ScalarValues::String[0..*];
     }

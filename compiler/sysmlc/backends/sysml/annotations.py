@@ -7,6 +7,7 @@ from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import reference, visible
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.words import comment_lines, quoted, string
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -25,6 +26,16 @@ _SUBKINDS = (
     Kind.CONSTRAINT,
 )
 """Kinds whose subkind no keyword of SysML v2 says."""
+_KINDS = {
+    Kind.INTERFACE: "interface",
+    Kind.COMPONENT: "component",
+    Kind.ACTOR: "actor",
+    Kind.ITEM: "item",
+    Kind.PROFILE: "profile",
+    Kind.DATA_STORE: "data-store",
+    Kind.INTERACTION: "interaction",
+}
+"""Kinds that a keyword of SysML v2 says only nearly."""
 _ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
 """Kinds of what flows; the domain of flows and connectors follows from it."""
 _OF_CLASS = "#class"
@@ -110,18 +121,31 @@ def _flat(value: AttrValue) -> AttrValue:
 def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
     is_named = _is_told(element) and element.source not in book.caex
     domain = element.attrs.get("domain") if element.kind in _ITEMS else None
-    facts = {"name": element.subkind if is_named else None, "domain": domain}
+    name = element.subkind if is_named else _KINDS.get(element.kind) or _plain_port(book, element)
+    facts = {"name": name, "domain": domain}
     return [ours(book, entry, "Kind", facts)] if any(facts.values()) else []
+
+
+def _plain_port(book: Book, element: Element) -> str | None:
+    """A port of UML, where SysML has proxy ports; those of AutomationML all are."""
+    is_plain = element.kind is Kind.PORT and element.role == "port"
+    is_plain = is_plain and not is_part_port(book.graph, element)
+    return "port" if is_plain and element.source not in book.caex else None
 
 
 def _partitions(book: Book, entry: Entry, element: Element) -> list[Line]:
     """The partitions and regions that an action stands in, as their names show them."""
-    names = []
+    names, meant = [], []
     for one in book.graph.targets(element, Edge.IN_PARTITION):
         represented = book.graph.target(one, Edge.REPRESENTS)
-        names.append(one.name or ("" if represented is None else represented.name))
-    known = tuple(name for name in names if name)
-    return [ours(book, entry, "Partition", {"names": known})] if known else []
+        name = one.name or ("" if represented is None else represented.name)
+        if name:
+            names.append(name)
+            meant.append("" if represented is None else book.graph.qualified_name(represented))
+    facts: dict[str, AttrValue] = {"names": tuple(names)}
+    if any(meant):
+        facts["represents"] = tuple(meant)
+    return [ours(book, entry, "Partition", facts)] if names else []
 
 
 def _is_told(element: Element) -> bool:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 from sysmlc.backends.sysml import (
     actions,
+    annotations,
     automation,
     behaviours,
     connections,
@@ -86,7 +87,9 @@ def _added(book: Book, entry: Entry) -> list[Line]:
         return structure.package(book, entry)
     type_ = book.plan.added.get(id(entry), "")
     head = f"{entry.shape.keyword} {quoted(entry.name)}{' : ' if type_ else ''}{type_}"
-    return [Line(head, book.members(entry))]
+    profile = book.plan.profiles.get(id(entry))
+    body = [annotations.ours(book, entry, "External", {"href": profile})] if profile else []
+    return [Line(head, body + book.members(entry))]
 
 
 WRITERS: dict[str, Writer] = {

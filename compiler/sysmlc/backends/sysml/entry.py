@@ -43,6 +43,8 @@ class Plan:
     globals: dict[str, Entry] = field(default_factory=dict)
     added: dict[int, str] = field(default_factory=dict)
     """Type and multiplicity of attributes that no element stands for, by identity."""
+    profiles: dict[int, str] = field(default_factory=dict)
+    """Namespace of the profile that a stand-in is of, by the identity of its entry."""
     imports: dict[int, set[str]] = field(default_factory=dict)
     """Packages of libraries that a package of the text imports, by its identity."""
     dropped: frozenset[str] = frozenset()

@@ -33,6 +33,7 @@ def _stand_in(plan: Plan, made: dict[tuple[str, str], Entry], one: Element) -> E
         if above is None:
             above = made["", ""] = plan.new(Shape("package"), None, _UNKNOWN, None)
         made[key] = plan.new(Shape("metadata def"), above, name, None)
+        plan.profiles[id(made[key])] = key[0]
     return made[key]
 
 

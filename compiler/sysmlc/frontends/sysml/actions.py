@@ -100,16 +100,29 @@ def _call(low: "Lowering", made: Element, called: Node) -> None:
 
 def _partitions(low: "Lowering", node: Node, owner: Element, made: Element) -> None:
     """Partitions by the names that metadata of ours gives."""
-    given = annotations.said(node, "Partition", "names")
-    names = given if isinstance(given, tuple) else () if given is None else (given,)
-    for name in names:
-        known = [
-            one
-            for one in low.graph.owned(owner)
-            if one.kind is Kind.PARTITION and one.name == name
-        ]
-        found = known[0] if known else low.below(owner, Kind.PARTITION, str(name))
-        low.graph.connect(Edge.IN_PARTITION, made, found)
+    represented = _texts(annotations.said(node, "Partition", "represents"))
+    for number, name in enumerate(_texts(annotations.said(node, "Partition", "names"))):
+        said = represented[number] if number < len(represented) else ""
+        low.later(lambda n=name, s=said: _partition(low, made, owner, (n, s)))  # type: ignore[misc]
+
+
+def _partition(low: "Lowering", made: Element, owner: Element, said: tuple[str, str]) -> None:
+    """The partition, or interruptible region, with a name; it is made when it is not there."""
+    name, represented = said
+    beside = (one for one in low.graph.owned(owner) if one.kind in _AREAS and one.name == name)
+    found = next(beside, None) or low.below(owner, Kind.PARTITION, name)
+    low.graph.connect(Edge.IN_PARTITION, made, found)
+    known = low.graph.get(low.id_of(represented)) if represented else None
+    if known is not None and found.kind is Kind.PARTITION:
+        low.graph.connect(Edge.REPRESENTS, found, known)
+
+
+_AREAS = (Kind.PARTITION, Kind.STRUCTURED)
+
+
+def _texts(given: AttrValue) -> list[str]:
+    values_ = given if isinstance(given, tuple) else () if given is None else (given,)
+    return [str(one) for one in values_]
 
 
 # -- sending, accepting, assigning -------------------------------------------------------------

@@ -20,11 +20,12 @@ def package(low: "Lowering", node: Node, owner: Element | None) -> None:
     if owner is None and (node.name in FILES and node.kind == "LibraryPackage"):
         low.external(node)
         return
-    if owner is None and node.members and all(map(_is_outside, node.members)):
+    inside = [one for one in node.members if not one.kind.endswith("Import")]
+    if owner is None and inside and all(map(_is_outside, inside)):
         low.external(node)
         return
     kind, subkind = marked(node, Kind.PACKAGE)
-    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node))
+    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node), **outside(node))
     low.lower_all(node.members, made)
 
 
@@ -46,6 +47,32 @@ def visibility(node: Node) -> dict[str, AttrValue]:
     return {"visibility": node.visibility} if node.visibility in ("private", "protected") else {}
 
 
+def outside(node: Node) -> dict[str, AttrValue]:
+    """What metadata says of an element that no file of the model has."""
+    href = annotations.said(node, "External", "href")
+    return {"external": True, "href": href} if href else {}
+
+
+_AML = {
+    "dataType": "data_type",
+    "category": "category",
+    "semantics": "semantics",
+    "version": "version",
+    "changeMode": "change_mode",
+    "copyright": "copyright",
+    "ppr": "ppr",
+    "associatedFacet": "associated_facet",
+    "defaultValue": "default_value",
+}
+
+
+def of_aml(node: Node) -> dict[str, AttrValue]:
+    """What metadata says of an element of AutomationML."""
+    one = annotations.ours(node).get("AutomationML")
+    known = {} if one is None else dict(annotations.constants_of(one))
+    return {_AML[key]: value for key, value in known.items() if key in _AML}
+
+
 def flags(node: Node) -> dict[str, AttrValue]:
     """What the prefixes of a declaration say."""
     return {
@@ -53,6 +80,8 @@ def flags(node: Node) -> dict[str, AttrValue]:
         "variation": bool(node.facts.get("isVariation")),
         "individual": bool(node.facts.get("isIndividual")),
         **visibility(node),
+        **outside(node),
+        **of_aml(node),
     }
 
 

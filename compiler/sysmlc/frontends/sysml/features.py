@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
-from sysmlc.frontends.sysml.definitions import marked, visibility
+from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, visibility
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -27,7 +27,7 @@ def property_(low: "Lowering", node: Node, owner: Element) -> Element:
 
 def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
     direction = node.facts.get("direction")
-    found: dict[str, AttrValue] = dict(visibility(node))
+    found: dict[str, AttrValue] = visibility(node) | outside(node) | of_aml(node)
     if direction is not None and owner.role != "constraint block":
         found["direction"] = direction
         found["role"] = "flow property" if owner.role in _OWN_ROLES else ""
@@ -102,7 +102,7 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
 def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     """A class for what a usage has beyond its type (SysML 1.6 clause 8.3.2.10)."""
     rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
-    rest = [one for one in rest if not _is_interface_id(low, one, made)]
+    rest = [one for one in rest if not is_interface_id(low, one, made)]
     if not rest:
         return None
     owner = low.graph.owner(made)
@@ -114,13 +114,14 @@ def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     return own
 
 
-def _is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
+def is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
     """Whether a redefined port only says the id that it has in AutomationML."""
     is_id = node.kind == "PortUsage" and "AutomationML" in annotations.ours(node)
     if not is_id or len(nodes.body_of(node)) != 1 or nodes.target(node, "Redefinition") is None:
         return False
     given = annotations.said(node, "AutomationML", "id")
     target = nodes.target(node, "Redefinition")
+    low.repeated.add(id(node))
     low.later(lambda: _interface_id(low, made, target, given))
     return True
 
@@ -128,7 +129,7 @@ def _is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
 def _interface_id(low: "Lowering", made: Element, target: Node | None, given: AttrValue) -> None:
     port = low.element(target)
     known = made.attrs.get("interface_ids")
-    if port is not None:
+    if port is not None and made.kind is not Kind.CLASS:
         pairs = known if isinstance(known, tuple) else ()
         low.graph.set(made, interface_ids=(*pairs, (port.id, given)))
 
@@ -139,10 +140,11 @@ def _interface_id(low: "Lowering", made: Element, target: Node | None, given: At
 def port(low: "Lowering", node: Node, owner: Element) -> Element:
     """A port; one that only holds what flows through it is a flow port of SysML 1.2."""
     direction = node.facts.get("direction")
-    attrs: dict[str, AttrValue] = {"role": "proxy port", "direction": direction}
-    if "AutomationML" in annotations.ours(node):
-        attrs["role"] = "port"
-    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, **(attrs | visibility(node)))
+    given = _attrs(node, owner) | {"role": "proxy port", "direction": direction}
+    said = annotations.said(node, "Kind", "name")
+    if said == "port" or "AutomationML" in annotations.ours(node):
+        given["role"] = "port"
+    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, **given)
     flowing = _flowing(node)
     if flowing is not None:
         _flow_port(low, node, flowing, made)
@@ -154,7 +156,8 @@ def port(low: "Lowering", node: Node, owner: Element) -> Element:
 def _flowing(node: Node) -> Node | None:
     rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
     is_only = len(rest) == 1 and rest[0].kind == "ReferenceUsage" and not nodes.name_of(rest[0])
-    return rest[0] if is_only and not node.relations else None
+    is_typed = any(not one.implied for one in node.relations)
+    return rest[0] if is_only and not is_typed else None
 
 
 def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> None:

@@ -7,6 +7,7 @@ from sysmlc.frontends.sysml import (
     connections,
     constraints,
     definitions,
+    interactions,
     loops,
     nodes,
     objectflows,
@@ -16,6 +17,7 @@ from sysmlc.frontends.sysml import (
     usages,
     usecases,
 )
+from sysmlc.frontends.sysml.definitions import marked
 from sysmlc.frontends.sysml.features import in_classifier
 from sysmlc.frontends.sysml.kinds import ACTIVITIES, BEHAVIOURS, CLASSIFIERS, STRUCTURAL
 from sysmlc.frontends.sysml.lowering import Handler, Lowering
@@ -29,23 +31,21 @@ _BEHAVING = frozenset({Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGI
 
 def _feature(low: Lowering, node: Node, owner: Element | None) -> None:
     """A structural usage by what owns it."""
-    if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
+    if node.kind == "OccurrenceUsage" and marked(node, Kind.CLASS)[0] is Kind.INTERACTION:
+        definitions.define(low, node, owner, Kind.INTERACTION, "")
+    elif owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         usages.in_package(low, node, owner)
     elif owner.kind in STRUCTURAL:
         in_classifier(low, node, owner)
     elif owner.kind in _STEPPED or owner.kind in _BEHAVING:
         in_behaviour(low, node, owner)
-    elif owner.kind is Kind.INTERACTION:
-        interactions_feature(low, node, owner)
+    elif owner.kind in _INTERACTING:
+        interactions.member(low, node, owner)
     else:
         low.unsupported(node)
 
 
-def interactions_feature(low: Lowering, node: Node, owner: Element) -> None:
-    """A feature of an interaction: a lifeline."""
-    from sysmlc.frontends.sysml.interactions import lifeline
-
-    lifeline(low, node, owner)
+_INTERACTING = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
 
 
 def _action(low: Lowering, node: Node, owner: Element | None) -> None:
@@ -96,10 +96,8 @@ def _binding(low: Lowering, node: Node, owner: Element | None) -> None:
 
 
 def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind is Kind.INTERACTION:
-        from sysmlc.frontends.sysml.interactions import message
-
-        message(low, node, owner)
+    if owner is not None and owner.kind in _INTERACTING:
+        interactions.message(low, node, owner)
     elif owner is not None and owner.kind in _STEPPED:
         objectflows.flow(low, node, owner)
     else:

@@ -4,12 +4,30 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.connections import payloads, steps_of
+from sysmlc.frontends.sysml.features import property_
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
+
+
+def member(low: "Lowering", node: Node, owner: Element) -> None:
+    """A feature of an interaction: a fragment, a lifeline, or a role that the model has beside.
+
+    The back end writes lifelines as references; in other models every feature takes part.
+    """
+    if node.kind == "OccurrenceUsage":
+        fragment(low, node, owner)
+    elif node.facts.get("isReference") or not _is_written(node.owner):
+        lifeline(low, node, owner)
+    else:
+        property_(low, node, owner)
+
+
+def _is_written(owner: Node | None) -> bool:
+    return owner is not None and annotations.said(owner, "Kind", "name") == "interaction"
 
 
 def lifeline(low: "Lowering", node: Node, owner: Element) -> None:
@@ -57,3 +75,11 @@ def _join(low: "Lowering", node: Node, made: Element) -> None:
         low.graph.connect(Edge.COVERS, at, line)
         low.graph.connect(edge, made, line)
         low.graph.connect(event, made, at)
+
+
+def fragment(low: "Lowering", node: Node, owner: Element) -> None:
+    """A combined fragment or an operand, as metadata of ours says."""
+    name = str(annotations.said(node, "Kind", "name") or "seq")
+    kind, subkind = (Kind.OPERAND, "") if name == "operand" else (Kind.FRAGMENT, name)
+    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind)
+    low.lower_all(nodes.body_of(node), made)

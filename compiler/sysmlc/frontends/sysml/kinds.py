@@ -54,6 +54,7 @@ MARKED = {
     "operation": Kind.OPERATION,
     "structured": Kind.STRUCTURED,
     "association": Kind.ASSOCIATION,
+    "interaction": Kind.INTERACTION,
 }
 """Kinds that ``@SysMLC::Kind`` names because no keyword says them."""
 STRUCTURAL = frozenset(

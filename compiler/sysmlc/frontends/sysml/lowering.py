@@ -7,7 +7,8 @@ from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
 from sysmlc.frontends.sysml import nodes, stubs
 from sysmlc.frontends.sysml.places import Places
 from sysmlc.frontends.sysml.rules import APPROXIMATED, NOT_IN_GRAPH
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference as Pending
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import Reference as Pending
 from sysmlc.ir.identity import derived_id
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
@@ -45,6 +46,8 @@ class Lowering:
         self.spans: dict[int, tuple[Element, Element]] = {}
         """Entry and exit of steps that are several nodes, by the identity of the step."""
         self._controls: dict[tuple[str, str], Element] = {}
+        self.repeated: set[int] = set()
+        """Identities of redefinitions that say nothing that is an element."""
         self.skipped: set[int] = set()
         """Identities of members that are read with something else."""
         self._handlers = handlers
@@ -84,8 +87,13 @@ class Lowering:
         return found if found is not None else self.model.target(node, relation)
 
     def element(self, node: Node | None) -> Element | None:
-        """What the node became, if it is an element of its own."""
-        return None if node is None else self.elements.get(id(node))
+        """What the node became; a redefinition that says nothing of its own is what it redefines."""
+        if node is None:
+            return None
+        known = self.elements.get(id(node))
+        if known is None and id(node) in self.repeated:
+            return self.element(nodes.target(node, "Redefinition"))
+        return known
 
     def later(self, work: Callable[[], None]) -> None:
         """Do something when all elements are there."""
@@ -177,7 +185,7 @@ class Lowering:
         if target is None:
             self._unresolved(source, edge)
             return
-        known = self.elements.get(id(target))
+        known = self.element(target)
         if known is not None:
             self.graph.connect(edge, source, known)
         elif self.document(target) is None:
@@ -185,12 +193,15 @@ class Lowering:
         else:
             self._lost(edge, source, target)
 
+    def lead_to(self, edge: Edge, source: Element, name: str, kind: Kind) -> None:
+        """Let an edge lead to an element of the library by its qualified name."""
+        self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
+
     def _outside(self, edge: Edge, source: Element, target: Node) -> None:
         name = nodes.path_of(target)
         if stubs.is_base(name):
             return
-        kind = stubs.kind_of(target)
-        self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
+        self.lead_to(edge, source, name, stubs.kind_of(target))
 
     def _unresolved(self, source: Element, edge: Edge) -> None:
         known = source.attrs.get("unresolved")

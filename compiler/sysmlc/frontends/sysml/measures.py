@@ -24,23 +24,45 @@ def is_measured(found: Reference) -> bool:
 
 
 def give_measures(low: "Lowering", node: Node, made: Element) -> None:
-    """The quantity kind and the unit that a value type's declaration says."""
-    for found in nodes.references(node, "Subclassification", "Subsetting", "FeatureTyping"):
-        if is_measured(found):
-            name = kind_name(nodes.last_name(found))
-            _own(low, node, made, Kind.QUANTITY_KIND, name, "")
+    """The quantity kind and the unit that a value type's declaration says.
+
+    Quantities are real numbers unless the declaration says otherwise.
+    """
+    found = nodes.references(node, "Subclassification", "Subsetting", "FeatureTyping")
+    measured = [one for one in found if is_measured(one)]
+    for one in measured:
+        name = kind_name(nodes.last_name(one))
+        low.last(lambda name=name: _kind(low, node, made, name))  # type: ignore[misc]
+    if measured and len(found) == len(measured):
+        low.lead_to(Edge.SPECIALIZES, made, "ScalarValues::Real", Kind.DATA_TYPE)
     for member in node.members:
         value = nodes.value_of(member)
         if nodes.name_of(member) == "mRef" and value is not None:
+            low.skipped.add(id(member))
             unit = nodes.reference(value, "Membership")
             if unit is not None:
-                name, symbol = unit_name(unit)
-                _own(low, member, made, Kind.UNIT, name, symbol)
+                low.later(lambda member=member, unit=unit: _unit(low, member, made, unit))  # type: ignore[misc]
 
 
-def _own(low: "Lowering", node: Node, made: Element, kind: Kind, name: str, symbol: str) -> None:
-    one = low.make(node, kind, name, made, symbol=symbol, external=True)
-    low.graph.connect(Edge.REFERENCES, made, one)
+def _unit(low: "Lowering", node: Node, made: Element, unit: Reference) -> None:
+    """A unit that the model defines itself, by its symbol; else one of the library."""
+    name, symbol = unit_name(unit)
+    known = low.element(unit.target)
+    for one in low.graph.of_kind(Kind.INSTANCE) if known is None else ():
+        if one.role == "unit" and (one.attrs.get("symbol") == symbol or one.name == name):
+            known = one
+            break
+    if known is None:
+        known = low.make(node, Kind.UNIT, name, made, symbol=symbol, external=True)
+    low.graph.connect(Edge.REFERENCES, made, known)
+
+
+def _kind(low: "Lowering", node: Node, made: Element, name: str) -> None:
+    """A quantity kind; one that the unit of a model's own tells needs no element."""
+    units = [one for one in low.graph.targets(made, Edge.REFERENCES) if one.kind is Kind.INSTANCE]
+    if not units:
+        one = low.make(node, Kind.QUANTITY_KIND, name, made, external=True)
+        low.graph.connect(Edge.REFERENCES, made, one)
 
 
 def kind_name(value_type: str) -> str:

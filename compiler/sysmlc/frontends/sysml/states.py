@@ -66,7 +66,7 @@ def _content(low: "Lowering", node: Node, made: Element) -> None:
     vertices = [one for one in inside if _is_of_region(one)]
     low.lower_all((one for one in inside if not _is_of_region(one) and not _is_sub(one)), made)
     _subactions(low, node, made)
-    if vertices or made.kind is Kind.STATE_MACHINE:
+    if vertices:
         region = low.make(node, Kind.REGION, "", made)
         _vertices(low, node, region)
 

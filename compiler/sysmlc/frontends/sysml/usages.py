@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
-from sysmlc.frontends.sysml.definitions import define, marked, visibility
+from sysmlc.frontends.sysml.definitions import define, marked, outside, visibility
+from sysmlc.frontends.sysml.features import is_interface_id
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -34,9 +35,16 @@ def _unit(low: "Lowering", node: Node, owner: Element | None, role: str) -> None
 
 
 def is_instance(node: Node) -> bool:
-    """Whether all that stands in a usage are values for what its type has."""
+    """Whether all that stands in a usage are values for what its type has, and links between."""
     inside = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
-    return all(_redefines(one) and is_instance(one) for one in inside)
+    return all(one.kind in _LINKS or (_redefines(one) and is_instance(one)) for one in inside)
+
+
+_LINKS = frozenset(
+    """
+    ConnectionUsage InterfaceUsage BindingConnectorAsUsage FlowUsage Dependency AllocationUsage
+    """.split()
+)
 
 
 def _redefines(node: Node) -> bool:
@@ -47,7 +55,7 @@ def _redefines(node: Node) -> bool:
 def instance(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A usage as an instance of its types, with a slot for each value."""
     _, subkind = marked(node, Kind.INSTANCE)
-    attrs: dict[str, AttrValue] = {"subkind": subkind, **visibility(node)}
+    attrs: dict[str, AttrValue] = {"subkind": subkind, **visibility(node), **outside(node)}
     made = low.add(node, Kind.INSTANCE, nodes.name_of(node), owner, **attrs)
     value = nodes.value_of(node)
     if value is not None:
@@ -67,9 +75,12 @@ def _typed(low: "Lowering", node: Node, made: Element) -> None:
 
 def _slots(low: "Lowering", node: Node, made: Element) -> None:
     for one in nodes.body_of(node):
-        if nodes.is_text(one):
+        is_part = one.kind == "PartUsage" and nodes.value_of(one) is None
+        if nodes.is_text(one) or one.kind in _LINKS:
             low.lower(one, made)
-        elif [inner for inner in nodes.body_of(one) if not nodes.is_text(inner)]:
+        elif is_interface_id(low, one, made):
+            continue
+        elif is_part or [inner for inner in nodes.body_of(one) if not nodes.is_text(inner)]:
             _part(low, one, made)
         else:
             _slot(low, one, made)
@@ -79,6 +90,7 @@ def _part(low: "Lowering", node: Node, above: Element) -> None:
     """Values for a part of an instance."""
     made = low.add(node, Kind.INSTANCE, nodes.name_of(node), above, subkind="part")
     low.refer(Edge.REPRESENTS, made, nodes.reference(node, "Redefinition"))
+    low.later(lambda: _typed(low, node, made))
     _slots(low, node, made)
 
 

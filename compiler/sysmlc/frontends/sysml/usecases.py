@@ -39,7 +39,21 @@ def _subject(low: "Lowering", node: Node, made: Element) -> None:
 
 
 def _actor(low: "Lowering", node: Node, made: Element) -> None:
-    """An association between the use case and the actor (UML 2.5.1 clause 18.1.3)."""
+    """An association between the use case and the actor (UML 2.5.1 clause 18.1.3).
+
+    One that the model has already is not made again.
+    """
+    low.last(lambda: _join(low, node, made))
+
+
+def _join(low: "Lowering", node: Node, made: Element) -> None:
+    actors = [low.element(one) for one in types_of(low, node)]
+    for end in low.graph.sources(made, Edge.TYPED_BY):
+        for known in low.graph.sources(end, Edge.END):
+            ends = low.graph.targets(known, Edge.END)
+            if any(low.graph.target(one, Edge.TYPED_BY) in actors for one in ends):
+                low.elements[id(node)] = known
+                return
     name = nodes.name_of(node)
     joined = low.add(node, Kind.ASSOCIATION, "", low.graph.owner(made))
     for end_name, type_ in (("", made), (name, None)):
