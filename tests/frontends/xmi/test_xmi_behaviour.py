@@ -113,6 +113,48 @@ def test_pin_bounds_in_extensions_of_magicdraw():
     assert reading.graph["a"].attrs["body"] == "go()"
 
 
+CLAUSES = """<packagedElement xmi:type="uml:Activity" xmi:id="a">
+<node xmi:type="uml:ConditionalNode" xmi:id="n">{}
+ <node xmi:type="uml:OpaqueAction" xmi:id="t1"/><node xmi:type="uml:OpaqueAction" xmi:id="t2"/>
+ <node xmi:type="uml:OpaqueAction" xmi:id="t3"/></node></packagedElement>"""
+
+
+@pytest.mark.parametrize(
+    ("relations", "order"),
+    [
+        (("", "", ""), "t1 t2 t3"),
+        (('predecessorClause="c3"', "", 'predecessorClause="c2"'), "t2 t3 t1"),
+        (("", 'successorClause="c1"', 'successorClause="c2"'), "t3 t2 t1"),
+        (('predecessorClause="c2"', 'predecessorClause="c1"', ""), "t1 t2 t3"),
+        (('predecessorClause="gone"', "", ""), "t1 t2 t3"),
+    ],
+)
+def test_clauses_are_tried_in_the_order_that_they_say(relations, order):
+    clauses = (
+        f'<clause xmi:id="c{number}" test="t{number}" {said}/>'
+        for number, said in enumerate(relations, 1)
+    )
+    found = read(papyrus(CLAUSES.format("".join(clauses)))).graph["n"].attrs["clauses"]
+    assert " ".join(test for (test,), _ in found) == order
+
+
+@pytest.mark.parametrize(
+    ("model", "lost"),
+    [
+        ('<generalization xmi:id="g" general="k" isSubstitutable="false"/>', "'isSubstitutable'"),
+        ('<interfaceRealization xmi:id="g" contract="k" client="x" name="how"/>', ""),
+        ('<profileApplication xmi:id="g" appliedProfile="k" isStrict="true"/>', "'isStrict'"),
+        ('<generalization xmi:id="g" general="k" isSubstitutable="true"/>', ""),
+    ],
+)
+def test_what_an_edge_has_no_room_for_is_told(model, lost):
+    text = '<packagedElement xmi:type="uml:Class" xmi:id="x">{}</packagedElement>{}'
+    other = '<packagedElement xmi:type="uml:Interface" xmi:id="k"/>'
+    reading = read(papyrus(text.format(model, other)))
+    assert reading.totals.get("approximated", 0) == bool(lost)
+    assert [found.split("without ")[1] for found in reading.findings] == ([lost] if lost else [])
+
+
 @pytest.mark.parametrize(
     ("written", "mode"),
     [("", "iterative"), ('mode="iterative"', "iterative"), ('mode="parallel"', "parallel")],

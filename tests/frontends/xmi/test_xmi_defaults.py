@@ -16,6 +16,15 @@ HOLDERS = {
     "Association": '<packagedElement xmi:type="uml:Association" xmi:id="x" {}/>',
     "Behavior": '<packagedElement xmi:type="uml:Activity" xmi:id="x" {}/>',
     "PackageImport": '<packageImport xmi:id="x" importedPackage="m" {}/>',
+    "ElementImport": '<elementImport xmi:id="x" importedElement="m" {}/>',
+    "GeneralizationSet": '<packagedElement xmi:type="uml:GeneralizationSet" xmi:id="x" {}/>',
+    "TimeObservation": '<packagedElement xmi:type="uml:TimeObservation" xmi:id="x" {}/>',
+    "Continuation": '<packagedElement xmi:type="uml:Interaction" xmi:id="k">'
+    '<fragment xmi:type="uml:Continuation" xmi:id="x" {}/></packagedElement>',
+    "CombinedFragment": '<packagedElement xmi:type="uml:Interaction" xmi:id="k">'
+    '<fragment xmi:type="uml:CombinedFragment" xmi:id="x" {}/></packagedElement>',
+    "Message": '<packagedElement xmi:type="uml:Interaction" xmi:id="k">'
+    '<message xmi:id="x" {}/></packagedElement>',
 }
 IN_CLASS = {
     "Property": '<ownedAttribute xmi:type="uml:Property" xmi:id="x" {}/>',
@@ -35,6 +44,13 @@ IN_ACTIVITY = {
     "DestroyObjectAction": '<node xmi:type="uml:DestroyObjectAction" xmi:id="x" {}/>',
     "ReadIsClassifiedObjectAction": '<node xmi:type="uml:ReadIsClassifiedObjectAction"'
     ' xmi:id="x" {}/>',
+    "ReclassifyObjectAction": '<node xmi:type="uml:ReclassifyObjectAction" xmi:id="x" {}/>',
+    "AddVariableValueAction": '<node xmi:type="uml:AddVariableValueAction" xmi:id="x" {}/>',
+    "RemoveVariableValueAction": '<node xmi:type="uml:RemoveVariableValueAction" xmi:id="x" {}/>',
+    "LinkEndCreationData": '<node xmi:type="uml:CreateLinkAction" xmi:id="n">'
+    '<endData xmi:type="uml:LinkEndCreationData" xmi:id="x" {}/></node>',
+    "LinkEndDestructionData": '<node xmi:type="uml:DestroyLinkAction" xmi:id="n">'
+    '<endData xmi:type="uml:LinkEndDestructionData" xmi:id="x" {}/></node>',
     "ReduceAction": '<node xmi:type="uml:ReduceAction" xmi:id="x" {}/>',
     "JoinNode": '<node xmi:type="uml:JoinNode" xmi:id="x" {}/>',
     "CentralBufferNode": '<node xmi:type="uml:CentralBufferNode" xmi:id="x" {}/>',
@@ -73,6 +89,12 @@ ConditionalNode isDeterminate false           ExpansionRegion mode iterative
 ActivityPartition isDimension false           ActivityPartition isExternal false
 InputPin isControl false                      InputPin isControlType false
 Pseudostate kind initial                      Transition kind external
+ElementImport visibility public               GeneralizationSet isCovering false
+GeneralizationSet isDisjoint false            TimeObservation firstEvent true
+Continuation setting true                     CombinedFragment interactionOperator seq
+Message messageSort synchCall                 ReclassifyObjectAction isReplaceAll false
+AddVariableValueAction isReplaceAll false     RemoveVariableValueAction isRemoveDuplicates false
+LinkEndCreationData isReplaceAll false        LinkEndDestructionData isDestroyDuplicates false
 """
 TABLE = [tuple(row) for row in zip(*[iter(DEFAULTS.split())] * 3, strict=True)]
 OTHERS = {
@@ -86,12 +108,12 @@ OTHERS = {
     "iterative": "parallel",
     "initial": "fork",
     "external": "local",
+    "seq": "alt",
+    "synchCall": "reply",
 }
 ELSEWHERE = """
-ClassifierTemplateParameter CombinedFragment Continuation ElementImport GeneralizationSet
-LinkEndCreationData LinkEndDestructionData LiteralBoolean LiteralInteger LiteralUnlimitedNatural
-Message ProfileApplication ReclassifyObjectAction TimeConstraint TimeEvent TimeObservation
-AddVariableValueAction RemoveVariableValueAction
+ClassifierTemplateParameter LiteralBoolean LiteralInteger LiteralUnlimitedNatural
+ProfileApplication TimeConstraint TimeEvent
 """
 """Metaclasses whose defaults other tests have, or whose attributes the graph has no room for."""
 SUBCLASSES = {
@@ -108,8 +130,8 @@ SUBCLASSES = {
     "StructuralFeature": "Property",
     "StructuredActivityNode": "LoopNode",
 }
-EDGES = ("Generalization",)
-"""Elements that are an edge in the graph, which has no room for their attributes."""
+EDGES = ("Generalization", "LinkEndCreationData", "LinkEndDestructionData")
+"""No elements of the graph, which has no room for their attributes: SM114 tells of them."""
 
 
 def text(metaclass, attribute):

@@ -128,7 +128,7 @@ def test_consider_names_the_messages_and_a_lifeline_its_destruction():
       message="op1 op2"><cfragmentGate xmi:id="g"/><operand xmi:id="op"/></fragment>
     <fragment xmi:type="uml:ConsiderIgnoreFragment" xmi:id="ig" interactionOperator="ignore"/>
     <fragment xmi:type="uml:DestructionOccurrenceSpecification" xmi:id="x" covered="l1"/>
-    <fragment xmi:type="uml:Continuation" xmi:id="con" name="ok" setting="true" covered="l1"/>
+    <fragment xmi:type="uml:Continuation" xmi:id="con" name="ok" setting="false" covered="l1"/>
     <generalOrdering xmi:id="go" before="x" after="con"/>
   </packagedElement>"""
         )
@@ -143,7 +143,7 @@ def test_consider_names_the_messages_and_a_lifeline_its_destruction():
         (Kind.FRAGMENT, "continuation"),
         (Kind.GENERAL_ORDERING, ""),
     ]
-    assert graph["con"].attrs["setting"] is True
+    assert graph["con"].attrs["setting"] is False
     assert targets(graph, "cf", Edge.REFERENCES) == ["op1", "op2"]
     assert targets(graph, "go", Edge.FLOW_SOURCE) + targets(graph, "go", Edge.FLOW_TARGET) == [
         "x",

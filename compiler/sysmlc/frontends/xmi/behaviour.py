@@ -3,11 +3,11 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi import metaclasses, naming
 from sysmlc.frontends.xmi.context import Context, Event
 from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, value_in
+from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, tell_lost, value_in
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, opaque, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element
@@ -43,6 +43,7 @@ def _collected(name: str) -> _Reader:
         owner = context.owner(row)
         context.subtree(row, Verdict.MAPPED)
         look_inside(context, row, _RECORDED)
+        tell_lost(context, row, naming.NAMING | _RECORDED)
         if owner is not None:
             context.rows_of.setdefault(name, []).append((owner, row))
 
@@ -84,7 +85,7 @@ _RECORDED = frozenset(name for names in _COLUMNS.values() for name in names)
 def finish(context: Context) -> None:
     """Tie together what refers forward or to other files."""
     for name, rows in context.rows_of.items():
-        for element, row in rows:
+        for element, row in _one_after_another(context, rows) if name == "clauses" else rows:
             _add_record(context, name, element, row)
             if name == "clauses":
                 _add_record(context, "clause_outputs", element, row)
@@ -102,6 +103,33 @@ def finish(context: Context) -> None:
     _parameter_directions(context)
     for element, row in context.opaque.values():
         _opaque(element, opaque(context.document, row))
+
+
+def _one_after_another(
+    context: Context, rows: list[tuple[Element, int]]
+) -> list[tuple[Element, int]]:
+    """Clauses in the order in which they are tried, that of the file where nothing is said.
+
+    A clause is tried after its predecessors (UML 2.5.1, 16.11.3.3).
+    """
+    from graphlib import CycleError, TopologicalSorter
+
+    document = context.document
+    sorter: TopologicalSorter[int] = TopologicalSorter()
+    for _, row in rows:
+        sorter.add(row, *_rows(document, row, "predecessorClause"))
+        for following in _rows(document, row, "successorClause"):
+            sorter.add(following, row)
+    owners = {row: owner for owner, row in rows}
+    try:
+        return [(owners[row], row) for row in sorter.static_order() if row in owners]
+    except CycleError:
+        return rows
+
+
+def _rows(document: Document, row: int, feature: str) -> list[int]:
+    found = (document.ids.get(target) for target in document.targets(row, feature))
+    return [at for at in found if at is not None]
 
 
 def _opaque(element: Element, value: ValueText) -> None:

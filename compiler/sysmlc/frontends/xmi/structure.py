@@ -1,6 +1,6 @@
 """Rows that are no elements of their own: references, edges, bounds, defaults and values."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses, naming
@@ -141,6 +141,22 @@ def _edge(context: Context, row: int) -> None:
             context.link(edge, owner.id, target, row, feature)
     for feature in filter(_SAID_BY_OWNER.__contains__, values):
         context.look(row, feature, values[feature])
+    tell_lost(context, row, _SAID_BY_OWNER | v.FOLDED_REFERENCES.keys())
+
+
+def tell_lost(context: Context, row: int, kept: Collection[str]) -> None:
+    """What a row says beyond ``kept`` is not in the graph, unless it is the default anyway.
+
+    Names and visibilities of what is no element are passed over: tools make them.
+    """
+    values = context.document.attributes[row]
+    lost = [name for name in values if name in _HAS_MEANING and name not in kept]
+    lost = [name for name in lost if values[name] != v.default(name)]
+    if lost:
+        context.approximate(row, ", ".join(f"'{name}'" for name in lost))
+
+
+_HAS_MEANING = naming.FEATURES - {"name", "visibility"}
 
 
 def _extension(context: Context, row: int) -> None:

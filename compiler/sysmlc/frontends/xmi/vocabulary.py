@@ -258,6 +258,7 @@ _DEFAULTS = {
     "mode": "iterative",
     "mustIsolate": "false",
     "ordering": "FIFO",
+    "setting": "true",
 }
 """Values that the tools write or leave out as they like (UML 2.5.1, defaults of the metamodel).
 
