@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.contents import NAMESPACES
-from sysmlc.language.tree import Node, Relation
+from sysmlc.language.tree import Node, Reference, Relation
 
 _CONNECTORS = kinds_of("Connector")
 INSTANTIATIONS = kinds_of("InstantiationExpression")
@@ -60,7 +60,7 @@ class Start(NamedTuple):
     ``inherited`` looks in the generals of the scope first and not at what it owns: a feature
     redefines what its owner inherits (KerML 8.2.3.5.2). ``without`` is not found by its
     effective name, which the search is to give. ``before`` is the link of a chain that the
-    name follows.
+    name follows. ``everything`` looks at private members too, as ``import all`` does.
     """
 
     scope: Node | None
@@ -68,10 +68,21 @@ class Start(NamedTuple):
     inherited: bool = False
     without: Node | None = None
     before: Relation | None = None
+    everything: bool = False
+    reference: Reference | None = None
 
 
 def start(node: Node, relation: Relation) -> Start:
     """Where the first name of a relation of ``node`` is looked up."""
+    found = _start(node, relation)
+    return found._replace(reference=relation.reference) if _begins_globally(relation) else found
+
+
+def _begins_globally(relation: Relation) -> bool:
+    return relation.reference.chain[0][0] == "$"
+
+
+def _start(node: Node, relation: Relation) -> Start:
     kind = relation.kind
     if kind == "Membership":
         return _membership(node)
@@ -81,6 +92,8 @@ def start(node: Node, relation: Relation) -> Start:
         return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
     if kind == "FeatureTyping":
         return Start(beyond_expressions(node), without=node)
+    if kind == "importedMembership" and node.facts.get("isImportAll"):
+        return Start(namespace(node), without=node, everything=True)
     before = _before(node, relation) if kind == "FeatureChaining" else None
     return Start(namespace(node), without=node, before=before)
 

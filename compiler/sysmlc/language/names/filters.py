@@ -1,65 +1,89 @@
-"""Filters of imports: conditions about metadata, decided where they are constant (KerML 8.3.2.4.3)."""
+"""Filters of imports: conditions about metadata, decided where they are constant (KerML 7.2.5.4)."""
 
 from typing import TYPE_CHECKING
 
+from sysmlc.language.metaclasses import is_a
+from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
     from sysmlc.language.names.lookup import Lookup
 
-_Truth = bool | None
-"""None: not decided here, so nothing is kept out."""
+Value = str | bool | int | float | None
+"""What an expression gives; None is the empty sequence."""
 _METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+
+
+class UndecidedError(Exception):
+    """An expression that is not constant, or not understood: nothing is kept out because of it."""
 
 
 def passes(condition: Node, hit: Node, lookup: "Lookup") -> bool:
     """Whether a member may be imported; one that is not decided may."""
     element = lookup.element(hit)
-    return element is None or _holds(condition, element, lookup) is not False
+    if element is None:
+        return True
+    try:
+        return evaluate(condition, element, lookup) is True
+    except UndecidedError:
+        return True
 
 
-def _holds(condition: Node, element: Node, lookup: "Lookup") -> _Truth:
-    operator = condition.facts.get("operator")
-    operands = [m for m in condition.members if m.membership == "ParameterMembership"]
-    if operator in ("and", "&"):
-        return _both([_holds(o, element, lookup) for o in operands])
-    if operator in ("or", "|"):
-        found = _both([_negated(_holds(o, element, lookup)) for o in operands])
-        return _negated(found)
-    if operator == "not" and operands:
-        return _negated(_holds(operands[0], element, lookup))
+def evaluate(expression: Node, element: Node, lookup: "Lookup") -> Value:
+    """The value of a model-level expression for an annotated element. Raises UndecidedError."""
+    if "value" in expression.facts:
+        return expression.facts["value"]
+    operator = expression.facts.get("operator")
+    if operator is None:
+        return _referred(expression, element, lookup)
     if operator in ("@", "hastype", "istype"):
-        return _classified(condition, element, lookup)
-    return _value(condition, element, lookup)
+        return _classified(expression, element, lookup)
+    operands = [m for m in expression.members if m.membership == "ParameterMembership"]
+    return _operated(str(operator), operands, element, lookup)
 
 
-def _both(truths: list[_Truth]) -> _Truth:
-    if False in truths:
-        return False
-    return None if None in truths else True
+def _operated(operator: str, operands: list[Node], element: Node, lookup: "Lookup") -> Value:
+    values = [evaluate(operand, element, lookup) for operand in operands]
+    if operator in ("and", "&"):
+        return all(value is True for value in values)
+    if operator in ("or", "|"):
+        return any(value is True for value in values)
+    if operator == "not":
+        return values[0] is not True
+    if operator in ("==", "===") and len(values) == 2:
+        return values[0] == values[1]
+    if operator in ("!=", "!==") and len(values) == 2:
+        return values[0] != values[1]
+    if operator == "xor" and len(values) == 2:
+        return (values[0] is True) != (values[1] is True)
+    raise UndecidedError(operator)
 
 
-def _negated(truth: _Truth) -> _Truth:
-    return None if truth is None else not truth
-
-
-def _classified(condition: Node, element: Node, lookup: "Lookup") -> _Truth:
+def _classified(expression: Node, element: Node, lookup: "Lookup") -> bool:
     """``@M``: the element has metadata of that type, or its metaclass is that one."""
-    for member in condition.members:
+    for member in expression.members:
         for relation in member.relations:
             if relation.kind == "FeatureTyping":
                 wanted = lookup.target(member, relation)
-                return None if wanted is None else _has(element, wanted, lookup)
-    return None
+                if wanted is not None:
+                    return _has(element, wanted, lookup)
+    raise UndecidedError("type")
 
 
-def _has(element: Node, wanted: Node, lookup: "Lookup") -> _Truth:
-    package = wanted.owner.owner if wanted.owner and wanted.owner.owner else wanted.owner
-    if package is not None and package.name in ("SysML", "KerML"):
-        from sysmlc.language.metaclasses import is_a
-
+def _has(element: Node, wanted: Node, lookup: "Lookup") -> bool:
+    if _is_reflective(wanted):
         return is_a(element.kind, wanted.name or "")
-    return any(lookup.conforms(m, wanted) for m in metadata(element))
+    return any(lookup.conforms(one, wanted) for one in metadata(element))
+
+
+def _is_reflective(wanted: Node) -> bool:
+    """Whether a metaclass is of the packages that describe KerML and SysML themselves."""
+    at: Node | None = wanted
+    while at is not None:
+        if at.kind == "LibraryPackage" and at.name in ("KerML", "SysML"):
+            return True
+        at = at.owner
+    return False
 
 
 def metadata(element: Node) -> list[Node]:
@@ -67,29 +91,28 @@ def metadata(element: Node) -> list[Node]:
     return [member for member in element.members if member.kind in _METADATA]
 
 
-def _value(condition: Node, element: Node, lookup: "Lookup") -> _Truth:
-    """``M::x``: the literal that the element's metadata gives to a Boolean attribute."""
-    for relation in condition.relations:
+def _referred(expression: Node, element: Node, lookup: "Lookup") -> Value:
+    """``M::x`` or ``(as M).x``: what the metadata of the element gives for a feature."""
+    for relation in expression.relations:
         if relation.kind == "Membership":
-            feature = lookup.target(condition, relation)
-            return None if feature is None else _given(feature, element, lookup)
-    value = condition.facts.get("value")
-    return value if isinstance(value, bool) else None
+            feature = lookup.target(expression, relation)
+            if feature is not None and feature.kind in FEATURES:
+                return _given(feature, element, lookup)
+    raise UndecidedError("reference")
 
 
-def _given(feature: Node, element: Node, lookup: "Lookup") -> _Truth:
+def _given(feature: Node, element: Node, lookup: "Lookup") -> Value:
     for usage in metadata(element):
         for member in usage.members:
             if feature in lookup.redefined(member):
-                return _literal(member)
+                return _bound(member, element, lookup)
         if feature.owner is not None and lookup.conforms(usage, feature.owner):
-            return _literal(feature)
-    return False
+            return _bound(feature, element, lookup)
+    return None
 
 
-def _literal(feature: Node) -> _Truth:
+def _bound(feature: Node, element: Node, lookup: "Lookup") -> Value:
     for member in feature.members:
         if member.membership == "FeatureValue":
-            value = member.facts.get("value")
-            return value if isinstance(value, bool) else None
+            return evaluate(member, element, lookup)
     return None

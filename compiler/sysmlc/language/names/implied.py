@@ -5,6 +5,7 @@ The tables are in ``bases``; which candidates are needed beside the written ones
 
 from functools import cache
 
+from sysmlc.language.composition import USAGES, is_composite
 from sysmlc.language.metaclasses import GENERALS, kinds_of
 from sysmlc.language.names.bases import (
     BASES,
@@ -18,13 +19,6 @@ from sysmlc.language.names.contents import FEATURES, TYPES
 from sysmlc.language.tree import Node
 
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
-_PARAMETERS = kinds_of("ParameterMembership")
-_USAGES = kinds_of("Usage")
-_REFERENTIAL = (
-    kinds_of("AttributeUsage") | kinds_of("EventOccurrenceUsage") | {"ReferenceUsage"}
-)
-_VALUES = kinds_of("AttributeDefinition") | kinds_of("AttributeUsage")
-_PORTS = kinds_of("PortDefinition") | kinds_of("PortUsage")
 _CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
 _CONNECTORS = kinds_of("Connector") | kinds_of("Association")
 _PORTIONS = {
@@ -40,18 +34,9 @@ def owning_type(node: Node) -> Node | None:
     return owner if owns else None
 
 
-def is_composite(node: Node) -> bool:
-    """Whether the values of a feature are parts of what has it (SysML BNF 8.2.2.6.2 note 1)."""
-    if node.kind not in _USAGES:
-        return bool(node.facts.get("isComposite"))
-    facts, owner = node.facts, owning_type(node)
-    if owner is None or node.kind in _REFERENTIAL or owner.kind in _VALUES:
-        return False
-    if facts.get("isReference") or facts.get("direction") or facts.get("isEnd"):
-        return False
-    if node.membership in _PARAMETERS:
-        return False
-    return not node.kind == "PortUsage" or owner.kind in _PORTS
+def is_part(node: Node) -> bool:
+    """Whether the values of a feature are parts of what has it."""
+    return is_composite(node) if node.kind in USAGES else bool(node.facts.get("isComposite"))
 
 
 def ends(node: Node) -> list[Node]:
@@ -135,7 +120,7 @@ def _placed(node: Node) -> list[str]:
     for owners, base, needs_composite in _places(node.kind):
         if owner.kind in owners:
             if needs_composite and composite is None:
-                composite = is_composite(node)
+                composite = is_part(node)
             if not needs_composite or composite:
                 found.append(base)
     return found

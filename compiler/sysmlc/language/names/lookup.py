@@ -1,10 +1,10 @@
 """Looking names up: what a namespace owns, inherits and imports (KerML 8.2.3.5)."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import contexts, positions, results
-from sysmlc.language.names.contents import NAMESPACES, TYPES, Owned, owned
+from sysmlc.language.names.contents import NAMESPACES, TYPES, Owned, naming, owned
 from sysmlc.language.names.filters import passes
 from sysmlc.language.tree import Node, Reference, Relation
 
@@ -21,7 +21,8 @@ class Lookup:
     """Finds what names lead to, each once; ``roots`` gives the members of the global scope.
 
     ``implied`` gives the elements that a type specialises though the text does not say so,
-    ``by_role`` those that a member redefines because of its membership.
+    ``by_role`` those that a member redefines because of its membership, ``text`` the text of
+    the document with a root.
     References that are being looked up already lead nowhere meanwhile: what was found while one
     was cut is not remembered, so cycles end and change no other answer.
     """
@@ -31,10 +32,15 @@ class Lookup:
         roots: Callable[[str], Hits],
         implied: Callable[[Node], list[Node]],
         by_role: Callable[[Node], list[Node]],
+        text: Callable[[Node], str],
     ) -> None:
         self._roots = roots
         self._implied = implied
         self._by_role = by_role
+        self._text = text
+        self.cycles: list[tuple[Node, Node]] = []
+        """Elements that would specialise themselves, each with the general that leads back."""
+        self._pointed: set[Node] = set()
         self._owned: dict[Node, Owned] = {}
         self._generals: dict[Node, list[Node]] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
@@ -111,41 +117,62 @@ class Lookup:
     ) -> Node | None:
         """The member that a qualified name leads to from a scope, outwards."""
         first, scope, inherited = names[0], start.scope, start.inherited
-        if first == "$" and len(names) > 1:
-            return self._among(self._roots(names[1]), names, 1, kinds)
+        if first == "$" and len(names) > 1 and not self._is_quoted(start):
+            return self.among(self._roots(names[1]), names, 1, kinds)
         while scope is not None:
-            hits: Iterator[Node]
+            stages: Iterable[Hits]
             if inherited and scope.kind in TYPES:
-                hits = iter(self._general_hits(scope, first))
+                stages = (self._general_hits(scope, first),)
             else:
-                hits = self.inside(scope, first, start.without)
+                stages = self._stages(scope, first, start.without)
             inherited = False
-            for hit in hits:
-                found = self._take(hit, names, 0, kinds)
+            for hits in stages:
+                found = self.among(hits, names, 0, kinds, start.everything)
                 if found is not None:
                     return found
-                if len(names) > 1 and self._is_namespace(hit):
+                if len(names) > 1 and any(map(self._is_namespace, hits)):
                     return None
             scope = contexts.outer(scope)
-        return self._among(self._roots(first), names, 0, kinds)
+        return self.among(self._roots(first), names, 0, kinds)
 
     def descend(
-        self, scope: Node, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+        self,
+        scope: Node,
+        names: tuple[str, ...],
+        index: int,
+        kinds: frozenset[str] | None,
+        everything: bool = False,
     ) -> Node | None:
-        """The member that the names from ``index`` on lead to, from outside of ``scope``."""
-        return self._among(self.visible(scope, names[index]), names, index, kinds)
+        """The member that the names from ``index`` on lead to, from outside of ``scope``.
 
-    def _among(
-        self, hits: Hits, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+        ``everything``: private and protected members too, as ``import all`` sees them.
+        """
+        name = names[index]
+        hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
+        return self.among(hits, names, index, kinds, everything)
+
+    def among(
+        self,
+        hits: Hits,
+        names: tuple[str, ...],
+        index: int,
+        kinds: frozenset[str] | None,
+        everything: bool = False,
     ) -> Node | None:
+        """The member that the names after ``index`` lead to from the first hit where they do."""
         for hit in hits:
-            found = self._take(hit, names, index, kinds)
+            found = self._take(hit, names, index, kinds, everything)
             if found is not None:
                 return found
         return None
 
     def _take(
-        self, hit: Node, names: tuple[str, ...], index: int, kinds: frozenset[str] | None
+        self,
+        hit: Node,
+        names: tuple[str, ...],
+        index: int,
+        kinds: frozenset[str] | None,
+        everything: bool,
     ) -> Node | None:
         """``hit`` when it ends the name and is of a wanted kind, else what lies further in it."""
         element = self.element(hit)
@@ -153,7 +180,17 @@ class Lookup:
             return None
         if index + 1 == len(names):
             return hit if kinds is None or element.kind in kinds else None
-        return self.descend(element, names, index + 1, kinds)
+        return self.descend(element, names, index + 1, kinds, everything)
+
+    def _is_quoted(self, start: contexts.Start) -> bool:
+        """Whether ``$`` is a name in quotes: the reference is longer than its names."""
+        reference = start.reference
+        if reference is None or reference.start < 0 or start.scope is None:
+            return False
+        root = start.scope
+        while root.owner is not None:
+            root = root.owner
+        return self._text(root)[reference.start : reference.start + 1] == "'"
 
     def _is_namespace(self, hit: Node) -> bool:
         element = self.element(hit)
@@ -168,18 +205,37 @@ class Lookup:
             index = self._owned[scope] = owned(scope)
         return index
 
-    def inside(self, scope: Node, name: str, without: Node | None = None) -> Iterator[Node]:
-        """Members by one name as seen from inside: all own ones, inherited, imported."""
-        for hit in self.owned(scope).get(name, _NONE):
-            if hit is not without or name in (hit.name, hit.short):
-                yield hit
+    def own(self, scope: Node, name: str) -> Hits:
+        """The members by one name that ``scope`` owns; a nameless one needs what names it."""
+        hits = self.owned(scope).get(name)
+        if hits is None:
+            return _NONE
+        return tuple([hit for hit in hits if hit.name or hit.short or self._is_named(hit)])
+
+    def _is_named(self, feature: Node) -> bool:
+        reference = naming(feature)
+        relation = next((r for r in feature.relations if r.reference is reference), None)
+        return relation is None or self.target(feature, relation) is not None
+
+    def _stages(self, scope: Node, name: str, without: Node | None) -> Iterator[Hits]:
+        """Members by one name as seen from inside: all own ones, inherited, imported ones."""
+        hits = self.owned(scope).get(name)
+        if hits is not None:
+            if without in hits and without is not None and name not in (without.name, without.short):
+                hits = [hit for hit in hits if hit is not without]
+            yield tuple([hit for hit in hits if hit.name or hit.short or self._is_named(hit)])
         if scope.kind in TYPES:
-            yield from self.inherited(scope, name)
-        yield from self.imported(scope, name, inside=True)
+            yield self.inherited(scope, name)
+        yield self.imported(scope, name, inside=True)
+
+    def inside(self, scope: Node, name: str) -> Iterator[Node]:
+        """Members by one name as seen from inside: all own ones, inherited, imported."""
+        for hits in self._stages(scope, name, None):
+            yield from hits
 
     def visible(self, scope: Node, name: str) -> Hits:
         """Members by one name as seen from outside: public own ones, inherited, imported."""
-        hits = [h for h in self.owned(scope).get(name, _NONE) if h.visibility in ("", "public")]
+        hits = [h for h in self.own(scope, name) if h.visibility in ("", "public")]
         if not hits and scope.kind in TYPES:
             hits += [h for h in self.inherited(scope, name) if h.visibility != "protected"]
         if not hits:
@@ -195,6 +251,7 @@ class Lookup:
         if hits is not None:
             return hits
         if scope in self._inheriting:
+            self.cuts += 1
             return _NONE
         before = self.cuts
         self._inheriting.add(scope)
@@ -218,7 +275,7 @@ class Lookup:
 
     def _heritable(self, general: Node, name: str) -> Hits:
         """Members by one name that ``general`` gives to what specialises it."""
-        hits = [h for h in self.owned(general).get(name, _NONE) if h.visibility != "private"]
+        hits = [h for h in self.own(general, name) if h.visibility != "private"]
         return (
             tuple(hits)
             or self.inherited(general, name)
@@ -327,8 +384,25 @@ class Lookup:
                         links.append(target)
                     found.append(target)
         if self.cuts == before:
+            if node in self._pointed:
+                found = [general for general in found if not self._closes(node, general)]
             self._generals[node] = found
+            self._pointed.update(found)
         return found
+
+    def _closes(self, node: Node, general: Node) -> bool:
+        """Whether a general leads back to ``node``: that one is reported, and left out."""
+        seen, waiting = {general}, [general]
+        while waiting:
+            one = waiting.pop()
+            if one is node:
+                self.cycles.append((node, general))
+                return True
+            for other in self._generals.get(one, ()):
+                if other not in seen:
+                    seen.add(other)
+                    waiting.append(other)
+        return False
 
     def conforms(self, node: Node, general: Node) -> bool:
         """Whether ``node`` specialises ``general`` as the text says, in any number of steps."""
@@ -416,8 +490,7 @@ class Lookup:
         if hits or not node.facts.get("isRecursive"):
             return hits
         for nested in self._nested(scope, everything):
-            hits = tuple(self.owned(nested).get(name, _NONE))
-            hits = hits if everything else self.visible(nested, name)
+            hits = self.own(nested, name) if everything else self.visible(nested, name)
             if hits:
                 return hits
         return _NONE

@@ -21,7 +21,7 @@ class Model:
     def __init__(self, documents: Sequence[Document], library: Library) -> None:
         self.documents = sorted(documents, key=lambda document: document.path)
         self.library = library
-        self.lookup = Lookup(self._roots, self.implied_generals, self._by_role)
+        self.lookup = Lookup(self._roots, self.implied_generals, self._by_role, self._text)
         self._by_root = {document.root: document for document in self.documents}
         self._named: dict[str, list[Node]] = {}
         for document in self.documents:
@@ -35,6 +35,10 @@ class Model:
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))
 
+    def _text(self, root: Node) -> str:
+        document = self.document(root)
+        return document.text if document else ""
+
     # What others ask
 
     def find(self, qualified_name: str) -> Node | None:
@@ -42,7 +46,7 @@ class Model:
         if qualified_name not in self._found:
             names = tuple(part.strip("'") for part in qualified_name.split("::"))
             hits = self._roots(names[0])
-            found = self.lookup._among(hits, names, 0, None)
+            found = self.lookup.among(hits, names, 0, None)
             self._found[qualified_name] = self.lookup.element(found) if found else None
         return self._found[qualified_name]
 

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.filters import UndecidedError, evaluate
 from sysmlc.language.names.results import named
 from sysmlc.language.tree import Node
 
@@ -28,14 +29,27 @@ def _base(metadata: Node, lookup: "Lookup") -> Node | None:
     for feature in lookup.inside(metadata, "baseType"):
         for value in feature.members:
             if value.membership == "FeatureValue":
-                return _named(value, lookup)
+                return _named(value, metadata, lookup)
     return None
 
 
-def _named(value: Node, lookup: "Lookup") -> Node | None:
+def _named(value: Node, metadata: Node, lookup: "Lookup") -> Node | None:
+    """``x meta M`` names x; a conditional names what its condition about the element chooses."""
     while value.kind == "OperatorExpression" and value.members:
-        value = value.members[0]
+        chosen = 0
+        if value.facts.get("operator") == "if":
+            chosen = 1 if _holds(value.members[0], metadata, lookup) else 2
+        if chosen >= len(value.members):
+            return None
+        value = value.members[chosen]
     return named(value, lookup)
+
+
+def _holds(condition: Node, metadata: Node, lookup: "Lookup") -> bool:
+    try:
+        return metadata.owner is not None and evaluate(condition, metadata.owner, lookup) is True
+    except UndecidedError:
+        return False
 
 
 def _relations(node: Node, base: Node, lookup: "Lookup") -> list[tuple[str, Node]]:

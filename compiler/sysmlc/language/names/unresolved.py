@@ -1,5 +1,6 @@
 """Names that lead nowhere, told in the modeller's words, once for each use."""
 
+import re
 from collections.abc import Iterable
 
 from sysmlc.diagnostics import Place, Sink, Subject
@@ -9,6 +10,9 @@ from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import UNRESOLVED
 from sysmlc.language.tree import Document, Node, Reference, Relation
 from sysmlc.suggest import did_you_mean
+
+_LINK = re.compile(r"(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+)(?:\s*::\s*(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+))*")
+"""A qualified name, one link of a chain."""
 
 
 def report(
@@ -27,7 +31,7 @@ def report(
     inside = f" in '{before.name}'" if before is not None and before.name else ""
     sink.report(
         UNRESOLVED,
-        subject(document, node, reference.start),
+        subject(document, node, _place(document, reference, index)),
         name=name,
         inside=inside,
         advice=did_you_mean(reference.chain[index][-1], _known(lookup, before or start.scope)),
@@ -60,6 +64,14 @@ def _is_incomplete(scope: Node | None, lookup: Lookup) -> bool:
                     seen.add(general)
                     waiting.append(general)
     return False
+
+
+def _place(document: Document, reference: Reference, index: int) -> int:
+    """Where the link of a chain stands that was not found."""
+    if index == 0 or reference.start < 0:
+        return reference.start
+    links = list(_LINK.finditer(document.text, reference.start, reference.end))
+    return links[index].start() if index < len(links) else reference.start
 
 
 def _known(lookup: Lookup, scope: Node | None) -> Iterable[str]:
