@@ -315,4 +315,20 @@ def test_of_two_declarations_of_an_alias_the_first_counts():
     )
     assert reading.to("Roles::Gate", "specializes") == ["Shared::Base"]
     assert len(reading.all("Al", "Import")) == 2
+    assert reading.findings == [
+        "SM636: the alias 'Al' stands for '../libs/other.aml' here, and for "
+        "'../libs/base.aml' before"
+    ]
+
+
+def test_an_alias_that_is_declared_twice_for_one_file_is_nothing_to_tell():
+    reading = Read(
+        aml(
+            '<ExternalReference Path="../libs/base.aml" Alias="Al"/>'
+            '<ExternalReference Path="../libs/./base.aml" Alias="Al"/>'
+            + roles('<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/>'),
+            "plant/main.aml",
+        ),
+        BASE,
+    )
     assert reading.findings == []

@@ -4,11 +4,13 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from html import unescape
+from itertools import compress
+from operator import eq
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
-from sysmlc.frontends.caex import fitting, measures, rules, strange
+from sysmlc.frontends.caex import fitting, measures, repeats, rules, strange
 from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
@@ -56,16 +58,23 @@ def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> 
     context.report_ids()
     measures.report_strange(context)
     fitting.report(context)
+    repeats.report(context)
 
 
 def _count(document: Document, counts: FileCoverage) -> None:
     """Count every element once; what is folded shares the verdict of its parent."""
-    verdicts = document.verdicts
+    verdicts, columns = document.verdicts, [document.texts[tag] for tag in FOLDED]
+    if verdicts.count(Verdict.MAPPED) == len(verdicts):
+        numbers = Counter(document.tags)
+        numbers.update(dict(zip(FOLDED, map(len, columns), strict=True)))
+        for tag, number in numbers.items():
+            if number:
+                counts.count(tag, Verdict.MAPPED, number)
+        return
     found = Counter(zip(document.tags, verdicts, strict=True))
     for (tag, verdict), number in found.items():
         counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
-    for tag in FOLDED:
-        column = document.texts[tag]
+    for tag, column in zip(FOLDED, columns, strict=True):
         for verdict, number in Counter(map(verdicts.__getitem__, column)).items():
             counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
 
@@ -90,14 +99,17 @@ def _unordered(document: Document) -> list[int]:
 def _unordered_neighbours(document: Document) -> list[int]:
     """The same where every child has a place in the order: then two neighbours are wrong."""
     tags, ends, parents = document.tags, document.ends, document.parents
-    following = list(map([*tags, ""].__getitem__, ends))
-    pairs = set(zip(tags, following, strict=True))
-    wrong = {p for p in pairs if p[1] and ORDER.get(p[0], -1) > ORDER[p[1]]}
+    are_neighbours = list(map(eq, parents, map([*parents, None].__getitem__, ends)))
+    pairs = zip(tags, map([*tags, ""].__getitem__, ends), strict=True)
+    wrong = {
+        (one, other)
+        for one, other in set(compress(pairs, are_neighbours))
+        if ORDER.get(one, -1) > ORDER[other]
+    }
     if not wrong:
         return []
-    both = enumerate(zip(tags, following, strict=True))
-    rows = (row for row, pair in both if pair in wrong)
-    return sorted({parents[row] for row in rows if parents[ends[row]] == parents[row]})
+    rows = compress(range(len(tags)), are_neighbours)
+    return sorted({parents[row] for row in rows if (tags[row], tags[ends[row]]) in wrong})
 
 
 def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:

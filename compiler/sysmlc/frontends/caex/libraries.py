@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from urllib.parse import unquote
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import rules
+from sysmlc.frontends.caex import repeats, rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
@@ -51,7 +51,8 @@ def _class(context: Context, document: Document, node: Node, above: Node, family
         abstract=True if is_role else None,
     )
     type = Type(element.id, document, node.row, family, (*_path(above), node.name))
-    context.types.add(type)
+    if not context.types.add(type):
+        context.repeated.add((document, node.row))
     return type
 
 
@@ -167,7 +168,7 @@ def header(context: Context, document: Document) -> None:
 
 def _alias(context: Context, document: Document, node: Node) -> None:
     alias, path = node.attributes.get("Alias", ""), node.attributes.get("Path", "")
-    context.types.declare(document, alias, _file(document.name, path))
+    repeats.declare(context, document, node, _file(document.name, path))
     element = context.add(
         Kind.IMPORT,
         node,

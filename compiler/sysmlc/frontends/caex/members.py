@@ -8,7 +8,7 @@ from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
-from sysmlc.frontends.caex.types import Member
+from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
@@ -131,7 +131,7 @@ def _description(context: Context, site: Site, node: Node, known: Member, path: 
 
 def _interface(context: Context, site: Site, node: Node) -> None:
     known = site.declared.find(node.tag, node.name) if site.declared else None
-    if known is None:
+    if known is None or is_of_another_class(context, node, known):
         features.interface(context, own(context, site), node, site.document)
         return
     waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
@@ -147,6 +147,17 @@ def _interface(context: Context, site: Site, node: Node) -> None:
             inner = member.type.find(child.tag, child.name) if member.type else None
             if inner is not None:
                 waiting.append((child, inner, (*path, member.id)))
+
+
+def is_of_another_class(context: Context, node: Node, known: Member) -> bool:
+    """Whether an interface names a class that the one of its class is not of."""
+    path = node.attributes.get("RefBaseClassPath", "").strip()
+    if not path or mirrors.is_mirror(context, node):
+        return False
+    found = context.look_up(path, Family.INTERFACE, node.document)
+    if not isinstance(found, Type):
+        return False
+    return known.type is None or all(one is not found for one in known.type.chain())
 
 
 def _port_values(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:

@@ -8,7 +8,7 @@ same result for every row.
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import members
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import own
 from sysmlc.frontends.caex.plans import Known, Plan
 from sysmlc.frontends.caex.sameness import says_more
@@ -89,8 +89,7 @@ class Swift:
             return self._plain.interface(site.own or own(self._context, site), row)
         if document.ends[row] > row + 1:
             return False
-        path = values.get("RefBaseClassPath")
-        if path and self._context.known(path, Family.INTERFACE, document) is None:
+        if values.get("RefBaseClassPath") and self._is_another(site, document.node(row)):
             return False
         plan.steps[document.alike[row]] = port
         document.verdicts[row] = _MAPPED
@@ -98,6 +97,14 @@ class Swift:
         if document.ids[row]:
             site.interface_ids.append((port, document.ids[row]))
         return True
+
+    def _is_another(self, site: Site, node: Node) -> bool:
+        """Whether an interface is of another class than that of its class, or of none."""
+        path, context = node.attributes["RefBaseClassPath"], self._context
+        known = site.declared.find(node.tag, node.name) if site.declared else None
+        if known is None or context.known(path, Family.INTERFACE, self._document) is None:
+            return True
+        return members.is_of_another_class(context, node, known)
 
     def _repeats(self, row: int, known: Known) -> bool:
         """Whether a row says what the class says, but for its value and rows inside."""

@@ -89,17 +89,18 @@ class Types:
             for node in document.root.of(*LIBRARIES):
                 self._libraries.add((document.name, LIBRARIES[node.tag][0], node.name))
 
-    def declare(self, document: Document, alias: str, file: str) -> None:
-        """The file's alias means another file (which may not be there)."""
-        self._aliases.setdefault((document.name, alias), file)
+    def declare(self, document: Document, alias: str, file: str) -> str:
+        """The file's alias means another file (which may not be there): the first one counts."""
+        return self._aliases.setdefault((document.name, alias), file)
 
     def hold(self, document: Document, family: Family, library: str) -> None:
         """A standard library is provided; it is asked where a file has none of its name."""
         self._standard[family, library] = document.name
 
-    def add(self, type: Type) -> None:
+    def add(self, type: Type) -> bool:
         """Know a class under its path; of two with the same path the first counts."""
-        self._by_path.setdefault((type.document.name, type.family, type.path), type)
+        key = (type.document.name, type.family, type.path)
+        return self._by_path.setdefault(key, type) is type
 
     def find(self, text: str, family: Family, document: Document) -> Type | Missing:
         """The class that a path means in a file."""

@@ -1,0 +1,101 @@
+"""Names that two elements have where paths need one, and interfaces of another class."""
+
+import pytest
+from reading_caex import Read, classes, interfaces, plant, types
+
+ONE = '<Attribute Name="a"><Value>1</Value></Attribute>'
+TWO = '<Attribute Name="a"><Value>2</Value></Attribute>'
+THREE = '<Attribute Name="a"><Value>3</Value></Attribute>'
+
+
+def of_class(body, name="C"):
+    return f'<SystemUnitClass Name="{name}">{body}</SystemUnitClass>'
+
+
+def of_instance(body, path="Lib/C"):
+    return plant(
+        f'<InternalElement Name="i" ID="1" RefBaseSystemUnitPath="{path}">{body}</InternalElement>'
+    )
+
+
+PORT = f'<ExternalInterface Name="p" ID="2">{ONE}{TWO}</ExternalInterface>'
+REPEATS = [
+    (classes(of_class("") * 2), "'Lib' has two of 'SystemUnitClass' named 'C'"),
+    (classes("") * 2, "'plant.aml' has two of 'SystemUnitClassLib' named 'Lib'"),
+    (classes(of_class(ONE + TWO)), "'Lib::C' has two of 'Attribute' named 'a'"),
+    (
+        classes(of_class(f'<Attribute Name="b">{ONE}{TWO}</Attribute>')),
+        "'Lib::C::b' has two of 'Attribute' named 'a'",
+    ),
+    (
+        types(f'<AttributeType Name="T">{ONE}{TWO}</AttributeType>'),
+        "'Types::T' has two of 'Attribute' named 'a'",
+    ),
+    (
+        classes(of_class(ONE)) + of_instance(TWO + THREE),
+        "'Plant::i' has two of 'Attribute' named 'a'",
+    ),
+    (of_instance(ONE + TWO, ""), "'Plant::i' has two of 'Attribute' named 'a'"),
+    (of_instance(PORT, ""), "'Plant::i::p' has two of 'Attribute' named 'a'"),
+]
+
+
+@pytest.mark.parametrize(("body", "told"), REPEATS)
+def test_a_name_that_two_elements_have_is_told(body, told):
+    assert Read(body).findings == [f"SM635: {told}"]
+
+
+ALONE = [
+    classes(of_class(of_class("", "D")) + of_class("", "D")),
+    classes(of_class(ONE) + of_class(ONE, "D")) + of_instance(TWO),
+    classes(of_class("<Attribute Name='a'><Attribute Name='a'/></Attribute>")),
+    plant('<InternalElement Name="i" ID="1"/><InternalElement Name="i" ID="2"/>'),
+    classes("") + interfaces("", "Lib"),
+]
+
+
+@pytest.mark.parametrize("body", ALONE)
+def test_a_name_at_two_places_is_nothing_to_tell(body):
+    assert Read(body).findings == []
+
+
+# -- interfaces of another class than that of the class -----------------------------------------
+
+CLASSES = interfaces(
+    '<InterfaceClass Name="Plug"/><InterfaceClass Name="Socket"/>'
+    '<InterfaceClass Name="Safe plug" RefBaseClassPath="Interfaces/Plug"/>'
+)
+
+
+def interface(path, id, inside=""):
+    stated = f' RefBaseClassPath="Interfaces/{path}"' if path else ""
+    return f'<ExternalInterface Name="p" ID="{id}"{stated}>{inside}</ExternalInterface>'
+
+
+@pytest.mark.parametrize("path", ["Socket", "Safe plug"])
+@pytest.mark.parametrize("inside", ["", ONE], ids=["plain", "with values"])
+def test_an_interface_of_another_class_is_a_port_of_its_own(path, inside):
+    body = classes(of_class(interface("Plug", "c"))) + of_instance(interface(path, "i", inside))
+    reading = Read(CLASSES + body)
+    assert reading.findings == []
+    assert reading.one("Plant::i::p").id == "i"
+    assert reading.to("Plant::i::p", "typed-by") == [f"Interfaces::{path}"]
+    assert reading.to("Plant::i::p", "redefines") == ["Lib::C::p"]
+
+
+@pytest.mark.parametrize("path", ["Plug", "Safe plug", ""])
+def test_an_interface_that_says_its_class_or_less_is_that_of_the_class(path):
+    body = classes(of_class(interface("Safe plug", "c"))) + of_instance(interface(path, "i"))
+    reading = Read(CLASSES + body)
+    assert reading.findings == []
+    assert reading.all("Plant::i::p") == []
+    assert reading.one("Plant::i").attrs["interface_ids"] == (("c", "i"),)
+
+
+def test_a_link_to_an_interface_of_another_class_leads_to_its_own_port():
+    link = '<InternalLink Name="l" RefPartnerSideA="i" RefPartnerSideB="j"/>'
+    other = interface("Plug", "j").replace('"p"', '"q"')
+    body = classes(of_class(interface("Plug", "c")))
+    reading = Read(CLASSES + body + of_instance(interface("Socket", "i") + other + link))
+    assert reading.links() == {"l": ("p", "q")}
+    assert [one.id for one in reading.all("Plant::i::p")] == ["i"]
