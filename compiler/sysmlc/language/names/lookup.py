@@ -38,8 +38,9 @@ class Lookup:
         self._implied = implied
         self._by_role = by_role
         self._text = text
-        self.cycles: list[tuple[Node, Node]] = []
-        """Elements that would specialise themselves, each with the general that leads back."""
+        self.cycles: list[Node] = []
+        """Elements that specialise themselves, one of each circle."""
+        self._cyclic: set[Node] = set()
         self._pointed: set[Node] = set()
         self._owned: dict[Node, Owned] = {}
         self._generals: dict[Node, list[Node]] = {}
@@ -266,6 +267,9 @@ class Lookup:
 
     def _general_hits(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
+        if scope in self._cyclic:
+            found = [h for g in self._reached(scope) for h in self.own(g, name)]
+            return tuple(dict.fromkeys(h for h in found if h.visibility != "private"))
         for general in self.generals(scope):
             hits += [hit for hit in self._heritable(general, name) if hit not in hits]
         if not hits or any(map(_is_of_library, hits)):
@@ -384,25 +388,29 @@ class Lookup:
                         links.append(target)
                     found.append(target)
         if self.cuts == before:
-            if node in self._pointed:
-                found = [general for general in found if not self._closes(node, general)]
             self._generals[node] = found
+            if node in self._pointed:
+                self._find_cycle(node)
             self._pointed.update(found)
         return found
 
-    def _closes(self, node: Node, general: Node) -> bool:
-        """Whether a general leads back to ``node``: that one is reported, and left out."""
-        seen, waiting = {general}, [general]
+    def _find_cycle(self, node: Node) -> None:
+        """Note when ``node`` specialises itself: those in a circle inherit all of each other."""
+        back = {one for one in self._reached(node) if node in self._reached(one)}
+        if back:
+            self.cycles.append(node)
+            self._cyclic |= back | {node}
+
+    def _reached(self, node: Node) -> list[Node]:
+        """What ``node`` specialises, as far as it is known, the nearest first."""
+        reached: dict[Node, None] = {}
+        waiting = [node]
         while waiting:
-            one = waiting.pop()
-            if one is node:
-                self.cycles.append((node, general))
-                return True
-            for other in self._generals.get(one, ()):
-                if other not in seen:
-                    seen.add(other)
-                    waiting.append(other)
-        return False
+            for general in self._generals.get(waiting.pop(0), ()):
+                if general not in reached:
+                    reached[general] = None
+                    waiting.append(general)
+        return list(reached)
 
     def conforms(self, node: Node, general: Node) -> bool:
         """Whether ``node`` specialises ``general`` as the text says, in any number of steps."""
