@@ -90,3 +90,21 @@ def test_truth_is_written_in_two_ways(written, meant):
     classed = f'<packagedElement xmi:type="uml:Class" xmi:id="c">{port}</packagedElement>'
     assert read(papyrus(classed)).graph["p"].attrs.get("conjugated", False) is meant
     assert default("LiteralBoolean", written) is meant
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        '<ownedComment xmi:id="c" body="why" annotatedElement="v"/>',
+        '<ownedComment xmi:id="c"><body>why</body><annotatedElement xmi:idref="v"/></ownedComment>',
+    ],
+)
+def test_a_comment_on_a_value_is_one_on_what_has_the_value(comment):
+    value = f'<defaultValue xmi:type="uml:LiteralInteger" xmi:id="v" value="3">{comment}'
+    owned = f'<ownedAttribute xmi:id="p">{value}</defaultValue></ownedAttribute>'
+    model = f'<packagedElement xmi:type="uml:Class" xmi:id="k">{owned}</packagedElement>'
+    reading = read(papyrus(model))
+    assert reading.graph["c"].owner == "p"
+    assert reading.graph["c"].attrs == {"body": "why"}
+    assert [r.target for r in reading.graph.pending] == ["p"]
+    assert reading.findings == []

@@ -10,6 +10,7 @@ from sysmlc.frontends.xmi import (
     account,
     applications,
     behaviour,
+    comments,
     dangling,
     detect,
     enterprise_architect,
@@ -98,6 +99,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
     for context in contexts:
         applications.note_namespaces(context)
         enterprise_architect_profiles.localise(context)
+        comments.restore(context)
         context.finish()
     for context in contexts:
         applications.lower(context)
