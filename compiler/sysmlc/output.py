@@ -28,6 +28,7 @@ class Output:
 
     def __init__(self) -> None:
         self._artefacts: dict[str, Artefact] = {}
+        self._last: tuple[Iterable[str], tuple[str, ...]] = ((), ())
 
     def add(self, path: str, text: str, trace: Iterable[str] = (), backend: str = "") -> None:
         """Add a file. Raises ValueError when the path is taken or leaves the folder."""
@@ -35,7 +36,10 @@ class Output:
             raise ValueError(f"output path {path!r} leaves the output folder")
         if path in self._artefacts:
             raise ValueError(f"output path {path!r} is written twice")
-        self._artefacts[path] = Artefact(path, text, tuple(dict.fromkeys(trace)), backend)
+        if self._last[0] is not trace or not isinstance(trace, tuple):
+            # Several files of one element often have one trace, and it can be long.
+            self._last = (trace, tuple(dict.fromkeys(trace)))
+        self._artefacts[path] = Artefact(path, text, self._last[1], backend)
 
     def artefacts(self) -> list[Artefact]:
         """All files, sorted by path."""
@@ -87,13 +91,23 @@ def write(target: Path | str, data: bytes) -> None:
     temporary = os.path.join(folder, f".sysmlc-{os.urandom(8).hex()}")  # noqa: PTH118
     handle = _opened(temporary, folder)
     try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
+        try:
+            _write_all(handle, data)
             os.chmod(handle, 0o644)  # noqa: PTH101
+        finally:
+            os.close(handle)
         os.replace(temporary, target)  # noqa: PTH105 - a Path for each file costs as much again
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def _write_all(handle: int, data: bytes) -> None:
+    """Write without a file object: there may be thousands of files."""
+    written = os.write(handle, data)
+    while written < len(data):
+        data = data[written:]
+        written = os.write(handle, data)
 
 
 def _opened(temporary: str, folder: str) -> int:

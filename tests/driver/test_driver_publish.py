@@ -146,7 +146,7 @@ def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeyp
     def fails(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("os.fdopen", fails)
+    monkeypatch.setattr("os.write", fails)
     with pytest.raises(OutputError, match="No space left"):
         publish(tmp_path, PLANT.replace('"in"', '"entry"'))
     assert (tmp_path / "out/outlines/Gate.txt").read_text() == before

@@ -18,13 +18,14 @@ COMMANDS = (
     "backends",
     "show",
     "diff",
+    "format",
     "simulate",
     "watch",
 )
 """Command words; each is a module of this package with a click command ``command``."""
 
 _OWN_OPTIONS = frozenset({"--help", "-h", "--version"})
-_NEW_OBJECTS = 50_000
+_NEW_OBJECTS = 200_000
 """New objects before the garbage collector looks for cycles: a compilation makes hardly any."""
 _P = ParamSpec("_P")
 _T = TypeVar("_T")

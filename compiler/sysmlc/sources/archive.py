@@ -1,21 +1,22 @@
 """Archives (.mdzip, .kpar, .amlx) read entry by entry, with caps and without touching the disk."""
 
 import io
-import zipfile
 import zlib
 from collections.abc import Callable, Iterator
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from sysmlc.sources.error import Fault, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
+
+if TYPE_CHECKING:
+    from zipfile import ZipFile, ZipInfo
 
 _MAGIC = (b"PK\x03\x04", b"PK\x05\x06")
 _CHUNK = 1 << 20
 _NO_TABLE = "File is not a zip file"
 """What zipfile says when the table at the end is missing, however the file starts."""
 _CUT_SHORT = "its table of contents is missing, as when a download or a save was cut off"
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
 
 def is_archive(data: bytes) -> bool:
@@ -32,6 +33,8 @@ def entries(
     Raises SourceError for a damaged archive, names that are absolute, lead upwards or occur
     twice, other methods than stored and deflate, encryption, and what exceeds the limits.
     """
+    import zipfile
+
     try:
         with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
             return list(_read_all(archive, opened, wanted, limits))
@@ -42,6 +45,8 @@ def entries(
 
 def names(archive: Source) -> list[str]:
     """Names of all entries, as the archive has them. Raises SourceError for a damaged archive."""
+    import zipfile
+
     try:
         with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
             return opened.namelist()
@@ -51,7 +56,7 @@ def names(archive: Source) -> list[str]:
 
 
 def _read_all(
-    archive: Source, opened: zipfile.ZipFile, wanted: Callable[[str], bool], limits: Limits
+    archive: Source, opened: "ZipFile", wanted: Callable[[str], bool], limits: Limits
 ) -> Iterator[Source]:
     name, infos = archive.name, opened.infolist()
     _check_names(name, infos, limits)
@@ -71,7 +76,7 @@ def _allowance(packed: int, limits: Limits) -> int:
     return min(limits.total_size, max(packed * limits.total_ratio, limits.free_size))
 
 
-def _check_declared(name: str, infos: list[zipfile.ZipInfo], left: int, limits: Limits) -> None:
+def _check_declared(name: str, infos: list["ZipInfo"], left: int, limits: Limits) -> None:
     """Refuse what is too large by its own account before anything is unpacked."""
     for info in infos:
         if info.file_size > max(info.compress_size * limits.ratio, _CHUNK):
@@ -84,7 +89,7 @@ def _too_much(name: str) -> SourceError:
     return SourceError("unpacks to more than the limits allow", name, fault=Fault.LIMIT)
 
 
-def _check_names(name: str, infos: list[zipfile.ZipInfo], limits: Limits) -> None:
+def _check_names(name: str, infos: list["ZipInfo"], limits: Limits) -> None:
     if len(infos) > limits.entries:
         raise SourceError(f"more than {limits.entries} entries", name, fault=Fault.LIMIT)
     seen: set[str] = set()
@@ -102,15 +107,17 @@ def _leads_out(entry: str) -> bool:
     return path.startswith("/") or path[1:2] == ":" or ".." in path.split("/") or "\0" in path
 
 
-def _check_method(name: str, info: zipfile.ZipInfo) -> None:
-    if info.compress_type not in _METHODS:
+def _check_method(name: str, info: "ZipInfo") -> None:
+    from zipfile import ZIP_DEFLATED, ZIP_STORED
+
+    if info.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
         message = f"entry '{info.filename}' is neither stored nor deflated"
         raise SourceError(message, name, fault=Fault.REFUSED)
     if info.flag_bits & 0x1:
         raise SourceError(f"entry '{info.filename}' is encrypted", name, fault=Fault.REFUSED)
 
 
-def _read(name: str, stream: IO[bytes], info: zipfile.ZipInfo, left: int, limits: Limits) -> bytes:
+def _read(name: str, stream: IO[bytes], info: "ZipInfo", left: int, limits: Limits) -> bytes:
     cap = min(left, max(info.compress_size * limits.ratio, _CHUNK), limits.file_size)
     pieces: list[bytes] = []
     size = 0

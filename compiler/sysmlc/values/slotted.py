@@ -114,6 +114,8 @@ def _slots_above(cls: type) -> set[str]:
 
 @dataclasses.dataclass(init=False, repr=False, eq=False, match_args=False)
 class _Sample:
+    """Without these words ``dataclasses`` would take 15 ms to write some of its own."""
+
     field: int
 
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.sd_steps import steps
 from sysmlc.backends.plantuml.text import label, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView
 from sysmlc.ir import Element, Graph, Kind, sequence
@@ -21,6 +20,8 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
 
 
 def _diagram(graph: Graph, interaction: Element, lifelines: list[Element]) -> Diagram:
+    from sysmlc.backends.plantuml.sd_steps import steps
+
     aliases = Aliases()
     participants = tuple(_participant(graph, one, aliases) for one in lifelines)
     whole = graph.qualified_name(interaction)

@@ -103,6 +103,8 @@ def _drawn(graph: Graph, at: dict[str, int], other: Element) -> int:
 def _report(
     graph: Graph, sink: Sink, interaction: Element, message: Element, other: Element, line: Element
 ) -> None:
+    from sysmlc.backends.plantuml.sd_texts import event_name
+
     sink.report(
         OVERTAKEN,
         graph.subject(message),
