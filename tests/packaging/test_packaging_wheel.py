@@ -31,6 +31,8 @@ def test_the_wheel_carries_data_licence_and_types(dist):
         expected = {f"sysmlc/{path.relative_to(ROOT).as_posix()}" for path in shipped}
         assert expected <= set(names)
     assert "sysmlc/py.typed" in names
+    for language in ("kerml", "sysml"):
+        assert f"sysmlc/language/text/generated/{language}.tables" in names
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not [name for name in names if name.startswith(("tests", "compiler"))]
 
@@ -40,6 +42,7 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
     with tarfile.open(archive) as opened:
         names = {name.partition("/")[2] for name in opened.getnames()}
     assert {"LICENSE", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile"} <= names
+    assert {"hatch_build.py", "grammars/sysml.lark"} <= names
     assert {"tests/conftest.py", "examples/lego-recipe/lego-recipe.uml"} <= names
 
 

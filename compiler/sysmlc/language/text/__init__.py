@@ -3,11 +3,14 @@
 from functools import cache
 from typing import TYPE_CHECKING
 
-from sysmlc.language.tree import Document
+from sysmlc.language.tree import Document, Node
 
 if TYPE_CHECKING:
     from sysmlc.diagnostics import Sink
-    from sysmlc.language.text.machine import Rules
+    from sysmlc.language.text.errors import Errors
+    from sysmlc.language.text.machine import Rules, Stack
+    from sysmlc.language.text.scan import Tokens
+    from sysmlc.language.text.tables import Tables
     from sysmlc.sources import Source
 
 
@@ -24,16 +27,28 @@ def parse(
 
     made = tables.load(language)
     tokens = scan(text, made.types)
-    if len(tokens.types) == 1:
-        return Document(path, language, root(tokens, []), text, source)
-    stack = [None, 0, made.start]
-    wrong = machine.run(made, _rules(language), tokens, stack, 0)
-    members = stack[-3] if wrong < 0 else []
-    if wrong >= 0:
-        from sysmlc.language.text.errors import tell
+    stack: Stack = [None, 0, made.start]
+    wrong = machine.run(made, _rules(language), tokens, stack, 0) if len(tokens.types) > 1 else -1
+    if wrong >= 0 or tokens.faults:
+        from sysmlc.language.text.errors import Errors
 
-        tell(made, tokens, stack, wrong, path, sink)
+        errors = Errors(tokens, path, language, sink, source)
+        errors.faults()
+        if wrong >= 0:
+            _recover(made, language, tokens, stack, wrong, errors)
+    members: list[Node] = stack[3] if len(stack) > 3 and isinstance(stack[3], list) else []
     return Document(path, language, root(tokens, members), text, source)
+
+
+def _recover(
+    made: "Tables", language: str, tokens: "Tokens", stack: "Stack", wrong: int, errors: "Errors"
+) -> None:
+    from sysmlc.language.text import machine
+    from sysmlc.language.text.recover import Recovery
+
+    recovery = Recovery(made, _rules(language), tokens, errors)
+    while wrong >= 0 and (at := recovery.next(stack, wrong)) >= 0:
+        wrong = machine.run(made, _rules(language), tokens, stack, at)
 
 
 @cache

@@ -5,14 +5,24 @@ is built, and at most once by a user of a checkout.
 """
 
 import marshal
-from collections import Counter
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from lark.grammar import Rule
+    from lark.lexer import TerminalDef
+    from lark.parsers.lalr_analysis import ParseTableBase
+
+    Table = ParseTableBase[int]
 
 ACCEPT = -1_000_000
 """The action that ends the run."""
 
+_PLAIN = 2
+"""Version of the form that has no shared references, so that equal tables have equal bytes."""
+
 Row = dict[int, int]
+Form = tuple[int, int, str, tuple[int, ...]]
 
 
 def tables(grammar: str) -> bytes:
@@ -30,11 +40,11 @@ def tables(grammar: str) -> bytes:
             return iter(())
 
     lark = Lark(grammar, parser="lalr", lexer=Nothing, maybe_placeholders=True)
-    table = lark.parser.parser._parse_table  # type: ignore[attr-defined]
-    return marshal.dumps(_compact(table, lark.terminals))
+    table = lark.parser.parser._parse_table
+    return marshal.dumps(_compact(table, lark.terminals), _PLAIN)
 
 
-def _compact(table: Any, terminals: Any) -> dict[str, object]:
+def _compact(table: "Table", terminals: "Collection[TerminalDef]") -> dict[str, object]:
     texts = {term.name: str(term.pattern.value) for term in terminals if term.pattern is not None}
     rules = _rules(table)
     names = sorted(
@@ -49,6 +59,7 @@ def _compact(table: Any, terminals: Any) -> dict[str, object]:
     forms = [_form(rule, numbers) for rule in rules]
     _skip_units(rows, defaults, forms)
     return {
+        "item": numbers["item"],
         "start": table.start_states["start"],
         "types": {name: numbers[name] for name in names},
         "words": {texts[name]: numbers[name] for name in names if name in texts},
@@ -58,8 +69,8 @@ def _compact(table: Any, terminals: Any) -> dict[str, object]:
     }
 
 
-def _rules(table: Any) -> list[Any]:
-    found: dict[Any, None] = {}
+def _rules(table: "Table") -> "list[Rule]":
+    found: dict[Rule, None] = {}
     for _, row in sorted(table.states.items()):
         for name in sorted(row):
             action, argument = row[name]
@@ -68,16 +79,19 @@ def _rules(table: Any) -> list[Any]:
     return list(found)
 
 
-def _rows(table: Any, numbers: Row, order: Any) -> tuple[list[Row], list[int | None]]:
+def _rows(
+    table: "Table", numbers: Mapping[str, int], order: "Mapping[Rule, int]"
+) -> tuple[list[Row], list[int | None]]:
     rows, defaults = [], []
     for state, row in sorted(table.states.items()):
         made = {
             numbers[name]: argument if action.name == "Shift" else ~order[argument]
             for name, (action, argument) in sorted(row.items())
         }
-        reductions = Counter(action for action in made.values() if action < 0)
-        default = reductions.most_common(1)[0][0] if reductions else None
-        made = {key: action for key, action in made.items() if action != default}
+        only = set(made.values())
+        default = only.pop() if len(only) == 1 and max(only) < 0 else None
+        if default is not None:
+            made = {}
         if state == table.end_states["start"]:
             made[numbers["$END"]] = ACCEPT
         rows.append(made)
@@ -85,7 +99,7 @@ def _rows(table: Any, numbers: Row, order: Any) -> tuple[list[Row], list[int | N
     return rows, defaults
 
 
-def _form(rule: Any, numbers: Any) -> tuple[int, int, str, tuple[int, ...]]:
+def _form(rule: "Rule", numbers: Mapping[str, int]) -> Form:
     """Number of its symbol, length, name of its function, places of its arguments on the stack.
 
     The stack has three entries for each symbol: value, number of the first token, state; its
@@ -98,7 +112,7 @@ def _form(rule: Any, numbers: Any) -> tuple[int, int, str, tuple[int, ...]]:
     return numbers[rule.origin.name], length, name, places
 
 
-def _places(rule: Any) -> tuple[int, ...]:
+def _places(rule: "Rule") -> tuple[int, ...]:
     length = len(rule.expansion)
     gaps = [False] * length if not rule.options.empty_indices else rule.options.empty_indices
     places, index = [], 0
@@ -107,13 +121,13 @@ def _places(rule: Any) -> tuple[int, ...]:
             places.append(0)
             continue
         symbol = rule.expansion[index]
-        if rule.options.keep_all_tokens or not (symbol.is_term and symbol.filter_out):
+        if rule.options.keep_all_tokens or not getattr(symbol, "filter_out", False):
             places.append(-3 * (length - index))
         index += 1
     return tuple(places)
 
 
-def _skip_units(rows: list[Row], defaults: list[int | None], forms: Any) -> None:
+def _skip_units(rows: list[Row], defaults: list[int | None], forms: list[Form]) -> None:
     """Where a state can only reduce a rule that passes one value on, go on to what follows it."""
     left = {
         state: forms[~default][0]

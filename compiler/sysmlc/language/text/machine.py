@@ -1,4 +1,4 @@
-"""The parser proper: tokens are shifted, rules reduced, each reduction builds its part of the tree."""
+"""The parser proper: tokens are shifted, rules reduced; each reduction builds a part."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -2,13 +2,65 @@
 
 from sysmlc.diagnostics import Severity, rule
 
+_READ_ON = "what stands around it is read all the same."
+
 SYNTAX = rule(
     "SM190",
     "v2-syntax",
     Severity.ERROR,
     "{found} stands where {expected} is expected",
-    why="What cannot be read is missing in the outputs; what stands around it is read all the same.",
+    why=f"What cannot be read is missing in the outputs; {_READ_ON}",
     help="{advice}",
-    wrong="part def Cell { port in : ; }",
-    right="part def Cell { port input; }",
+    wrong="part def Cell { port : ; }",
+    right="part def Cell { port : Input; }",
+)
+MISSING = rule(
+    "SM191",
+    "v2-missing",
+    Severity.ERROR,
+    "{missing} is missing after {before}",
+    why="Without it what follows would be read as a part of what stands before.",
+    help="{advice}",
+    wrong="part def Cell {\n    part arm : Robot\n    part tool;\n}",
+    right="part def Cell {\n    part arm : Robot;\n    part tool;\n}",
+)
+KEYWORD = rule(
+    "SM192",
+    "v2-keyword-as-name",
+    Severity.ERROR,
+    "'{word}' is a keyword of {language} and stands where a name is expected",
+    why="Keywords are reserved: a name must not be one of them (KerML 8.2.2.6, SysML 8.2.2.1.2).",
+    help="written '{word}' in single quotes it is a name, here and wherever it is used",
+    wrong="part def Cell { port action; }",
+    right="part def Cell { port 'action'; }",
+)
+UNCLOSED = rule(
+    "SM193",
+    "v2-unclosed",
+    Severity.ERROR,
+    "{what} is never closed",
+    why="What it should end is not known, so that the rest may be read otherwise than it is meant.",
+    help="{advice}",
+    wrong="part def Cell { part arm;",
+    right="part def Cell { part arm; }",
+)
+CHARACTER = rule(
+    "SM194",
+    "v2-character",
+    Severity.ERROR,
+    "{what}",
+    why="Names without quotes have the letters a to z, digits and '_'; of other characters only "
+    "the symbols of the language stand outside of names, texts and comments (KerML 8.2.2).",
+    help="{advice}",
+    wrong="part def Zelle { part Größe; }",
+    right="part def Zelle { part 'Größe'; }",
+)
+DEEP = rule(
+    "SM198",
+    "v2-too-deep",
+    Severity.ERROR,
+    "this is nested more than {limit} levels deep: nothing from here on is read",
+    why="No model that a person wrote is so deep; tools that read it would stop without a word.",
+    wrong="part p { " * 201 + "} " * 201,
+    right="part p { " * 3 + "} " * 3,
 )

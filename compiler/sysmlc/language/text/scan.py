@@ -9,35 +9,55 @@ from sysmlc.values import dataclass
 _SKIPPED = r"(?:[ \t\r\n\f\v\ufeff]+|//\*(?s:.)*?\*/|//(?!\*)[^\r\n]*)*+"
 _BODY = r"/\*(?s:.)*?\*/"
 _WORD = r"[^\W\d]\w*"
-_SYMBOLS = r"===|!==|:>>|::>|\*\*|::|:>|:=|==|!=|<=|>=|=>|->|\.\.|\.\?|\?\?|@@|/(?!\*)|\.(?!\d)|[~}|{^\]\[@?>=<;:,+*)(&%$#-]"
+_SYMBOLS = (
+    r"===|!==|:>>|::>|\*\*|::|:>|:=|==|!=|<=|>=|=>|->|\.\.|\.\?|\?\?|@@"
+    r"|/(?!\*)|\.(?!\d)|[~}|{^\]\[@?>=<;:,+*)(&%$#-]"
+)
 _QUOTED = r"'(?:[^'\\\r\n]|\\.)*'"
 _STRING = r'"(?:[^"\\]|\\(?s:.))*"'
 _NUMBER = r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?"
 _TOKEN = re.compile(
     rf"{_SKIPPED}(?:({_WORD}|{_SYMBOLS})|({_NUMBER})|({_BODY})|({_QUOTED})|({_STRING})|(.)|\Z)"
 )
+_BAD = 6
+_REST = re.compile(r"[\w ]*")
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What cannot be read: an unclosed ``comment``, ``quote`` or ``string``, or a ``character``."""
+
+    what: str
+    start: int
+    text: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tokens:
     """The tokens of ``text``: their types by number, where each starts and ends.
 
-    The last one is the end of the text. ``bad`` has the numbers of those that are no token of
-    the language; they have the type 0. ``referential`` is for the builder: usages that say
-    `ref`; whether that adds anything is known when their owners are.
+    The last one is the end of the text. ``faults`` has what is no token. ``referential`` is for
+    the builder: usages that say `ref`; whether that adds anything is known when owners are.
     """
 
     text: str
     types: bytearray
     starts: list[int]
     ends: list[int]
-    bad: list[int]
+    faults: list[Fault]
     referential: list[Node]
 
     def __getitem__(self, index: int) -> str:
         return self.text[self.starts[index] : self.ends[index]]
+
+    def insert(self, index: int, kind: int) -> None:
+        """Put in a token that the text lacks; it is empty."""
+        place = self.ends[index - 1] if index else 0
+        self.types.insert(index, kind)
+        self.starts.insert(index, place)
+        self.ends.insert(index, place)
 
     def name(self, index: int) -> str:
         """The name that a token writes, quotes and escapes undone (KerML 8.2.2.3)."""
@@ -59,19 +79,61 @@ class Types:
 
 def scan(text: str, types: Types) -> Tokens:
     """All tokens of ``text``; never fails."""
-    kinds, starts, ends = bytearray(), [], []
+    tokens = Tokens(text, bytearray(), [], [], [], [])
+    position = 0
+    while position >= 0:
+        position = _scan(tokens, types, position)
+    if not text.isascii():
+        _check_names(tokens, types)
+    return tokens
+
+
+def _scan(tokens: Tokens, types: Types, position: int) -> int:
+    """Take tokens up to the end, then -1, or up to what is none, then where to go on."""
+    kinds, starts, ends = tokens.types, tokens.starts, tokens.ends
     words, name = types.words, types.name
-    by_group = (types.end, name, types.number, types.body, name, types.string, 0)
-    for found in _TOKEN.finditer(text):
+    by_group = (types.end, name, types.number, types.body, name, types.string)
+    for found in _TOKEN.finditer(tokens.text, position):
         group = found.lastindex or 0
+        if group == _BAD:
+            return _fault(tokens, types, found.start(_BAD))
         start, end = found.span(group) if group else (found.end(), found.end())
         kinds.append(words.get(found[1], name) if group == 1 else by_group[group])
         starts.append(start)
         ends.append(end)
         if not group:
             break
-    bad = [index for index, kind in enumerate(kinds) if kind == 0] if 0 in kinds else []
-    return Tokens(text, kinds, starts, ends, bad, [])
+    return -1
+
+
+def _fault(tokens: Tokens, types: Types, start: int) -> int:
+    """Note what is no token; where to go on behind it."""
+    text = tokens.text
+    char = text[start]
+    if text.startswith("/*", start) or text.startswith("//*", start):
+        tokens.faults.append(Fault("comment", start, char))
+        return len(text)
+    if char in "'\"":
+        found = _REST.match(text, start + 1)
+        end = found.end() if found else len(text)
+        tokens.faults.append(Fault("quote" if char == "'" else "string", start, char))
+        tokens.types.append(types.name if char == "'" else types.string)
+        tokens.starts.append(start)
+        tokens.ends.append(end)
+        return end
+    if all(char != fault.text for fault in tokens.faults):
+        tokens.faults.append(Fault("character", start, char))
+    return start + 1
+
+
+def _check_names(tokens: Tokens, types: Types) -> None:
+    """Names without quotes have letters a to z only."""
+    for index, kind in enumerate(tokens.types):
+        if kind == types.name and not (name := tokens[index]).isascii() and name[0] != "'":
+            char = next(char for char in name if not char.isascii())
+            if all(char != fault.text for fault in tokens.faults):
+                start = tokens.starts[index] + name.index(char)
+                tokens.faults.append(Fault("character", start, char))
 
 
 def unquoted(written: str) -> str:

@@ -4,6 +4,7 @@ import hashlib
 import marshal
 from functools import cache
 from operator import itemgetter
+from pathlib import Path
 from typing import Any
 
 from sysmlc import cache as caches
@@ -11,10 +12,15 @@ from sysmlc import resources
 from sysmlc.language.text.scan import Types
 from sysmlc.values import dataclass
 
+SHIPPED = Path(__file__).with_name("generated")
+"""Folder of the tables that are made when the package is built or installed."""
 _GRAMMARS = {
     "kerml": ("kerml-common.lark", "kerml.lark"),
     "sysml": ("kerml-common.lark", "sysml.lark"),
 }
+
+
+TableRule = tuple[int, int, str, "itemgetter[Any]"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,11 +33,12 @@ class Tables:
     """
 
     start: int
+    item: int
     types: Types
     names: dict[int, str]
     rows: list[dict[int, int]]
     defaults: list[int | None]
-    rules: list[tuple[int, int, str, Any]]
+    rules: list[TableRule]
 
 
 def grammar(language: str) -> str:
@@ -39,20 +46,44 @@ def grammar(language: str) -> str:
     return "\n".join(resources.text("grammars", name) for name in _GRAMMARS[language])
 
 
-def digest(language: str) -> str:
-    """What the tables of a language depend on."""
-    return hashlib.sha256(grammar(language).encode()).hexdigest()
+def digest(language: str) -> bytes:
+    """What the tables of a language are made of: its grammar and what makes them."""
+    maker = Path(__file__).with_name("generate.py").read_bytes()
+    return hashlib.sha256(grammar(language).encode() + maker).digest()
+
+
+def write(language: str, folder: Path) -> Path:
+    """Make the tables of a language and write them into a folder of the package."""
+    from sysmlc.language.text.generate import tables
+
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{language}.tables"
+    path.write_bytes(digest(language) + tables(grammar(language)))
+    return path
 
 
 @cache
 def load(language: str) -> Tables:
     """The tables of a language."""
-    return _opened(marshal.loads(_bytes(language)))
+    return _opened(marshal.loads(_shipped(language) or _kept(language)))
 
 
-def _bytes(language: str) -> bytes:
-    key = digest(language)
+def _shipped(language: str) -> bytes | None:
+    """The tables that came with the package, if they are those of its grammar."""
+    try:
+        data = (SHIPPED / f"{language}.tables").read_bytes()
+    except OSError:
+        return None
+    wanted = digest(language)
+    return data[len(wanted) :] if data.startswith(wanted) else None
+
+
+def _kept(language: str) -> bytes:
+    """The tables in the user's cache; they are made where it has none."""
+    from importlib.metadata import version
+
     store = caches.default()
+    key = hashlib.sha256(digest(language) + version("lark").encode()).hexdigest()
     found = store.get(key) if store else None
     if found is None:
         from sysmlc.language.text.generate import tables
@@ -66,9 +97,10 @@ def _bytes(language: str) -> bytes:
 def _opened(raw: dict[str, Any]) -> Tables:
     types = raw["types"]
     numbers = (types["NAME"], types["STRING"], types["NUMBER"], types["BODY"], types["$END"])
-    names = {number: repr(text) for text, number in raw["words"].items()}
+    names = {number: text for text, number in raw["words"].items()}
     return Tables(
         raw["start"],
+        raw["item"],
         Types(raw["words"], *numbers),
         names | {number: name for name, number in types.items() if number not in names},
         raw["rows"],
@@ -77,5 +109,5 @@ def _opened(raw: dict[str, Any]) -> Tables:
     )
 
 
-def _rule(symbol: int, length: int, name: str, places: tuple[int, ...]) -> Any:
+def _rule(symbol: int, length: int, name: str, places: tuple[int, ...]) -> TableRule:
     return symbol, length, name, itemgetter(1 - 3 * length, *(places or (0,)))

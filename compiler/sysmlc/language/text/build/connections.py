@@ -1,4 +1,4 @@
-"""Connections, interfaces, bindings, successions, flows and their ends (SysML 8.2.2.13 to 8.2.2.16)."""
+"""Connections, interfaces, bindings, successions, flows, their ends (SysML 8.2.2.13 to 16)."""
 
 from collections.abc import Callable
 from dataclasses import field

@@ -1,10 +1,11 @@
 """Types, features and prefixes of KerML (8.2.4, 8.2.5)."""
 
-from sysmlc.language.text.build import definitions, namespaces, usages
+from sysmlc.language.text.build import definitions, usages
 from sysmlc.language.text.build.connections import End, Tail, apply
 from sysmlc.language.text.build.definitions import lead, loose, whole
 from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
 from sysmlc.language.text.build.names import Names, call
+from sysmlc.language.text.build.namespaces import metadata, prefix_metadata
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
 from sysmlc.language.text.build.usages import Prefix
 from sysmlc.language.text.scan import Tokens
@@ -192,7 +193,7 @@ def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> No
         elif word == "member":
             node.membership = OWNING
         else:
-            node.facts.update(_FACTS[word])
+            node.facts.update(_FACTS.get(word, ()))
     return lead(node, [given for given in prefixes if isinstance(given, Node)])
 
 
@@ -274,14 +275,22 @@ def _crossed(
     return lead(prefix(tokens, begin, given, node), [cross.node])
 
 
-def _metadata(tokens: Tokens, at: int, begin: int, *given: object) -> Node:
-    node: Node = namespaces.ACTIONS["metadata"](tokens, at, begin, *given)
+def _metadata(
+    tokens: Tokens,
+    at: int,
+    begin: int,
+    names: Names | None,
+    typing: Relation,
+    about: list[Reference] | None,
+    body: list[Node],
+) -> Node:
+    node = metadata(tokens, at, begin, names, typing, about, body)
     node.kind = "MetadataFeature"
     return node
 
 
 def _prefix_metadata(tokens: Tokens, at: int, begin: int, name: Reference) -> Node:
-    node: Node = namespaces.ACTIONS["prefix_metadata"](tokens, at, begin, name)
+    node = prefix_metadata(tokens, at, begin, name)
     node.kind = "MetadataFeature"
     return node
 

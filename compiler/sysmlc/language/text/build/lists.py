@@ -1,38 +1,42 @@
 """Lists of the grammar, bodies, and what has no value of its own."""
 
-from typing import Any
+from typing import TypeVar
 
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Node
 
+T = TypeVar("T")
 
-def _first(_tokens: Tokens, _at: int, _begin: int, item: Any) -> list[Any]:
+
+def _first(_tokens: Tokens, _at: int, _begin: int, item: T) -> list[T]:
     return [item]
 
 
-def _more(_tokens: Tokens, _at: int, _begin: int, items: list[Any], item: Any) -> list[Any]:
+def _more(_tokens: Tokens, _at: int, _begin: int, items: list[T], item: T) -> list[T]:
     items.append(item)
     return items
 
 
-def _items_first(_tokens: Tokens, _at: int, _begin: int, item: Any) -> list[Node]:
-    return item if type(item) is list else [item]
+def _items_first(_tokens: Tokens, _at: int, _begin: int, item: Node | list[Node]) -> list[Node]:
+    return item if isinstance(item, list) else [item]
 
 
-def _items_more(_tokens: Tokens, _at: int, _begin: int, items: list[Node], item: Any) -> list[Node]:
-    if type(item) is list:
+def _items_more(
+    _tokens: Tokens, _at: int, _begin: int, items: list[Node], item: Node | list[Node]
+) -> list[Node]:
+    if isinstance(item, list):
         items += item
     else:
         items.append(item)
     return items
 
 
-def _join(_tokens: Tokens, _at: int, _begin: int, items: list[Any], more: list[Any]) -> list[Any]:
+def _join(_tokens: Tokens, _at: int, _begin: int, items: list[T], more: list[T]) -> list[T]:
     items += more
     return items
 
 
-def _same(_tokens: Tokens, _at: int, _begin: int, value: Any = None) -> Any:
+def _same(_tokens: Tokens, _at: int, _begin: int, value: T) -> T:
     return value
 
 

@@ -107,7 +107,7 @@ def _bare_representation(tokens: Tokens, at: int, begin: int, language: int, bod
     return _representation(tokens, at, begin, None, language, body)
 
 
-def _metadata(
+def metadata(
     tokens: Tokens,
     at: int,
     begin: int,
@@ -116,12 +116,14 @@ def _metadata(
     about: list[Reference] | None,
     body: list[Node],
 ) -> Node:
+    """A metadata usage that stands for itself (SysML 8.2.2.27)."""
     node = call(made("MetadataUsage", OWNING, tokens, begin, at), names, tokens)
     node.relations.append(typing)
     return own(_about(node, about), body)
 
 
-def _prefix_metadata(tokens: Tokens, at: int, begin: int, reference: Reference) -> Node:
+def prefix_metadata(tokens: Tokens, at: int, begin: int, reference: Reference) -> Node:
+    """Metadata before a member: ``#name``."""
     node = made("MetadataUsage", OWNING, tokens, begin, at)
     node.relations.append(Relation("FeatureTyping", reference))
     node.facts["isPrefix"] = True
@@ -225,10 +227,10 @@ def visible(
     tokens: Tokens, _at: int, begin: int, visibility: int, item: Node | list[Node]
 ) -> Node | list[Node]:
     """Give the visibility to all of an item."""
-    for node in item if type(item) is list else [item]:
+    nodes = item if isinstance(item, list) else [item]
+    for node in nodes:
         node.visibility = tokens[visibility]
-    first = item[0] if type(item) is list else item
-    first.start = tokens.starts[begin]
+    nodes[0].start = tokens.starts[begin]
     return item
 
 
@@ -240,8 +242,8 @@ ACTIONS = {
     "documentation": _documentation,
     "representation": _representation,
     "bare_representation": _bare_representation,
-    "metadata": _metadata,
-    "prefix_metadata": _prefix_metadata,
+    "metadata": metadata,
+    "prefix_metadata": prefix_metadata,
     "named_dependency": _named_dependency,
     "dependency": _dependency,
     "alias": _alias,

@@ -1,12 +1,14 @@
 """Operands and operators are grouped by precedence (KerML 8.2.5.8.1, Table 6)."""
 
-from typing import Any
-
 from sysmlc.language.text.build.owning import made
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 ARGUMENT = "ParameterMembership"
+Operand = Node | Reference
+Part = Operand | int
+"""Of an expression with operators: an operand, a type, or the token of an operator."""
+
 _LEVELS = (
     ("??",),
     ("implies",),
@@ -28,29 +30,33 @@ _CASTS = {"as", "meta"}
 _METADATA = {"@@", "meta"}
 
 
-def grouped(tokens: Tokens, parts: list[Any]) -> Node:
+def grouped(tokens: Tokens, parts: list[Part]) -> Node:
     """The expression of operands and operators in turn, operators as numbers of tokens."""
-    operands: list[Any] = [parts[0]]
+    operands = [part for part in parts[::2] if not isinstance(part, int)]
+    operators = [tokens[part] for part in parts[1::2] if isinstance(part, int)]
+    left: list[Operand] = [operands[0]]
     pending: list[str] = []
-    for index in range(1, len(parts), 2):
-        operator = tokens[parts[index]]
-        level = _PRECEDENCE[operator]
-        while pending and _before(_PRECEDENCE[pending[-1]], level):
-            _reduce(operands, pending.pop())
+    for operator, operand in zip(operators, operands[1:], strict=True):
+        while pending and _before(_PRECEDENCE[pending[-1]], _PRECEDENCE[operator]):
+            _reduce(left, pending.pop())
         pending.append(operator)
-        operands.append(parts[index + 1])
+        left.append(operand)
     while pending:
-        _reduce(operands, pending.pop())
-    node: Node = operands[0]
-    return node
+        _reduce(left, pending.pop())
+    return _node(left[0])
+
+
+def _node(operand: Operand) -> Node:
+    assert isinstance(operand, Node)
+    return operand
 
 
 def _before(left: int, right: int) -> bool:
     return left > right or (left == right and left != _RIGHT)
 
 
-def _reduce(operands: list[Any], operator: str) -> None:
-    right, left = operands.pop(), operands.pop()
+def _reduce(operands: list[Operand], operator: str) -> None:
+    right, left = operands.pop(), _node(operands.pop())
     operands.append(operation(operator, left, right))
 
 
@@ -84,17 +90,17 @@ def type_reference(operator: str, name: Reference) -> Node:
     return feature
 
 
-def _grouped(tokens: Tokens, _at: int, _begin: int, parts: list[Any]) -> Node:
+def _grouped(tokens: Tokens, _at: int, _begin: int, parts: list[Part]) -> Node:
     return grouped(tokens, parts)
 
 
-def _first_infix(_tokens: Tokens, _at: int, _begin: int, *parts: Any) -> list[Any]:
+def _first_infix(_tokens: Tokens, _at: int, _begin: int, *parts: Part) -> list[Part]:
     return list(parts)
 
 
 def _more_infix(
-    _tokens: Tokens, _at: int, _begin: int, parts: list[Any], operator: int, operand: Any
-) -> list[Any]:
+    _tokens: Tokens, _at: int, _begin: int, parts: list[Part], operator: int, operand: Operand
+) -> list[Part]:
     parts += (operator, operand)
     return parts
 

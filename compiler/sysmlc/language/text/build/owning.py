@@ -58,9 +58,9 @@ def _in_enumeration(_owner: Node, members: Sequence[Node]) -> None:
 def _in_interface(_owner: Node, members: Sequence[Node]) -> None:
     """An end without keyword is a port; the word `ref` makes it a reference (8.2.2.14.1)."""
     for member in members:
-        if member.kind == "ReferenceUsage" and "isEnd" in member.facts:
-            if "isReference" not in member.facts:
-                member.kind = "PortUsage"
+        is_end = member.kind == "ReferenceUsage" and "isEnd" in member.facts
+        if is_end and "isReference" not in member.facts:
+            member.kind = "PortUsage"
 
 
 def _in_metadata(_owner: Node, members: Sequence[Node]) -> None:

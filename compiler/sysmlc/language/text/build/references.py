@@ -1,4 +1,4 @@
-"""Usages that refer to another one or declare it: perform, exhibit, satisfy, entry ... (SysML 8.2.2)."""
+"""Usages that refer to another one or declare it: perform, satisfy, entry ... (SysML 8.2.2)."""
 
 from sysmlc.language.text.build.actions import parameter
 from sysmlc.language.text.build.connections import Tail, apply

@@ -1,4 +1,4 @@
-"""Relationships of KerML: those that an element owns, and those that stand for themselves (8.2.4)."""
+"""Relationships of KerML: owned ones, and those that stand for themselves (8.2.4)."""
 
 from collections.abc import Callable
 

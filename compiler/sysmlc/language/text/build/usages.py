@@ -1,4 +1,4 @@
-"""Prefixes, cross features, variants, `return` and `then` before members (SysML 8.2.2.6, 8.2.2.9.3)."""
+"""Prefixes, cross features, `variant`, `return`, `then` before members (SysML 8.2.2.6, 9.3)."""
 
 from typing import NamedTuple
 
@@ -42,6 +42,8 @@ def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> No
             continue
         if word == "ref":
             tokens.referential.append(node)
+        if word not in _FACTS:
+            continue
         name, value = _FACTS[word]
         node.facts[name] = value
         if name == "portionKind":
