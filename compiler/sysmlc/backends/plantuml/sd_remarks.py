@@ -1,6 +1,5 @@
 """What sequence diagrams in PlantUML cannot say: messages that are on their way for a while."""
 
-from sysmlc.backends.plantuml.sd_texts import event_name
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, sequence
 
