@@ -47,9 +47,11 @@ class Lookup:
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._imports: dict[Node, list[Node]] = {}
         self._imported: dict[tuple[Node, bool], dict[str, Hits]] = {}
+        self._conditions: dict[Node, list[Node]] = {}
         self._active: set[Reference] = set()
         self._inheriting: set[Node] = set()
         self._importing: set[tuple[Node, bool]] = set()
+        self._silently: dict[Node, list[Node]] = {}
         self._redefining: dict[Node, list[Node]] = {}
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
@@ -268,22 +270,34 @@ class Lookup:
     def _general_hits(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
         if scope in self._cyclic:
-            found = [h for g in self._reached(scope) for h in self.own(g, name)]
-            return tuple(dict.fromkeys(h for h in found if h.visibility != "private"))
+            all_own = (h for g in self._reached(scope) for h in self.own(g, name))
+            return tuple(dict.fromkeys(h for h in all_own if h.visibility != "private"))
         for general in self.generals(scope):
-            hits += [hit for hit in self._heritable(general, name) if hit not in hits]
+            found = self._heritable(general, name)
+            if found:
+                hits += [hit for hit in found if hit not in hits]
         if not hits or any(map(_is_of_library, hits)):
             for general in self._silent_generals(scope):
-                hits += [hit for hit in self._heritable(general, name) if hit not in hits]
+                found = self._heritable(general, name)
+                if found:
+                    hits += [hit for hit in found if hit not in hits]
         return tuple(hits) if len(hits) < 2 else self._most_special(hits)
 
     def _heritable(self, general: Node, name: str) -> Hits:
         """Members by one name that ``general`` gives to what specialises it."""
-        hits = [h for h in self.own(general, name) if h.visibility != "private"]
-        return (
-            tuple(hits)
-            or self.inherited(general, name)
-            or self.imported(general, name, inside=False)
+        index = self._owned.get(general)
+        if index is None:
+            index = self.owned(general)
+        if name in index:
+            hits = [h for h in self.own(general, name) if h.visibility != "private"]
+            if hits:
+                return tuple(hits)
+        memo = self._inherited.get(general)
+        found = memo.get(name) if memo is not None else None
+        if found is None:
+            found = self.inherited(general, name)
+        return found or (
+            self.imported(general, name, inside=False) if self.imports(general) else _NONE
         )
 
     def _most_special(self, hits: list[Node]) -> Hits:
@@ -364,9 +378,15 @@ class Lookup:
         return [*self.generals(node), *self._silent_generals(node)]
 
     def _silent_generals(self, node: Node) -> list[Node]:
-        value = results.of_value(node, self) if not self.generals(node) else None
-        found = [*self.by_position(node), *self._implied(node)]
-        return [value, *found] if value is not None and value is not node else found
+        known = self._silently.get(node)
+        if known is None:
+            before = self.cuts
+            value = results.of_value(node, self) if not self.generals(node) else None
+            known = [*self.by_position(node), *self._implied(node)]
+            known = [value, *known] if value is not None and value is not node else known
+            if self.cuts == before:
+                self._silently[node] = known
+        return known
 
     def generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
@@ -462,9 +482,12 @@ class Lookup:
         for node in imports:
             if inside or node.visibility == "public":
                 found += [h for h in self._brought(node, name) if h not in found]
-        conditions = [m for m in scope.members if m.membership == "ElementFilterMembership"]
-        if not conditions:
-            return tuple(found)
+        if not found:
+            return _NONE
+        conditions = self._conditions.get(scope)
+        if conditions is None:
+            conditions = [m for m in scope.members if m.membership == "ElementFilterMembership"]
+            self._conditions[scope] = conditions
         return tuple(h for h in found if all(passes(c, h, self) for c in conditions))
 
     def _brought(self, node: Node, name: str) -> Hits:

@@ -1,5 +1,6 @@
 """A model with its names resolved, and the questions that others ask about it (KerML 8.2.3.5)."""
 
+import gc
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
@@ -12,7 +13,14 @@ from sysmlc.language.names.lookup import Hits, Lookup
 from sysmlc.language.names.unresolved import report
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
-_SPECIALIZATIONS = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+_EXPRESSIONS = kinds_of("InstantiationExpression") | kinds_of("LiteralExpression") | {
+    "FeatureReferenceExpression",
+    "MetadataAccessExpression",
+    "NullExpression",
+}
+
+
+_DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
 class Model:
@@ -179,10 +187,13 @@ class Model:
         return self._supers[node]
 
     def add_implied(self) -> None:
-        """Give the nodes of the documents the relations that the text does not say."""
+        """Give the types and features of the documents what the text does not say of them.
+
+        Expressions and multiplicities, which no one declares, are left as they are.
+        """
         for document in self.documents:
             for node in document.root.walk():
-                if node.kind in TYPES:
+                if node.kind in _DECLARED:
                     node.relations += self._implied_relations(node)
 
     def _implied_relations(self, node: Node) -> list[Relation]:
@@ -214,10 +225,22 @@ def _relation(kind: str, name: str, target: Node) -> Relation:
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
     """The model of the documents with every reference resolved; what leads nowhere is reported."""
     model = Model(documents, library)
-    for document in model.documents:
-        for node in document.root.walk():
-            for relation in node.relations:
-                if model.lookup.target(node, relation) is None:
-                    report(model.lookup, document, node, relation, sink)
-    model.add_implied()
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for document in model.documents:
+            _resolve(document, model.lookup, sink)
+        model.add_implied()
+    finally:
+        if collecting:
+            gc.enable()
     return model
+
+
+def _resolve(document: Document, lookup: Lookup, sink: Sink) -> None:
+    for node in document.root.walk():
+        for relation in node.relations:
+            if relation.reference.targets is None and lookup.target(node, relation) is None:
+                report(lookup, document, node, relation, sink)
+            elif relation.reference.target is None:
+                report(lookup, document, node, relation, sink)
