@@ -22,11 +22,13 @@ def parse(
     What is wrong in it is reported; the tree has what was understood.
     """
     from sysmlc.language.text import machine, tables
+    from sysmlc.language.text.brackets import settle
     from sysmlc.language.text.build.namespaces import root
     from sysmlc.language.text.scan import scan
 
     made = tables.load(language)
     tokens = scan(text, made.types)
+    settle(made, tokens)
     stack: Stack = [None, 0, made.start]
     wrong = machine.run(made, _rules(language), tokens, stack, 0) if len(tokens.types) > 1 else -1
     if wrong >= 0 or tokens.faults:

@@ -27,7 +27,7 @@ _GROUPS = (
         {"+", "xor"},
         "an operator",
         "?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ "
-        "** istype hastype @ as @@ meta . .? -> # ( [ INDEX",
+        "** istype hastype @ as @@ meta . .? -> # ( [ _INDEX",
     ),
 )
 _FIRST = ("';'", "'{'", "'}'")
@@ -51,7 +51,7 @@ def expectation(expected: Collection[str], beginnings: Collection[str]) -> str:
             left -= set(members.split())
     if "NAME" in left:
         left -= {"$", "<", "~"}
-    left.discard("INDEX")
+    left.discard("_INDEX")
     shown = [_WORDS.get(name, f"'{name}'") for name in sorted(left)]
     return joined(sorted(shown, key=_rank) + said)
 

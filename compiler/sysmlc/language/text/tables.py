@@ -34,6 +34,7 @@ class Tables:
 
     start: int
     item: int
+    index: int
     types: Types
     names: dict[int, str]
     rows: list[dict[int, int]]
@@ -101,6 +102,7 @@ def _opened(raw: dict[str, Any]) -> Tables:
     return Tables(
         raw["start"],
         raw["item"],
+        types["_INDEX"],
         Types(raw["words"], *numbers),
         names | {number: name for name, number in types.items() if number not in names},
         raw["rows"],

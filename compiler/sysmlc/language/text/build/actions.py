@@ -33,11 +33,22 @@ def _accept(
     if payload is None:
         payload = made("ReferenceUsage", PARAMETER, tokens, begin + 1, max(at, begin + 2))
     if trigger is not None:
+        _name(payload)
         payload.own(trigger)
     members = [payload]
     if via is not None:
         members.append(parameter(via, via.start))
     return Tail("AcceptActionUsage", members)
+
+
+def _name(payload: Node) -> None:
+    """Before a trigger, a name alone is that of the payload, not its type (8.2.2.17.4)."""
+    for relation in payload.relations[:1]:
+        chain, start = relation.reference.chain, relation.reference.start
+        if payload.name is None and start == payload.start and len(chain[0]) == len(chain) == 1:
+            payload.name = chain[0][0]
+            payload.name_start = start
+            payload.relations.pop(0)
 
 
 def _trigger(tokens: Tokens, at: int, begin: int, keyword: int, value: Node) -> Node:
