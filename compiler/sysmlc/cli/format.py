@@ -1,0 +1,162 @@
+"""``sysmlc format``: files in KerML and SysML v2 in canonical layout."""
+
+import difflib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sysmlc.values import dataclass
+
+if TYPE_CHECKING:
+    from sysmlc.diagnostics.render import Finding
+
+_LANGUAGES = ("sysml", "kerml")
+
+
+@dataclass(frozen=True, slots=True)
+class _Text:
+    """A file, or standard input (no path), as it is and as it is to be; None with errors in it."""
+
+    name: str
+    path: Path | None
+    before: str
+    after: str | None
+    findings: "tuple[Finding, ...]" = ()
+
+    @property
+    def is_changed(self) -> bool:
+        return self.after is not None and self.after != self.before
+
+
+@click.command(
+    "format",
+    short_help="Put SysML v2 and KerML files into canonical layout.",
+    epilog="""\b
+Examples:
+  sysmlc format plant.sysml
+  sysmlc format models/ --check     for continuous integration: exit code 1 when one differs
+  sysmlc format models/ --diff      only show what would change
+  sysmlc format - < plant.sysml     from standard input to standard output""",
+)
+@click.argument(
+    "files",
+    nargs=-1,
+    required=True,
+    type=click.Path(path_type=Path, allow_dash=True),
+    metavar="FILE...",
+)
+@click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
+@click.option("--diff", "shows_diff", is_flag=True, help="Write nothing; print what would change.")
+@click.option(
+    "--language",
+    type=click.Choice(_LANGUAGES),
+    help="Language of all files, when their suffixes do not say it.",
+)
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    files: tuple[Path, ...],
+    check: bool,
+    shows_diff: bool,
+    language: str | None,
+) -> None:
+    """Lay out FILE... anew: files, folders with .sysml and .kerml files, or - for standard input.
+
+    Tokens, comments and notes stay as they are; only white space changes. Files with syntax
+    errors are left alone. Exit code 0 when all is well, 1 for syntax errors and, with --check or
+    --diff, for files that would change, 2 when a file cannot be read.
+    """
+    texts = [_read(path, language) for path in _expanded(files)]
+    _show([finding for text in texts for finding in text.findings])
+    changed = [text for text in texts if text.is_changed]
+    if shows_diff:
+        click.echo("".join(line for text in changed for line in _diff(text)), nl=False)
+    elif check:
+        click.echo("".join(f"{text.name}\n" for text in changed), nl=False)
+    else:
+        _write(texts)
+    has_errors = any(text.after is None for text in texts)
+    ctx.exit(1 if has_errors or (changed and (check or shows_diff)) else 0)
+
+
+def _expanded(files: tuple[Path, ...]) -> Iterator[Path]:
+    for path in files:
+        if str(path) != "-" and path.is_dir():
+            yield from sorted(one for one in path.rglob("*.*") if one.suffix[1:] in _LANGUAGES)
+        else:
+            yield path
+
+
+def _read(path: Path, language: str | None) -> _Text:
+    from sysmlc.cli.session import fail
+    from sysmlc.sources import DEFAULT_LIMITS, SourceError
+    from sysmlc.sources.whole import read_whole
+
+    name = path.as_posix()
+    try:
+        if name == "-":
+            return _formatted("-", None, sys.stdin.buffer.read(), language or "sysml")
+        return _formatted(name, path, read_whole(path, name, DEFAULT_LIMITS), _of(path, language))
+    except SourceError as problem:
+        fail(f"{name} {problem.message}")
+    except UnicodeDecodeError as problem:
+        fail(f"{name} is no text in UTF-8: byte {problem.start} begins no character")
+
+
+def _of(path: Path, language: str | None) -> str:
+    from sysmlc.cli.session import fail
+
+    found = language or path.suffix[1:].lower()
+    if found not in _LANGUAGES:
+        fail(f"{path.as_posix()} ends neither in .sysml nor in .kerml: say --language")
+    return found
+
+
+def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Text:
+    """The text laid out, or the findings of the parser."""
+    from sysmlc.diagnostics import Sink
+    from sysmlc.diagnostics.render import make_report
+    from sysmlc.language.layout import layout
+    from sysmlc.language.text import parse
+    from sysmlc.sources import Source
+
+    before = data.decode("utf-8-sig")
+    sink, source = Sink(), Source(name, data)
+    parse(before, name, language, sink, source)
+    if sink.has_errors():
+        return _Text(name, path, before, None, tuple(make_report(sink, [source]).findings))
+    return _Text(name, path, before, layout(before, language))
+
+
+def _show(findings: "list[Finding]") -> None:
+    from sysmlc.cli import session
+
+    if findings:
+        session.show(findings, session.Settings())
+
+
+def _diff(text: _Text) -> Iterator[str]:
+    before, after = (part.splitlines(keepends=True) for part in (text.before, text.after or ""))
+    for line in difflib.unified_diff(before, after, text.name, text.name):
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def _write(texts: list[_Text]) -> None:
+    from sysmlc.output import write
+
+    for text in texts:
+        if text.path is None:
+            sys.stdout.buffer.write((text.after or text.before).encode())
+        elif text.is_changed and text.after is not None:
+            target = text.path.resolve()
+            mode = target.stat().st_mode
+            write(target, text.after.encode())
+            target.chmod(mode)
+    files = [text for text in texts if text.path is not None]
+    changed = sum(text.is_changed for text in files)
+    if files:
+        click.echo(f"{changed} of {len(files)} files laid out anew", err=True)

@@ -1,0 +1,104 @@
+"""``sysmlc format``: files laid out in place, checked or compared."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.cli.group import sysmlc
+
+ROOT = Path(__file__).parents[2]
+UGLY = "package P{part def A;}\n"
+NEAT = "package P {\n    part def A;\n}\n"
+
+
+def run(*arguments, given=None):
+    return CliRunner().invoke(sysmlc, ["format", *map(str, arguments)], input=given)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "ugly.sysml").write_text(UGLY)
+    (tmp_path / "neat.kerml").write_text("package P {\n    class A;\n}\n")
+    (tmp_path / "other.txt").write_text(UGLY)
+    return tmp_path
+
+
+def test_files_of_a_folder_are_laid_out_in_place(folder):
+    made = run(folder)
+    assert (made.exit_code, made.stderr) == (0, "1 of 2 files laid out anew\n")
+    assert (folder / "ugly.sysml").read_text() == NEAT
+    assert (folder / "other.txt").read_text() == UGLY
+    assert run(folder).stderr == "0 of 2 files laid out anew\n"
+
+
+def test_check_names_what_would_change_and_writes_nothing(folder):
+    made = run(folder, "--check")
+    assert (made.exit_code, made.stdout) == (1, f"{folder.as_posix()}/ugly.sysml\n")
+    assert (folder / "ugly.sysml").read_text() == UGLY
+    assert run(folder / "neat.kerml", "--check").exit_code == 0
+
+
+def test_diff_shows_what_would_change_and_writes_nothing(folder):
+    made = run(folder / "ugly.sysml", "--diff")
+    assert made.exit_code == 1
+    assert made.stdout.splitlines()[3:] == [
+        "-package P{part def A;}",
+        "+package P {",
+        "+    part def A;",
+        "+}",
+    ]
+    assert (folder / "ugly.sysml").read_text() == UGLY
+
+
+def test_a_diff_tells_of_a_missing_line_end(tmp_path):
+    (tmp_path / "a.sysml").write_text("part a ;")
+    assert "\\ No newline at end of file\n" in run(tmp_path / "a.sysml", "--diff").stdout
+
+
+def test_standard_input_goes_to_standard_output():
+    made = run("-", given=UGLY)
+    assert (made.exit_code, made.stdout, made.stderr) == (0, NEAT, "")
+    assert run("-", "--language", "kerml", given="class A ;").stdout == "class A;\n"
+
+
+def test_a_file_with_syntax_errors_is_left_alone_and_the_others_are_not(folder):
+    (folder / "wrong.sysml").write_text("package P{part def ;;}")
+    made = run(folder)
+    assert made.exit_code == 1
+    assert "wrong.sysml:1:21" in made.stderr
+    assert (folder / "wrong.sysml").read_text() == "package P{part def ;;}"
+    assert (folder / "ugly.sysml").read_text() == NEAT
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("gone.sysml", None, "cannot be opened: No such file or directory"),
+        ("model.uml", b"", "ends neither in .sysml nor in .kerml: say --language"),
+        ("latin.sysml", b"part '\xe4';", "is no text in UTF-8: byte 6 begins no character"),
+    ],
+)
+def test_what_cannot_be_read_is_exit_code_2(tmp_path, name, content, message):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    made = run(tmp_path / name)
+    assert (made.exit_code, made.stderr) == (
+        2,
+        f"sysmlc: {(tmp_path / name).as_posix()} {message}\n",
+    )
+
+
+def test_a_link_stays_a_link_and_rights_stay(tmp_path):
+    real, link = tmp_path / "real.sysml", tmp_path / "link.sysml"
+    real.write_text(UGLY)
+    real.chmod(0o600)
+    link.symlink_to(real)
+    run(link)
+    assert (link.is_symlink(), real.read_text(), real.stat().st_mode & 0o777) == (True, NEAT, 0o600)
+
+
+def test_the_example_of_the_documentation_is_what_comes_out():
+    page = (ROOT / "docs/format-sysml-v2.md").read_text(encoding="utf-8")
+    before, after = (part.partition("```")[0] for part in page.split("```sysml\n")[1:])
+    assert run("-", given=before).stdout == after

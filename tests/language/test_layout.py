@@ -1,0 +1,287 @@
+"""The canonical layout: where lines end, what stands between tokens, what stays."""
+
+import pytest
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.layout import layout
+from sysmlc.language.text import parse
+
+CASES = {
+    "one member a line": (
+        "package P{part def A;part def B{attribute x;}}",
+        """\
+package P {
+    part def A;
+    part def B {
+        attribute x;
+    }
+}
+""",
+    ),
+    "spaces around operators": (
+        "part a:A:>b:>>c::d=1+ -2*(x.y#(1)-3)**2;attribute z:=not q and p==null;",
+        """\
+part a : A :> b :>> c::d = 1 + -2 * (x.y#(1) - 3)**2;
+attribute z := not q and p == null;
+""",
+    ),
+    "multiplicities have no space, units have one": (
+        "part w : W [ 4 ] ordered;attribute m [0 .. *] = 5[kg];attribute v = x [m / s ** 2];",
+        """\
+part w : W[4] ordered;
+attribute m[0..*] = 5 [kg];
+attribute v = x [m/s**2];
+""",
+    ),
+    "multiplicities of ends stand apart": (
+        "connect [1] a to [0 .. 1] b;",
+        "connect [1] a to [0..1] b;\n",
+    ),
+    "names with sharp brackets": ("part def < 'R 1' > Robot;", "part def <'R 1'> Robot;\n"),
+    "imports": (
+        "private import A :: * ;public import B::C::**;private import D::*[ @Safe ];",
+        "private import A::*;\npublic import B::C::**;\nprivate import D::*[@Safe];\n",
+    ),
+    "metadata": (
+        "# safe part def A{@ Rated{level=3;}}filter @ Safe or not @ Old;",
+        """\
+#safe part def A {
+    @Rated {
+        level = 3;
+    }
+}
+filter @Safe or not @Old;
+""",
+    ),
+    "conjugation and typing by several": (
+        "part def A{port p: ~ P;port q:P,Q;}",
+        "part def A {\n    port p : ~P;\n    port q : P, Q;\n}\n",
+    ),
+    "calls": (
+        "attribute x=f( a,b )->g (c) -> collect{in y;y.z}.k;",
+        "attribute x = f(a, b)->g(c)->collect {in y; y.z}.k;\n",
+    ),
+    "conditions": (
+        "attribute x=if a>b? a else b;attribute y=z ?? 1;",
+        "attribute x = if a > b ? a else b;\nattribute y = z ?? 1;\n",
+    ),
+    "empty bodies": ("part def A{}part def B{ }", "part def A {}\npart def B {}\n"),
+    "else and until stay with the body before them": (
+        "action a{if x{action b;}else if y{action c;}else{action d;}loop{action e;}until z;}",
+        """\
+action a {
+    if x {
+        action b;
+    } else if y {
+        action c;
+    } else {
+        action d;
+    }
+    loop {
+        action e;
+    } until z;
+}
+""",
+    ),
+    "then begins a line, the target of a transition does not": (
+        "state s{state a{state b;}then c;state c;transition t first a do action{action q;}then c;}",
+        """\
+state s {
+    state a {
+        state b;
+    }
+    then c;
+    state c;
+    transition t first a do action {
+        action q;
+    } then c;
+}
+""",
+    ),
+    "one blank line at most": (
+        "package P {\n\n\npart def A;\n\n\n\npart def B;\npart def C;\n\n}\n\n\n",
+        "package P {\n    part def A;\n\n    part def B;\n    part def C;\n}\n",
+    ),
+    "notes stay where they are": (
+        "// head\n\npackage P { // of P\n//own\npart def A;//after\n\n// last\n}// end\n//tail",
+        """\
+// head
+
+package P { // of P
+    //own
+    part def A; //after
+
+    // last
+} // end
+//tail
+""",
+    ),
+    "a note within a member ends the line": (
+        "part a // why\n: A\n// because\n= b;",
+        "part a // why\n        : A\n        // because\n        = b;\n",
+    ),
+    "notes of several lines": (
+        "package P {\n//* one\n   two */ part def A;}",
+        "package P {\n    //* one\n       two */\n    part def A;\n}\n",
+    ),
+    "short documentation stands behind its word": (
+        "part def A{doc\n/* short */part b;}",
+        "part def A {\n    doc /* short */\n    part b;\n}\n",
+    ),
+    "long documentation stands below it": (
+        "part def A { doc /*\n        * one\n  *   two\n*\n */ }",
+        """\
+part def A {
+    doc
+    /*
+     * one
+     *   two
+     *
+     */
+}
+""",
+    ),
+    "comments without asterisks move as a whole": (
+        "package P {\n  comment about A /* one\n      two\n    three */\n  part def A; }",
+        """\
+package P {
+    comment about A
+    /* one
+      two
+    three */
+    part def A;
+}
+""",
+    ),
+    "a result stands alone": (
+        "calc def C{in x;x*2}constraint{a<b}",
+        "calc def C {\n    in x;\n    x * 2\n}\nconstraint {\n    a < b\n}\n",
+    ),
+}
+
+
+@pytest.mark.parametrize(("given", "expected"), CASES.values(), ids=CASES)
+def test_layout(given, expected):
+    assert layout(given, "sysml") == expected
+    assert layout(expected, "sysml") == expected
+
+
+def test_kerml_has_its_own_words():
+    given = "class A specializes B{feature x:C[1];inv{x>0}}"
+    expected = """\
+class A specializes B {
+    feature x : C[1];
+    inv {
+        x > 0
+    }
+}
+"""
+    assert layout(given, "kerml") == expected
+
+
+def test_long_members_are_broken_at_clauses():
+    given = (
+        "part theWholeProductionLine : ProductionLineOfTheSecondHall[1..*] ordered :> "
+        "everyProductionLine, everythingThatMoves redefines formerProductionLine;"
+    )
+    assert layout(given, "sysml") == (
+        "part theWholeProductionLine : ProductionLineOfTheSecondHall[1..*] ordered\n"
+        "        :> everyProductionLine, everythingThatMoves redefines formerProductionLine;\n"
+    )
+
+
+def test_long_expressions_are_broken_outside_of_parentheses():
+    given = f"attribute total = {' + '.join(f'part{i}.weightOf({i}, mass)' for i in range(8))};"
+    lines = layout(given, "sysml").splitlines()
+    assert all(len(line) <= 100 for line in lines)
+    assert [line.strip()[0] for line in lines[1:]] == ["+"] * (len(lines) - 1)
+
+
+def test_long_body_expressions_get_lines():
+    given = (
+        "attribute total = collection->select {in item : SomethingThatHasAWeight; "
+        "item.weight > theLowestWeight}->size();"
+    )
+    assert layout(given, "sysml") == (
+        "attribute total = collection->select {\n"
+        "    in item : SomethingThatHasAWeight;\n"
+        "    item.weight > theLowestWeight\n"
+        "}->size();\n"
+    )
+
+
+def test_line_ends_are_kept():
+    assert layout("package P {\r\n}\r\n", "sysml") == "package P {}\r\n"
+    assert layout("part a;\r\npart b;\r\npart c;\n", "sysml").count("\r\n") == 3
+
+
+@pytest.mark.parametrize("text", ["", "\n\n", "// note", "/* comment */"])
+def test_small_texts(text):
+    assert layout(text, "sysml") == text.strip() + ("\n" if text.strip() else "")
+
+
+def test_texts_and_names_keep_what_is_in_them():
+    text = "attribute 'a  b' = \"x  {;}  // no note\";\n"
+    assert layout(text, "sysml") == text
+
+
+# -- the corpus ----------------------------------------------------------------------------------
+
+
+def shape(document):
+    """A tree as values that can be compared."""
+    found, stack = [], [(document.root, 0)]
+    while stack:
+        node, depth = stack.pop()
+        relations = [(one.kind, one.reference.chain) for one in node.relations]
+        facts = {name: plain(fact) for name, fact in node.facts.items()}
+        found.append(
+            (
+                depth,
+                node.kind,
+                node.name,
+                node.short,
+                node.membership,
+                node.role,
+                node.visibility,
+                facts,
+                relations,
+            )
+        )
+        stack.extend((member, depth + 1) for member in reversed(node.members))
+    return found
+
+
+def plain(fact):
+    """Line ends of a file that mixes them become equal."""
+    return fact.replace("\r\n", "\n") if isinstance(fact, str) else fact
+
+
+@pytest.mark.corpus
+def test_files_of_the_corpus_stay_what_they_are(corpus):
+    paths = [
+        path
+        for folder in ("omg-release", "ice-lab", "showcase")
+        for path in sorted((corpus / "sysml2" / folder).rglob("*.*ml"))
+        if path.suffix in (".sysml", ".kerml")
+    ]
+    assert len(paths) == 312
+    for path in paths:
+        text, language, sink = path.read_bytes().decode(), path.suffix[1:], Sink()
+        made = layout(text, language)
+        assert layout(made, language) == made, path
+        before, after = (shape(parse(one, "m", language, sink)) for one in (text, made))
+        assert (before == after, len(sink)) == (True, 0), path
+
+
+@pytest.mark.corpus
+def test_lines_of_the_corpus_fit(corpus):
+    """Only names, texts, comments and notes are longer than a line."""
+    paths = sorted((corpus / "sysml2/ice-lab").rglob("*.sysml"))
+    lines = [
+        line
+        for path in paths
+        for line in layout(path.read_text(encoding="utf-8"), "sysml").splitlines()
+    ]
+    long = [line for line in lines if len(line) > 100 and not line.strip().startswith(("*", "/"))]
+    assert [line for line in long if '"' not in line and "//" not in line] == []
