@@ -21,25 +21,31 @@ def parse(
 
     What is wrong in it is reported; the tree has what was understood.
     """
-    from sysmlc.language.text import machine, tables
+    from sysmlc.language.text import machine, nesting, tables
     from sysmlc.language.text.brackets import settle
     from sysmlc.language.text.build.namespaces import root
+    from sysmlc.language.text.errors import Errors
     from sysmlc.language.text.scan import scan
 
     made = tables.load(language)
     tokens = scan(text, made.types)
     settle(made, tokens)
+    deep = nesting.too_deep(made, tokens)
+    if deep >= 0:
+        tokens.end_at(deep, made.types.end)
     stack: Stack = [None, 0, made.start]
     wrong = machine.run(made, _rules(language), tokens, stack, 0) if len(tokens.types) > 1 else -1
-    if wrong >= 0 or tokens.faults:
-        from sysmlc.language.text.errors import Errors
-
-        errors = Errors(tokens, path, language, sink, source)
-        errors.faults()
-        if wrong >= 0:
-            _recover(made, language, tokens, stack, wrong, errors)
+    errors = Errors(tokens, path, language, sink, source)
+    if deep >= 0 or tokens.faults:
+        errors.faults(deep)
+    if wrong >= 0:
+        _recover(made, language, tokens, stack, wrong, errors)
     members: list[Node] = stack[3] if len(stack) > 3 and isinstance(stack[3], list) else []
-    return Document(path, language, root(tokens, members), text, source)
+    top = root(tokens, members)
+    if nesting.has_long_expression(made, tokens):
+        for node in nesting.cut(top):
+            errors.deep(node.start)
+    return Document(path, language, top, text, source)
 
 
 def _recover(

@@ -5,6 +5,7 @@ from codecs import BOM_UTF8
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import rules
 from sysmlc.language.text.grammar_words import expectation
+from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.text.scan import Fault, Tokens
 from sysmlc.sources import Source
 
@@ -38,11 +39,6 @@ class Errors:
         self._unclosed_told = False
         self.beginnings: list[str] = []
 
-    @property
-    def exhausted(self) -> bool:
-        """Whether no more errors are told."""
-        return self._left <= 0
-
     def report(self, rule: Rule, offset: int, **facts: object) -> None:
         """Report at a character of the text."""
         self._left -= 1
@@ -56,10 +52,18 @@ class Errors:
         """The byte of the file at which a character of the text starts."""
         return self._mark + len(self._tokens.text[:offset].encode("utf-8", "replace"))
 
-    def faults(self) -> None:
-        """What the scanner could not read."""
+    def deep(self, start: int) -> None:
+        """Something is nested too deep; what follows from that is not told."""
+        self.report(rules.DEEP, start, limit=LIMIT)
+        self._left = 0
+
+    def faults(self, deep: int) -> None:
+        """What the scanner could not read; the token, if not -1, where the text is too deep."""
+        if deep >= 0:
+            self.deep(self._tokens.starts[deep])
         for fault in self._tokens.faults:
-            rule = rules.CHARACTER if fault.what == "character" else rules.UNCLOSED
+            is_open = fault.what in ("comment", "quote", "string")
+            rule = rules.UNCLOSED if is_open else rules.CHARACTER
             what, advice = _FAULTS[fault.what]
             shown = _shown(fault)
             self.report(rule, fault.start, what=what.format(shown), advice=advice)
@@ -143,6 +147,7 @@ _FAULTS = {
     "comment": ("this comment", "put */ where it ends"),
     "quote": ("this name in quotes", "put ' where it ends, in the same line"),
     "string": ("this text in quotes", 'put " where it ends'),
+    "number": ("{} is too large a number", "write it with an exponent below 308"),
     "character": (
         "{} belongs to no name, symbol or text",
         "take it away, or put the name that it belongs to in single quotes: 'Größe'",
@@ -154,7 +159,7 @@ def _shown(fault: Fault) -> str:
     char = fault.text
     if char == "\ufffd":
         return "what is not UTF-8 here"
-    return f"'{char}'" if char.isprintable() else f"the character U+{ord(char[0]):04X}"
+    return f"'{_short(char)}'" if char.isprintable() else f"the character U+{ord(char[0]):04X}"
 
 
 def _short(text: str) -> str:

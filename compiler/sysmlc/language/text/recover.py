@@ -137,6 +137,7 @@ class Recovery:
                 return index
             if symbol == "{":
                 tokens.insert(index, self._words[_HELPER])
+                self._last = index + 1
             return index + 1 if symbol == ";" else index
         return -1
 

@@ -59,7 +59,7 @@ DEEP = rule(
     "SM198",
     "v2-too-deep",
     Severity.ERROR,
-    "this is nested more than {limit} levels deep: nothing from here on is read",
+    "this is nested more than {limit} levels deep and is not read",
     why="No model that a person wrote is so deep; tools that read it would stop without a word.",
     wrong="part p { " * 201 + "} " * 201,
     right="part p { " * 3 + "} " * 3,

@@ -27,7 +27,9 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """What cannot be read: an unclosed ``comment``, ``quote`` or ``string``, or a ``character``."""
+    """What cannot be read: a ``comment``, ``quote`` or ``string`` that is never closed, a
+    ``character`` of no token, a ``number`` that is too large.
+    """
 
     what: str
     start: int
@@ -58,6 +60,12 @@ class Tokens:
         self.types.insert(index, kind)
         self.starts.insert(index, place)
         self.ends.insert(index, place)
+
+    def end_at(self, index: int, end: int) -> None:
+        """Let the text end before a token."""
+        self.types[index:] = bytes([end])
+        self.ends[index:] = [self.starts[index]]
+        del self.starts[index + 1 :]
 
     def name(self, index: int) -> str:
         """The name that a token writes, quotes and escapes undone (KerML 8.2.2.3)."""

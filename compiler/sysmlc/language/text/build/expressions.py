@@ -1,13 +1,15 @@
 """Primary expressions: literals, names, chains, invocations, sequences (KerML 8.2.5.8)."""
 
+import math
 from collections.abc import Sequence
 
 from sysmlc.language.text.build.operators import ARGUMENT, argument
 from sysmlc.language.text.build.owning import FEATURE, made, own
-from sysmlc.language.text.scan import Tokens, unquoted
+from sysmlc.language.text.scan import Fault, Tokens, unquoted
 from sysmlc.language.tree import Node, Reference, Relation
 
-_NAMES = ("FeatureReferenceExpression", "FeatureChainExpression")
+_DIGITS = 1_000
+"""Digits of the longest natural number that is taken."""
 
 
 def _literal(
@@ -20,9 +22,13 @@ def _literal(
 
 def _number(tokens: Tokens, at: int, begin: int, token: int) -> Node:
     written = tokens[token]
-    if written.isdigit():
+    if written.isdigit() and len(written) <= _DIGITS:
         return _literal("LiteralInteger", int(written), tokens, begin, at)
-    return _literal("LiteralRational", float(written), tokens, begin, at)
+    value = float(written)
+    if math.isinf(value):
+        tokens.faults.append(Fault("number", tokens.starts[token], written))
+        value = 0.0
+    return _literal("LiteralRational", value, tokens, begin, at)
 
 
 def _string(tokens: Tokens, at: int, begin: int, token: int) -> Node:

@@ -1,0 +1,64 @@
+"""A text that is nested deeper than any model is read up to there, and told."""
+
+import re
+from functools import cache
+
+from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.tables import Tables
+from sysmlc.language.tree import Node
+
+LIMIT = 200
+"""Bodies, parentheses and brackets within one another; operators within one another too."""
+_OPENING, _CLOSING = "{([", "})]"
+
+
+def too_deep(tables: Tables, tokens: Tokens) -> int:
+    """The token that opens one level too many, or -1."""
+    words, types = tables.types.words, tokens.types
+    if sum(types.count(words[symbol]) for symbol in _OPENING) <= LIMIT:
+        return -1
+    steps = {words[symbol]: 1 for symbol in _OPENING} | {words[symbol]: -1 for symbol in _CLOSING}
+    depth = 0
+    for index, kind in enumerate(types):
+        depth = max(depth + steps.get(kind, 0), 0)
+        if depth > LIMIT:
+            return index
+    return -1
+
+
+def has_long_expression(tables: Tables, tokens: Tokens) -> bool:
+    """Whether so many tokens stand between the ends of members that operators may nest deep."""
+    return _long(tables).search(tokens.types) is not None
+
+
+@cache
+def _long(tables: Tables) -> re.Pattern[bytes]:
+    ends = bytes(tables.types.words[symbol] for symbol in ";{}")
+    return re.compile(b"[^" + re.escape(ends) + b"]{%d}" % LIMIT)
+
+
+def cut(root: Node) -> list[Node]:
+    """Take expressions away that are nested deeper than the limit; those taken.
+
+    Elements of a sequence are beside one another, though the tree has them within one another.
+    """
+    taken = []
+    waiting = [(root, 0)]
+    while waiting:
+        node, depth = waiting.pop()
+        if depth > LIMIT and node.owner is not None:
+            taken.append(_uproot(node))
+            continue
+        for member in reversed(node.members):
+            beside = member.facts.get("operator") == "," == node.facts.get("operator")
+            waiting.append((member, depth if beside else depth + 1))
+    return taken
+
+
+def _uproot(node: Node) -> Node:
+    """Remove the whole expression that a node is in from the element that has it."""
+    while node.owner is not None and node.owner.membership == "ParameterMembership":
+        node = node.owner
+    if node.owner is not None and node in node.owner.members:
+        node.owner.members.remove(node)
+    return node
