@@ -1,4 +1,4 @@
-"""Trees as bytes: a file that was parsed before is not parsed again, its nodes are made when asked."""
+"""Trees as bytes: what was parsed before is not parsed again, nodes are made when asked for."""
 
 import marshal
 import sys
@@ -16,7 +16,7 @@ _SIZE = 12
 
 
 class StoredNode(Node):
-    """A node of a stored tree: its members, relations and facts are made when they are asked for."""
+    """A node of a stored tree: members, relations and facts are made when they are asked for."""
 
     __slots__ = ("_packed",)
 
@@ -35,9 +35,10 @@ class StoredNode(Node):
         self.owner = owner
         self._packed = packed
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
+        made: object
         if name == "members":
-            made: Any = [StoredNode(packed, self) for packed in self._packed[9]]
+            made = [StoredNode(packed, self) for packed in self._packed[9]]
         elif name == "relations":
             made = [Relation(k, Reference(c, s, e)) for k, c, s, e in self._packed[10]]
         elif name == "facts":

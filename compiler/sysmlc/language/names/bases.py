@@ -121,10 +121,19 @@ BY_MEMBERSHIP: dict[tuple[str, str], str] = {
     ("StateSubactionMembership", "do"): "States::StateAction::doAction",
     ("StateSubactionMembership", "exit"): "States::StateAction::exitAction",
     ("TransitionFeatureMembership", "trigger"): "Actions::TransitionAction::accepter",
-    ("TransitionFeatureMembership", "guard"): "TransitionPerformances::TransitionPerformance::guard",
+    (
+        "TransitionFeatureMembership",
+        "guard",
+    ): "TransitionPerformances::TransitionPerformance::guard",
     ("TransitionFeatureMembership", "effect"): "Actions::TransitionAction::effect",
-    ("RequirementConstraintMembership", "assumption"): "Requirements::RequirementCheck::assumptions",
-    ("RequirementConstraintMembership", "requirement"): "Requirements::RequirementCheck::constraints",
+    (
+        "RequirementConstraintMembership",
+        "assumption",
+    ): "Requirements::RequirementCheck::assumptions",
+    (
+        "RequirementConstraintMembership",
+        "requirement",
+    ): "Requirements::RequirementCheck::constraints",
     ("ViewRenderingMembership", ""): "Views::View::viewRendering",
     ("FramedConcernMembership", ""): "Requirements::RequirementCheck::concerns",
     ("StakeholderMembership", ""): "Requirements::RequirementCheck::stakeholders",
@@ -181,7 +190,9 @@ PLACES: tuple[Place, ...] = (
     Place(_PERFORM, _ACTION, "Performances::Performance::enclosedPerformances", False),
     Place(frozenset({"ExhibitStateUsage"}), _PART, "Parts::Part::exhibitedStates", False),
     Place(
-        kinds_of("CalculationUsage"), _both("Calculation"), "Calculations::Calculation::subcalculations"
+        kinds_of("CalculationUsage"),
+        _both("Calculation"),
+        "Calculations::Calculation::subcalculations",
     ),
     Place(kinds_of("CaseUsage"), _CASE, "Cases::Case::subcases"),
     Place(
@@ -207,7 +218,9 @@ PLACES: tuple[Place, ...] = (
         _both("Requirement"),
         "Requirements::RequirementCheck::subrequirements",
     ),
-    Place(kinds_of("ConcernUsage"), _both("Requirement"), "Requirements::RequirementCheck::concerns"),
+    Place(
+        kinds_of("ConcernUsage"), _both("Requirement"), "Requirements::RequirementCheck::concerns"
+    ),
     Place(kinds_of("ViewpointUsage"), _both("View"), "Views::View::viewpointSatisfactions"),
     Place(kinds_of("ViewUsage"), _both("View"), "Views::View::subviews", False),
     Place(kinds_of("RenderingUsage"), _both("Rendering"), "Views::Rendering::subrenderings", False),

@@ -1,4 +1,4 @@
-"""Filters of imports: conditions about metadata, decided where they are constant (KerML 7.2.5.4)."""
+"""Filters of imports: conditions about metadata, decided where constant (KerML 7.2.5.4)."""
 
 from typing import TYPE_CHECKING
 
@@ -7,7 +7,7 @@ from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
-    from sysmlc.language.names.lookup import Lookup
+    from sysmlc.language.names.generals import Generals
 
 Value = str | bool | int | float | None
 """What an expression gives; None is the empty sequence."""
@@ -18,7 +18,7 @@ class UndecidedError(Exception):
     """An expression that is not constant, or not understood: nothing is kept out because of it."""
 
 
-def passes(condition: Node, hit: Node, lookup: "Lookup") -> bool:
+def passes(condition: Node, hit: Node, lookup: "Generals") -> bool:
     """Whether a member may be imported; one that is not decided may."""
     element = lookup.element(hit)
     if element is None:
@@ -29,7 +29,7 @@ def passes(condition: Node, hit: Node, lookup: "Lookup") -> bool:
         return True
 
 
-def evaluate(expression: Node, element: Node, lookup: "Lookup") -> Value:
+def evaluate(expression: Node, element: Node, lookup: "Generals") -> Value:
     """The value of a model-level expression for an annotated element. Raises UndecidedError."""
     if "value" in expression.facts:
         return expression.facts["value"]
@@ -42,7 +42,7 @@ def evaluate(expression: Node, element: Node, lookup: "Lookup") -> Value:
     return _operated(str(operator), operands, element, lookup)
 
 
-def _operated(operator: str, operands: list[Node], element: Node, lookup: "Lookup") -> Value:
+def _operated(operator: str, operands: list[Node], element: Node, lookup: "Generals") -> Value:
     values = [evaluate(operand, element, lookup) for operand in operands]
     if operator in ("and", "&"):
         return all(value is True for value in values)
@@ -59,7 +59,7 @@ def _operated(operator: str, operands: list[Node], element: Node, lookup: "Looku
     raise UndecidedError(operator)
 
 
-def _classified(expression: Node, element: Node, lookup: "Lookup") -> bool:
+def _classified(expression: Node, element: Node, lookup: "Generals") -> bool:
     """``@M``: the element has metadata of that type, or its metaclass is that one."""
     for member in expression.members:
         for relation in member.relations:
@@ -70,7 +70,7 @@ def _classified(expression: Node, element: Node, lookup: "Lookup") -> bool:
     raise UndecidedError("type")
 
 
-def _has(element: Node, wanted: Node, lookup: "Lookup") -> bool:
+def _has(element: Node, wanted: Node, lookup: "Generals") -> bool:
     if _is_reflective(wanted):
         return is_a(element.kind, wanted.name or "")
     return any(lookup.conforms(one, wanted) for one in metadata(element))
@@ -91,7 +91,7 @@ def metadata(element: Node) -> list[Node]:
     return [member for member in element.members if member.kind in _METADATA]
 
 
-def _referred(expression: Node, element: Node, lookup: "Lookup") -> Value:
+def _referred(expression: Node, element: Node, lookup: "Generals") -> Value:
     """``M::x`` or ``(as M).x``: what the metadata of the element gives for a feature."""
     for relation in expression.relations:
         if relation.kind == "Membership":
@@ -101,7 +101,7 @@ def _referred(expression: Node, element: Node, lookup: "Lookup") -> Value:
     raise UndecidedError("reference")
 
 
-def _given(feature: Node, element: Node, lookup: "Lookup") -> Value:
+def _given(feature: Node, element: Node, lookup: "Generals") -> Value:
     for usage in metadata(element):
         for member in usage.members:
             if feature in lookup.redefined(member):
@@ -111,7 +111,7 @@ def _given(feature: Node, element: Node, lookup: "Lookup") -> Value:
     return None
 
 
-def _bound(feature: Node, element: Node, lookup: "Lookup") -> Value:
+def _bound(feature: Node, element: Node, lookup: "Generals") -> Value:
     for member in feature.members:
         if member.membership == "FeatureValue":
             return evaluate(member, element, lookup)

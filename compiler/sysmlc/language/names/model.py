@@ -1,4 +1,4 @@
-"""A model with its names resolved, and the questions that others ask about it (KerML 8.2.3.5)."""
+"""A model with its names resolved, and the questions that others ask about it."""
 
 import gc
 from collections.abc import Sequence
@@ -9,15 +9,21 @@ from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import implied, semantic
 from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
-from sysmlc.language.names.lookup import Hits, Lookup
-from sysmlc.language.names.unresolved import report
+from sysmlc.language.names.lookup import Lookup
+from sysmlc.language.names.members import Hits
+from sysmlc.language.names.rules import CYCLE
+from sysmlc.language.names.unresolved import report, subject
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
-_EXPRESSIONS = kinds_of("InstantiationExpression") | kinds_of("LiteralExpression") | {
-    "FeatureReferenceExpression",
-    "MetadataAccessExpression",
-    "NullExpression",
-}
+_EXPRESSIONS = (
+    kinds_of("InstantiationExpression")
+    | kinds_of("LiteralExpression")
+    | {
+        "FeatureReferenceExpression",
+        "MetadataAccessExpression",
+        "NullExpression",
+    }
+)
 
 
 _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
@@ -50,7 +56,7 @@ class Model:
     # What others ask
 
     def find(self, qualified_name: str) -> Node | None:
-        """The element with a qualified name such as ``Parts::Part``, in the model or the library."""
+        """The element with a qualified name such as ``Parts::Part``, here or in the library."""
         if qualified_name not in self._found:
             names = tuple(part.strip("'") for part in qualified_name.split("::"))
             hits = self._roots(names[0])
@@ -100,7 +106,7 @@ class Model:
         return [t for t in found if not any(t is not o and t in self.supers(o) for o in found)]
 
     def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
-        """Members of a namespace: own ones, inherited ones that nothing redefines, imported ones."""
+        """Members of a namespace: own, inherited that nothing redefines, imported ones."""
         from sysmlc.language.names.listing import members
 
         return members(self, node, inherited=inherited, imported=imported)
@@ -230,6 +236,7 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     try:
         for document in model.documents:
             _resolve(document, model.lookup, sink)
+        _report_cycles(model, sink)
         model.add_implied()
     finally:
         if collecting:
@@ -240,7 +247,18 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
 def _resolve(document: Document, lookup: Lookup, sink: Sink) -> None:
     for node in document.root.walk():
         for relation in node.relations:
-            if relation.reference.targets is None and lookup.target(node, relation) is None:
+            if (
+                relation.reference.targets is None and lookup.target(node, relation) is None
+            ) or relation.reference.target is None:
                 report(lookup, document, node, relation, sink)
-            elif relation.reference.target is None:
-                report(lookup, document, node, relation, sink)
+
+
+def _report_cycles(model: Model, sink: Sink) -> None:
+    for node in model.lookup.cycles:
+        document = model.document(node)
+        if document in model.documents:
+            circle = [n for n in model.lookup.reached(node) if node in model.lookup.reached(n)]
+            names = [f"'{model.name(n)}'" for n in circle if n is not node]
+            through = f" through {' and '.join(names)}" if names else ""
+            place = subject(document, node, node.name_start)
+            sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)

@@ -12,7 +12,7 @@ from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
-    from sysmlc.language.names.lookup import Lookup
+    from sysmlc.language.names.generals import Generals
 
 _ROLES = {
     "EndFeatureMembership": "end",
@@ -52,7 +52,7 @@ def own(scope: Node, wanted: str) -> list[Node]:
     return [member for member in scope.members if role(member) == wanted]
 
 
-def redefined(feature: Node, lookup: "Lookup") -> list[Node]:
+def redefined(feature: Node, lookup: "Generals") -> list[Node]:
     """What a feature without a written redefinition redefines by its position."""
     owner, wanted = feature.owner, role(feature)
     if not wanted or owner is None or owner.kind in _SKIPPED:
@@ -66,7 +66,7 @@ def redefined(feature: Node, lookup: "Lookup") -> list[Node]:
     return [one for one in found if one is not feature]
 
 
-def gather(scope: Node, wanted: str, lookup: "Lookup") -> list[Node]:
+def gather(scope: Node, wanted: str, lookup: "Generals") -> list[Node]:
     """The features of ``scope`` with that role, those that it inherits after its own."""
     features = own(scope, wanted)
     for general in lookup.all_generals(scope):

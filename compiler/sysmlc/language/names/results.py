@@ -1,39 +1,25 @@
 """Where names after the dot of an expression are looked up: the feature or type of its result."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sysmlc.language.names.contents import FEATURES
-from sysmlc.language.names.contexts import INSTANTIATIONS
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
-    from sysmlc.language.names.lookup import Lookup
+    from sysmlc.language.names.generals import Generals
 
-_FIRST = frozenset({"SelectExpression", "IndexExpression"})
-"""Expressions whose result is like that of their first operand."""
 _FIRST_OPERATORS = frozenset({",", "??", "[", "#"})
 _CASTS = frozenset({"as", "meta"})
 
 
-def result(expression: Node, lookup: "Lookup") -> Node | None:
+def result(expression: Node, lookup: "Generals") -> Node | None:
     """The feature or type whose members follow a dot after ``expression``; None if unknown."""
-    kind = expression.kind
-    if kind == "FeatureReferenceExpression":
-        return _referent(expression, lookup)
-    if kind == "FeatureChainExpression":
-        return named(expression, lookup)
-    if kind in _FIRST:
-        return _operand(expression, 0, lookup)
-    if kind == "CollectExpression":
-        return _operand(expression, 1, lookup)
-    if kind == "OperatorExpression":
-        return _operator(expression, lookup)
-    if kind in INSTANTIATIONS:
-        return _invoked(expression, lookup)
-    return None
+    found = _RESULTS.get(expression.kind)
+    return found(expression, lookup) if found is not None else None
 
 
-def named(expression: Node, lookup: "Lookup") -> Node | None:
+def named(expression: Node, lookup: "Generals") -> Node | None:
     """The element that an expression names: a referent, a target, a function or type."""
     for relation in expression.relations:
         if relation.kind == "Membership":
@@ -41,7 +27,7 @@ def named(expression: Node, lookup: "Lookup") -> Node | None:
     return None
 
 
-def _referent(expression: Node, lookup: "Lookup") -> Node | None:
+def _referent(expression: Node, lookup: "Generals") -> Node | None:
     body = next((m for m in expression.members if m.kind == "Expression"), None)
     if body is None:
         return named(expression, lookup)
@@ -49,12 +35,12 @@ def _referent(expression: Node, lookup: "Lookup") -> Node | None:
     return result(last, lookup) if last else None
 
 
-def _operand(expression: Node, index: int, lookup: "Lookup") -> Node | None:
+def _operand(expression: Node, index: int, lookup: "Generals") -> Node | None:
     operands = [m for m in expression.members if m.membership == "ParameterMembership"]
     return result(operands[index], lookup) if index < len(operands) else None
 
 
-def _operator(expression: Node, lookup: "Lookup") -> Node | None:
+def _operator(expression: Node, lookup: "Generals") -> Node | None:
     operator = expression.facts.get("operator")
     if operator in _CASTS:
         return _cast(expression, lookup)
@@ -63,7 +49,7 @@ def _operator(expression: Node, lookup: "Lookup") -> Node | None:
     return _operand(expression, 0, lookup) if operator in _FIRST_OPERATORS else None
 
 
-def _cast(expression: Node, lookup: "Lookup") -> Node | None:
+def _cast(expression: Node, lookup: "Generals") -> Node | None:
     for member in reversed(expression.members):
         for relation in member.relations:
             if relation.kind == "FeatureTyping":
@@ -71,7 +57,7 @@ def _cast(expression: Node, lookup: "Lookup") -> Node | None:
     return None
 
 
-def _invoked(expression: Node, lookup: "Lookup") -> Node | None:
+def _invoked(expression: Node, lookup: "Generals") -> Node | None:
     """The result parameter of a function or calculation, else the type that is instantiated."""
     invoked = named(expression, lookup)
     if invoked is None or expression.kind == "ConstructorExpression":
@@ -79,18 +65,19 @@ def _invoked(expression: Node, lookup: "Lookup") -> Node | None:
     return returned(invoked, lookup, set()) or (invoked if invoked.kind not in FEATURES else None)
 
 
-def of_value(feature: Node, lookup: "Lookup") -> Node | None:
+def of_value(feature: Node, lookup: "Generals") -> Node | None:
     """What a feature that specialises nothing has its members from: the result of its value.
 
     KerML 8.4.4.10.2, checkFeatureValuationSpecialization; a loop variable has those of the
     sequence, what is given to a constructor those of the type.
     """
     membership = feature.membership
-    if membership == "ReturnParameterMembership" and feature.owner is not None:
-        if feature.owner.kind == "ConstructorExpression":
-            return named(feature.owner, lookup)
     owner = feature.owner
-    if owner is not None and owner.kind == "ForLoopActionUsage" and feature is owner.members[0]:
+    if owner is None:
+        return None
+    if membership == "ReturnParameterMembership" and owner.kind == "ConstructorExpression":
+        return named(owner, lookup)
+    if owner.kind == "ForLoopActionUsage" and feature is owner.members[0]:
         feature = next((m for m in owner.members if m.membership == "ParameterMembership"), feature)
     elif "direction" in feature.facts:
         return None
@@ -100,7 +87,7 @@ def of_value(feature: Node, lookup: "Lookup") -> Node | None:
     return None
 
 
-def returned(function: Node, lookup: "Lookup", seen: set[Node]) -> Node | None:
+def returned(function: Node, lookup: "Generals", seen: set[Node]) -> Node | None:
     """The result parameter that a function or expression owns or inherits."""
     seen.add(function)
     for member in function.members:
@@ -111,3 +98,24 @@ def returned(function: Node, lookup: "Lookup", seen: set[Node]) -> Node | None:
         if found is not None:
             return found
     return None
+
+
+def _first(expression: Node, lookup: "Generals") -> Node | None:
+    return _operand(expression, 0, lookup)
+
+
+def _second(expression: Node, lookup: "Generals") -> Node | None:
+    return _operand(expression, 1, lookup)
+
+
+_RESULTS: dict[str, Callable[[Node, "Generals"], Node | None]] = {
+    "FeatureReferenceExpression": _referent,
+    "FeatureChainExpression": named,
+    "SelectExpression": _first,
+    "IndexExpression": _first,
+    "CollectExpression": _second,
+    "OperatorExpression": _operator,
+    "InvocationExpression": _invoked,
+    "TriggerInvocationExpression": _invoked,
+    "ConstructorExpression": _invoked,
+}

@@ -24,3 +24,46 @@ package Plant {
 }
 """,
 )
+
+CYCLE = rule(
+    "SM206",
+    "specialization-cycle",
+    Severity.WARNING,
+    "'{name}' specialises itself{through}",
+    why="Everything in a circle of specialisations has the same instances (KerML 1.0, 8.3.3.1.10), "
+    "so each of them inherits all of the others. That is allowed, and hardly ever meant.",
+    help="remove one specialisation of the circle",
+    wrong="""\
+package Plant {
+    part def Gate :> Door;
+    part def Door :> Gate;
+}
+""",
+    right="""\
+package Plant {
+    part def Gate :> Door;
+    part def Door;
+}
+""",
+)
+CORE = rule(
+    "SM207",
+    "no-standard-library",
+    Severity.WARNING,
+    "no standard library of SysML v2 was found: {count} names are taken from sysmlc's own core",
+    why="Types, units and functions come from the standard library. The core of sysmlc has only "
+    "their names and how they specialise each other, and only those that production models use.",
+    help="install the distribution 'sysml', or say where the library is: --library PATH or "
+    "the environment variable SYSML_LIBRARY_PATH",
+    wrong="""\
+package Plant {
+    private import ScalarValues::Real;
+    attribute speed : Real;
+}
+""",
+    right="""\
+package Plant {
+    attribute speed;
+}
+""",
+)

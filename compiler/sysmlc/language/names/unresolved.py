@@ -1,23 +1,23 @@
 """Names that lead nowhere, told in the modeller's words, once for each use."""
 
 import re
-from collections.abc import Iterable
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.names import contexts
-from sysmlc.language.names.lookup import GENERAL, Lookup
+from sysmlc.language.names.advice import advice
+from sysmlc.language.names.generals import GENERAL
+from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import UNRESOLVED
 from sysmlc.language.tree import Document, Node, Reference, Relation
-from sysmlc.suggest import did_you_mean
 
-_LINK = re.compile(r"(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+)(?:\s*::\s*(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+))*")
+_LINK = re.compile(
+    r"(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+)(?:\s*::\s*(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+))*"
+)
 """A qualified name, one link of a chain."""
 
 
-def report(
-    lookup: Lookup, document: Document, node: Node, relation: Relation, sink: Sink
-) -> None:
+def report(lookup: Lookup, document: Document, node: Node, relation: Relation, sink: Sink) -> None:
     """Report the first name of a chain that was not found."""
     reference = relation.reference
     index = len(reference.targets or ())
@@ -34,13 +34,11 @@ def report(
         subject(document, node, _place(document, reference, index)),
         name=name,
         inside=inside,
-        advice=did_you_mean(reference.chain[index][-1], _known(lookup, before or start.scope)),
+        advice=advice(lookup, relation, reference.chain[index], start, before),
     )
 
 
-def _before(
-    node: Node, lookup: Lookup, reference: Reference, start: contexts.Start
-) -> Node | None:
+def _before(node: Node, lookup: Lookup, reference: Reference, start: contexts.Start) -> Node | None:
     """The element in which the name that was not found should be, if it is not a scope."""
     if reference.targets:
         return reference.targets[-1]
@@ -72,12 +70,6 @@ def _place(document: Document, reference: Reference, index: int) -> int:
         return reference.start
     links = list(_LINK.finditer(document.text, reference.start, reference.end))
     return links[index].start() if index < len(links) else reference.start
-
-
-def _known(lookup: Lookup, scope: Node | None) -> Iterable[str]:
-    while scope is not None:
-        yield from lookup.owned(scope)
-        scope = contexts.outer(scope)
 
 
 def subject(document: Document, node: Node, offset: int) -> Subject:

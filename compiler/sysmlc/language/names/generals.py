@@ -1,0 +1,168 @@
+"""What elements specialise and redefine, as the text says and by position."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import contexts, positions, results
+from sysmlc.language.tree import Node, Reference, Relation
+
+GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+"""Relations whose target gives its members to the node that has them."""
+
+
+class Generals(ABC):
+    """Generals of elements, each found once.
+
+    ``cuts`` counts the questions that were not answered because their answer is being looked
+    for already: what was found while one was cut is not remembered, so cycles end and change no
+    other answer. ``cycles`` has elements that specialise themselves, one of each circle.
+    """
+
+    def __init__(
+        self, implied: Callable[[Node], list[Node]], by_role: Callable[[Node], list[Node]]
+    ) -> None:
+        self._implied = implied
+        self._by_role = by_role
+        self.cuts = 0
+        self.cycles: list[Node] = []
+        self._active: set[Reference] = set()
+        self._cyclic: set[Node] = set()
+        self._pointed: set[Node] = set()
+        self._generals: dict[Node, list[Node]] = {}
+        self._silently: dict[Node, list[Node]] = {}
+        self._redefining: dict[Node, list[Node]] = {}
+        self._positions: dict[Node, list[Node]] = {}
+        self._at_positions: dict[tuple[Node, str], list[Node]] = {}
+
+    @abstractmethod
+    def target(self, node: Node, relation: Relation) -> Node | None:
+        """The element that a relation of ``node`` leads to; None when a name leads nowhere."""
+
+    @abstractmethod
+    def element(self, hit: Node) -> Node | None:
+        """What a member stands for: the element of an alias, else the member itself."""
+
+    def generals(self, node: Node) -> list[Node]:
+        """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
+        known = self._generals.get(node)
+        if known is not None:
+            return known
+        before = self.cuts
+        found: list[Node] = []
+        links: list[Node] = []
+        for relation in node.relations:
+            if not relation.implied and (
+                relation.kind in GENERAL
+                or (relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS)
+            ):
+                target = self.target(node, relation)
+                if target is not None and target not in found:
+                    if relation.kind == "FeatureChaining":
+                        found = [one for one in found if one not in links]
+                        links.append(target)
+                    found.append(target)
+        if self.cuts == before:
+            self._generals[node] = found
+            if node in self._pointed:
+                self._find_cycle(node)
+            self._pointed.update(found)
+        return found
+
+    def _find_cycle(self, node: Node) -> None:
+        """Note when ``node`` specialises itself: those in a circle inherit all of each other."""
+        back = {one for one in self.reached(node) if node in self.reached(one)}
+        if back:
+            self.cycles.append(node)
+            self._cyclic |= back | {node}
+
+    def reached(self, node: Node) -> list[Node]:
+        """What ``node`` specialises, as far as it is known, the nearest first."""
+        reached: dict[Node, None] = {}
+        waiting = [node]
+        while waiting:
+            for general in self._generals.get(waiting.pop(0), ()):
+                if general not in reached:
+                    reached[general] = None
+                    waiting.append(general)
+        return list(reached)
+
+    def conforms(self, node: Node, general: Node) -> bool:
+        """Whether ``node`` specialises ``general`` as the text says, in any number of steps."""
+        seen, waiting = {node}, [node]
+        while waiting:
+            one = waiting.pop()
+            if one is general:
+                return True
+            for other in self.generals(one):
+                if other not in seen:
+                    seen.add(other)
+                    waiting.append(other)
+        return False
+
+    def redefined(self, feature: Node) -> set[Node]:
+        """What a feature redefines, directly or not."""
+        found: set[Node] = set()
+        waiting = [feature]
+        while waiting:
+            node = waiting.pop()
+            for relation in node.relations:
+                if relation.kind == "Redefinition":
+                    target = self.target(node, relation)
+                    if target is not None and target not in found:
+                        found.add(target)
+                        waiting.append(target)
+            waiting += [other for other in self.by_position(node) if other not in found]
+            found.update(self.by_position(node))
+        return found
+
+    def _silent(self, scope: Node) -> list[Node]:
+        """The members of ``scope`` that redefine something though the text does not say so."""
+        known = self._redefining.get(scope)
+        if known is None:
+            known = self._redefining[scope] = [m for m in scope.members if positions.counts(m)]
+        return known
+
+    def by_position(self, feature: Node) -> list[Node]:
+        """What a feature redefines because of its position or its membership."""
+        known = self._positions.get(feature)
+        if known is None:
+            if not positions.counts(feature):
+                return []
+            before = self.cuts
+            self._positions[feature] = []
+            known = positions.redefined(feature, self) or self._by_role(feature)
+            if self.cuts == before:
+                self._positions[feature] = known
+            else:
+                del self._positions[feature]
+        return known
+
+    def at_positions(self, scope: Node, role: str) -> list[Node]:
+        """The features of a type with one role by position, own ones before inherited ones."""
+        key = (scope, role)
+        known = self._at_positions.get(key)
+        if known is None:
+            before = self.cuts
+            self._at_positions[key] = []
+            known = positions.gather(scope, role, self)
+            if self.cuts == before:
+                self._at_positions[key] = known
+            else:
+                del self._at_positions[key]
+        return known
+
+    def all_generals(self, node: Node) -> list[Node]:
+        """What ``node`` specialises as the text says and what it may implicitly."""
+        return [*self.generals(node), *self._silent_generals(node)]
+
+    def _silent_generals(self, node: Node) -> list[Node]:
+        known = self._silently.get(node)
+        if known is None:
+            before = self.cuts
+            value = results.of_value(node, self) if not self.generals(node) else None
+            known = [*self.by_position(node), *self._implied(node)]
+            known = [value, *known] if value is not None and value is not node else known
+            if self.cuts == before:
+                self._silently[node] = known
+        return known
