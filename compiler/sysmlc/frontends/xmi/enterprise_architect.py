@@ -5,6 +5,7 @@ without a stereotype, and stereotypes without an application; the rest is notati
 """
 
 import re
+from collections import deque
 from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Verdict
@@ -29,9 +30,9 @@ def is_extension(document: Document, row: int) -> bool:
 
 def finish(context: Context) -> None:
     """Read what the extensions say of elements; applications must be in the graph already."""
-    waiting = [row for extension in context.extensions for row in _parts(context, extension)]
+    waiting = deque(row for extension in context.extensions for row in _parts(context, extension))
     while waiting:
-        row = waiting.pop()
+        row = waiting.popleft()
         _element(context, row)
         waiting.extend(_parts(context, row))
 
@@ -56,7 +57,10 @@ def _parts(context: Context, row: int) -> Iterator[int]:
 def _details(context: Context, row: int, id: str) -> None:
     place = context.unit.find(context.lowered, id, False)
     element = context.graph.get(place[0].gids[place[1]]) if place else None
-    if element is None or place is None or not place[0].own[place[1]]:
+    if element is None or place is None:
+        return
+    if not place[0].own[place[1]]:
+        _note_on_part(context, element, row, id)
         return
     for child in context.document.children(row):
         reader = _DETAILS.get(context.document.features[child])
@@ -64,13 +68,20 @@ def _details(context: Context, row: int, id: str) -> None:
             reader(context, element, child)
 
 
-def _note(context: Context, element: Element, row: int) -> None:
+def _note_on_part(context: Context, element: Element, row: int, id: str) -> None:
+    """A note on what is no element of its own (an event, say) is one on the element around it."""
+    for feature in ("properties", "documentation"):
+        for child in context.document.children(row, feature):
+            _note(context, element, child, id)
+
+
+def _note(context: Context, element: Element, row: int, about: str = "") -> None:
     values = context.document.attributes[row]
     text = values.get("value") or values.get("documentation", "")
     if text:
         context.verdicts[row] = Verdict.MAPPED
     if text and not any(_says(one, text) for one in context.graph.owned(element)):
-        id = derived_id(element.id, "documentation")
+        id = derived_id(about or element.id, "documentation")
         note = Element(id, Kind.COMMENT, "", element.id, *_place(context, row))
         note.attrs["body"] = text
         context.graph.add(note)

@@ -23,6 +23,7 @@ from sysmlc.frontends.xmi import (
     snapshot_parts,
     snapshot_use,
     unread,
+    unread_tags,
 )
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
@@ -109,6 +110,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
     for context in contexts:
         dangling.report(context)
         unread.report(context)
+        unread_tags.report(context)
         account.account(context, sink, coverage)
 
 

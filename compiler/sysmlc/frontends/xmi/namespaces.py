@@ -7,6 +7,11 @@ _UML = re.compile(
     r"https?://www\.eclipse\.org/uml2/[\d.]+/UML/?$"
     r"|https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/?$"
 )
+_SYSML = re.compile(
+    r"https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)/\w"
+    r"|https?://(www|schema)\.omg\.org/spec/SysML/"
+    r"|https?://www\.sparxsystems\.com/profiles/SysML"
+)
 _SETTINGS = re.compile(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[IC]/?$|/spec/MOF/")
 
 
@@ -23,3 +28,8 @@ def is_uml(namespace: str) -> bool:
 def is_settings(namespace: str) -> bool:
     """Whether its elements say how a tool shows or stores the model, and nothing else."""
     return _SETTINGS.search(namespace) is not None
+
+
+def is_sysml(namespace: str) -> bool:
+    """Whether its elements are applications of SysML's own stereotypes."""
+    return _SYSML.match(namespace) is not None

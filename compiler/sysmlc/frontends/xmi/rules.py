@@ -110,6 +110,19 @@ UNKNOWN_ATTRIBUTE = rule(
     wrong="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstrct='true'/>",
     right="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='true'/>",
 )
+UNKNOWN_TAG = rule(
+    "SM125",
+    "unknown-tag",
+    Severity.WARNING,
+    "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is none of SysML",
+    why="No stereotype of SysML 1.0 to 1.7 has a tag of this name. The graph keeps it, but nothing "
+    "is made of it, and what was meant is missing: a flow property without direction, for "
+    "instance, goes both ways.",
+    help="look whether the name is spelt as SysML does; else keep the value in a stereotype of "
+    "your own",
+    wrong="<PortsAndFlows:FlowProperty base_Property='p' directon='in'/>",
+    right="<PortsAndFlows:FlowProperty base_Property='p' direction='in'/>",
+)
 DANGLING_OPPOSITE = rule(
     "SM116",
     "dangling-opposite",
