@@ -14,6 +14,7 @@ import pytest
 
 import sysmlc
 from sysmlc.values.slotted import dataclass
+from sysmlc.values.slotted import replace as ours_replace
 
 MADE: dict[str, Callable[..., Any]] = {"ours": dataclass, "theirs": dataclasses.dataclass}
 
@@ -179,6 +180,16 @@ def test_others_change():
         value.three = 3
 
 
+@pytest.mark.parametrize("build", [_full, _open, _child])
+@pytest.mark.parametrize("name", MADE)
+def test_replaced(build, name):
+    value = build(MADE[name])(1)
+    assert ours_replace(value, one=2) == replace(value, one=2)
+    assert ours_replace(value, one=2).two == value.two
+    with pytest.raises(TypeError, match="unexpected keyword argument 'none'"):
+        ours_replace(value, none=2)
+
+
 def test_replaced_and_asked_by_the_standard_library():
     value = _full(dataclass)(1)
     assert replace(value, two="c").two == "c"
@@ -268,8 +279,8 @@ def test_every_value_of_the_project_is_declared_with_it():
         for alias in node.names
     }
     wrong = sorted(
-        f"{path}: say 'from sysmlc.values import dataclass'"
+        f"{path}: say 'from sysmlc.values import {name}'"
         for path, name in names
-        if name == "dataclass"
+        if name in ("dataclass", "replace")
     )
     assert wrong == []

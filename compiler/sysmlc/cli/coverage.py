@@ -1,12 +1,12 @@
 """``sysmlc coverage``: what became of every element of the models."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from sysmlc.cli import options
+from sysmlc.values import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -138,9 +138,10 @@ def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
 
 def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, int]) -> Feature:
     type_ = query.type_of(graph, element)
-    names = _names(graph, type_)
+    family = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    names = _names(family)
     is_integer = bool(names & _INTEGER) or _untyped_default(element, type_, int)
-    domain = _domain(graph, element, type_, names, is_integer)
+    domain = _domain(graph, element, family, names, is_integer)
     is_assumed = domain is None and is_integer
     if is_assumed:
         domain = _assume(element, names, assumed)
@@ -153,21 +154,19 @@ def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, 
 
 
 def _domain(
-    graph: Graph, element: Element, type_: Element | None, names: set[str], is_integer: bool
+    graph: Graph, element: Element, family: list[Element], names: set[str], is_integer: bool
 ) -> Domain | None:
+    type_ = family[0] if family else None
     if type_ is not None and type_.kind is Kind.ENUMERATION:
         literals = tuple(_enumeration(graph, type_).values())
         return EnumerationDomain(literals) if literals else None
     if names & _BOOLEAN or _untyped_default(element, type_, bool):
         return BooleanDomain()
-    return _declared_range(graph, element, type_) if is_integer else None
+    return _declared_range(graph, element, family) if is_integer else None
 
 
-def _names(graph: Graph, type_: Element | None) -> set[str]:
-    """What the type and those that it specialises are called, here or where they come from."""
-    if type_ is None:
-        return set()
-    family = [type_, *query.generals(graph, type_)]
+def _names(family: list[Element]) -> set[str]:
+    """What a type and those that it specialises are called, here or where they come from."""
     hrefs = (str(one.attrs.get("href", "")).rpartition("#")[2] for one in family)
     return {one.name.lower() for one in family} | {href.lower() for href in hrefs}
 
@@ -188,9 +187,8 @@ def _assume(element: Element, names: set[str], assumed: tuple[int, int]) -> Doma
 # -- ranges ------------------------------------------------------------------------------------
 
 
-def _declared_range(graph: Graph, element: Element, type_: Element | None) -> Domain | None:
+def _declared_range(graph: Graph, element: Element, types: list[Element]) -> Domain | None:
     """Range from tagged values, a bounded default, or constraints, in this order."""
-    types = [] if type_ is None else [type_, *query.generals(graph, type_)]
     for one in (element, *types):
         found = _tagged_range(graph, one)
         if found is not None:
@@ -241,22 +239,28 @@ def _constraints(
 ) -> Iterator[tuple[frozenset[str], Expression]]:
     owner = graph.owner(element)
     if owner is not None:
-        yield from _bodies(graph, owner, frozenset([element.name, f"self.{element.name}"]))
+        names = frozenset([element.name, f"self.{element.name}"])
+        yield from _bodies(graph, owner, names, element.name)
     yield from _bodies(graph, element, frozenset([element.name, "self", "value"]))
     for type_ in types:
         yield from _bodies(graph, type_, frozenset(["self", "value", "self.value", type_.name]))
 
 
 def _bodies(
-    graph: Graph, owner: Element, names: frozenset[str]
+    graph: Graph, owner: Element, names: frozenset[str], word: str = ""
 ) -> Iterator[tuple[frozenset[str], Expression]]:
+    """What constrains the owner; all that can hold one of the names, which all have the word."""
     constraints = {one.id: one for one in graph.owned(owner) if one.kind is Kind.CONSTRAINT}
     for one in graph.sources(owner, Edge.REFERENCES):
         if one.kind is Kind.CONSTRAINT:
             constraints[one.id] = one
+    is_plain = word.isidentifier()
     for constraint in constraints.values():
+        body = str(constraint.attrs.get("body", ""))
+        if is_plain and word not in body and "'" not in body:
+            continue
         try:
-            yield names, parse_expression(str(constraint.attrs.get("body", "")))
+            yield names, parse_expression(body)
         except ExpressionError:
             continue
 

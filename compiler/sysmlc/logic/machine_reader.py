@@ -1,7 +1,5 @@
 """From the graph to ``Machine``: vertices, regions, transitions and their variables."""
 
-from dataclasses import replace
-
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.context import context_of
@@ -33,7 +31,7 @@ from sysmlc.logic.machine_support import initial_of, is_supported
 from sysmlc.logic.machine_triggers import Parts, occurrence_of
 from sysmlc.logic.names import Names, identifier, unique
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 NONDETERMINISTIC = rule(
     "SM422",

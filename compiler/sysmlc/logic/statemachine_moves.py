@@ -5,7 +5,6 @@ completion before triggers; chosen where several compete.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
@@ -32,7 +31,7 @@ from sysmlc.logic.machine_checks import simultaneous
 from sysmlc.logic.samples import arrow, choice, machine
 from sysmlc.logic.simplify import simplified, tidy
 from sysmlc.logic.statemachine_paths import LIMIT, Explorer, Path, TooManyPaths
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 SATURATES = rule(
     "SM428",

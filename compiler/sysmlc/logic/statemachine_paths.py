@@ -5,7 +5,7 @@ that it leaves; its values are formulas over the step before.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain, IntegerDomain
@@ -13,7 +13,7 @@ from sysmlc.logic.elaborate import condition, meaning
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machine import INACTIVE, Action, Assign, Machine, Raise, Transition, Vertex
 from sysmlc.logic.simplify import is_satisfiable, rebuild, substitute
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 
 class TooManyPaths(Exception):  # noqa: N818 - a limit, not a fault

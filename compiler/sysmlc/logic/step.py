@@ -20,7 +20,7 @@ UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; one step a run to completion.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from itertools import product
 
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
@@ -42,7 +42,7 @@ from sysmlc.logic.machine import (
     WhenTold,
 )
 from sysmlc.logic.step_values import value_of
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 Valuation = dict[str, Literal]
 

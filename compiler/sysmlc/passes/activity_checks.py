@@ -1,7 +1,6 @@
 """Checks of a token graph: starts, reachability, guards, and one token a flow."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
@@ -19,6 +18,7 @@ from sysmlc.logic.tokens import (
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes import activity_search
 from sysmlc.passes.activity_drawing import CannotPlayError
+from sysmlc.values import replace
 
 _MOST_VALUATIONS = 20_000
 """Guards over more valuations than this are taken as neither exclusive nor exhaustive."""

@@ -5,11 +5,10 @@ the part that its tokens come from, or to the part that they go to when they com
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.identity import derived_id
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 NODES = (
     Kind.ACTION,

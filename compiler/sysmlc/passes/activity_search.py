@@ -5,13 +5,11 @@ The others are played in all ways (``token_search``): the game moves everything 
 flow may be empty again before the next token comes.
 """
 
-from dataclasses import replace
-
 from sysmlc.logic import token_net, token_search
 from sysmlc.logic.names import Names
 from sysmlc.logic.tokens import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.passes.activity_collapse import collapse
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _NAMED_FROM = 50
 """The parts of a condition times its uses; from here on it gets a name."""

@@ -6,7 +6,6 @@ reach, the choice at an object node that several flows leave, and the order of a
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
@@ -22,6 +21,7 @@ from sysmlc.passes.activity_nodes import add_node
 from sysmlc.passes.activity_raising import Raising
 from sysmlc.passes.activity_regions import FLOWS, interruptible_regions
 from sysmlc.passes.activity_structured import add_order, add_start
+from sysmlc.values import replace
 
 
 def build(

@@ -1,7 +1,6 @@
 """Constraints written in LTL, as conjuncts of the contracts of what they constrain."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
@@ -10,6 +9,7 @@ from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.ltl import FormulaError, parse_formula
+from sysmlc.values import replace
 
 _MACHINE = """\
 Class c "Lamp"

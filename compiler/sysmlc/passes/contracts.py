@@ -6,7 +6,6 @@ conjuncts of the contract of the component that they constrain.
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -16,7 +15,7 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.machine_reader import MachineOptions, read_machine
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.contract_formulas import add_formulas
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 SAME_COMPONENT = rule(
     "SM500",

@@ -1,7 +1,7 @@
 """From an activity to the graph of a task (services) or of a service (machine functions)."""
 
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import field
 from itertools import pairwise
 
 from sysmlc.ir import Element, Kind, query
@@ -18,7 +18,7 @@ from sysmlc.recipe.expression import Apply, Expr, Lit
 from sysmlc.recipe.flow import in_order, reachable
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 
 @dataclass(slots=True)

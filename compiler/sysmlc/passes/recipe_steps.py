@@ -1,13 +1,13 @@
 """What the nodes of an activity are in a recipe graph: services, functions, control, the rest."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import SERVICES, Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import assignments, optional, read
 from sysmlc.recipe.model import Node
+from sysmlc.values import replace
 
 CONTROL_KINDS = {
     "initial": "initial",

@@ -1,7 +1,6 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 
 from sysmlc.recipe.expression import Lit
 from sysmlc.recipe.flow import duration, forward_edges, reachable
@@ -19,7 +18,7 @@ from sysmlc.recipe.model import (
     SubTask,
     Task,
 )
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _NO_TIME = Range(0, 0)
 

@@ -4,11 +4,11 @@ The loop node keeps the guards of its edges; ``body`` edges go round again, ``ex
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from sysmlc.recipe.expression import Expr, either, negated
 from sysmlc.recipe.flow import cycles, entries
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
+from sysmlc.values import replace
 
 
 def with_loops(graph: FlowGraph, bounds: Mapping[str, int]) -> FlowGraph:

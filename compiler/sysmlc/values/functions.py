@@ -27,6 +27,7 @@ def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
     names = tuple(fields)
     shown = tuple(name for name, one in fields.items() if one.repr)
     made: dict[str, object] = {"__match_args__": names, "__repr__": _repr(shown)}
+    made["__replace__"] = _replacement(names)
     if frozen:
         made |= {"__setattr__": _refuse_setting, "__delattr__": _refuse_deleting}
         made |= _states(names)
@@ -116,6 +117,18 @@ def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
         co_varnames=tuple(new.get(name, name) for name in code.co_varnames),
         co_names=tuple(new.get(name, name) for name in code.co_names),
     )
+
+
+def _replacement(names: Sequence[str]) -> Callable[..., object]:
+    """What Python has from 3.13 on, for ``copy.replace``."""
+
+    def __replace__(self: object, /, **changes: object) -> object:  # noqa: N807
+        for name in names:
+            if name not in changes:
+                changes[name] = getattr(self, name)
+        return self.__class__(**changes)
+
+    return __replace__
 
 
 def _repr(names: Sequence[str]) -> Callable[[object], str]:

@@ -43,6 +43,14 @@ def dataclass(
     return decorate if cls is None else decorate(cls)
 
 
+def replace(value: _T, /, **changes: object) -> _T:
+    """``dataclasses.replace``."""
+    make = getattr(type(value), "__replace__", None)
+    if make is None:
+        return cast("_T", dataclasses.replace(cast("Any", value), **changes))
+    return cast("_T", make(value, **changes))
+
+
 def _is_simple(cls: type) -> bool:
     """Whether all fields are plain arguments of ``__init__``."""
     annotations = cls.__dict__.get("__annotations__", {})  # noqa: RUF063 - its module takes 7 ms

@@ -15,7 +15,6 @@ from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_literal
 
-_COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 _INFIX = {
     Op.AND: "&&",
     Op.OR: "||",
@@ -89,12 +88,16 @@ class Spelling:
                 return print_literal(value)
             case Var(name, primed):
                 return _proposition(name, primed, True, self._known)
-            case Apply(op, args) if op in _COMPARISONS:
-                return self._written_out(formula)
-            case Apply(op, args) if op in _PREFIX:
-                return f"{_PREFIX[op]}{self._operand(args[0])}"
             case Apply(op, args):
-                return f" {_INFIX[op]} ".join(map(self._operand, args))
+                return self._applied(formula, op, args)
+
+    def _applied(self, formula: Formula, op: Op, args: tuple[Formula, ...]) -> str:
+        infix = _INFIX.get(op)
+        if infix:
+            return f" {infix} ".join(map(self._operand, args))
+        if op in _PREFIX:
+            return f"{_PREFIX[op]}{self._operand(args[0])}"
+        return self._written_out(formula)
 
     def _operand(self, formula: Formula) -> str:
         text = self.text(formula)

@@ -1,7 +1,6 @@
 """Diagrams as their authors drew them: their choice of elements and lines, our notation."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 
 from sysmlc.backends.plantuml import (
@@ -28,7 +27,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 NOT_DRAWN = rule(
     "SM702",

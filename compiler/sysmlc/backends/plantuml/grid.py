@@ -2,10 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from math import ceil, sqrt
 
 from sysmlc.backends.plantuml.views import Box, BoxView, Line
+from sysmlc.values import replace
 
 _FEW = 3
 _ROW = 5

@@ -5,7 +5,7 @@ A feature of a part stands in a box of its own, with the path as its name (claus
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field, replace
+from dataclasses import field
 
 from sysmlc.backends.plantuml import labels, measured, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -15,7 +15,7 @@ from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _ROW = 40
 

@@ -1,10 +1,10 @@
 """Cut a large graph of nodes into views that one can read, without losing a line."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from sysmlc.backends.plantuml import split
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
+from sysmlc.values import replace
 
 
 def pieces(view: GraphView, limit: int = split.LIMIT) -> list[GraphView]:

@@ -1,7 +1,6 @@
 """The front end for SysML v2 and KerML."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Sink
@@ -26,11 +25,11 @@ class SysmlFrontend:
 
     def with_cache(self, cache: "Cache") -> "SysmlFrontend":
         """The same front end, with a cache for parsed files."""
-        return replace(self, cache=cache)
+        return SysmlFrontend(self.name, self.library, cache)
 
     def with_library(self, path: str) -> "SysmlFrontend":
         """The same front end, with the standard library from a folder or an archive."""
-        return replace(self, library=path)
+        return SysmlFrontend(self.name, path, self.cache)
 
     def detect(self, source: Source) -> float:
         """Sure for text that begins with a word of SysML, and for its XMI."""
