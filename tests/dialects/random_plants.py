@@ -106,7 +106,10 @@ class Plant:
         self.ports[path_text] = list(self.ports.get(base, ()))
         self.inside[path_text] = list(self.inside.get(base, ()))
         if tag == "AttributeType":
-            self.measure(node)
+            values = self.measure(node)
+            for kind in ("DefaultValue", "Value"):
+                if self.chance(0.2):
+                    add(node, kind).text = self.random.choice(values)
             self.constraints(node)
         self.members(node, path_text, tag)
         if tag == "SystemUnitClass":

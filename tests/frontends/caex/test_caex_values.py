@@ -121,6 +121,16 @@ def test_one_value_is_told_once_a_file():
     assert reading.one("Lib::C::a").attrs["default"] == "two"
 
 
+def test_an_attribute_type_has_values_too():
+    values = "<DefaultValue>1</DefaultValue><Value>two</Value>"
+    reading = Read(LENGTH.replace("/>", f">{values}</AttributeType>"))
+    assert reading.findings == ["SM631: the value 'two' of 'L' is no xs:double"]
+    attrs = reading.one("Types::L").attrs
+    assert (attrs["default"], attrs["default_value"]) == ("two", "1")
+    reading = Read(LENGTH.replace("/>", "><DefaultValue>1</DefaultValue></AttributeType>"))
+    assert reading.one("Types::L").attrs["default"] == 1.0
+
+
 def test_nothing_is_no_value():
     assert Read(of_class(attribute("xs:double", ""))).findings == []
 

@@ -35,7 +35,7 @@ _WRITTEN = {
     ),
     Kind.PORT: ("direction", "multiplicity", "category"),
     Kind.SLOT: ("value", "direction", "multiplicity", "category"),
-    Kind.DATA_TYPE: ("data_type", "unit"),
+    Kind.DATA_TYPE: ("data_type", "unit", "default", "default_value"),
     Kind.CONSTRAINT: ("body", "language"),
     Kind.COMMENT: ("body",),
     Kind.GROUP: ("associated_facet",),

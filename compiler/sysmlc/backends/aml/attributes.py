@@ -177,6 +177,7 @@ def fill_type(book: Book, type_: Element, node: Node, file: File) -> None:
     unit = _unit(book, type_)
     if unit:
         node.attributes["Unit"] = unit
+    _values(type_, node)
     header.semantics(type_, node)
     constraints.write(book, type_, node)
     for one in book.graph.owned(type_):
