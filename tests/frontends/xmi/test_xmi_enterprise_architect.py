@@ -88,6 +88,19 @@ def constraint(values):
     return about("EAID_G", f"<constraints><constraint {values}/></constraints>")
 
 
+def test_a_note_on_an_event_is_one_on_its_package():
+    """An event is no element of the graph; the note of the package itself goes first."""
+    model = (
+        '<packagedElement xmi:type="uml:Package" xmi:id="EAPK_P" name="Signals"><packagedElement'
+        ' xmi:type="uml:TimeEvent" xmi:id="EAID_T" name="tick"/></packagedElement>'
+    )
+    element = '<element xmi:idref="{}"><properties documentation="{}"/></element>'
+    notes = element.format("EAPK_P", "Ours") + element.format("EAID_T", "In seconds")
+    graph = ea(model, f"<elements>{notes}</elements>").graph
+    comments = graph.owned(graph["EAPK_P"])
+    assert [comment.attrs["body"] for comment in comments] == ["Ours", "In seconds"]
+
+
 @pytest.mark.parametrize(
     ("values", "told"),
     [
@@ -104,19 +117,6 @@ def constraint(values):
         ('name="by hand" type="Process"', 'body="by hand" tag.type="Process"'),
     ],
 )
-def test_a_note_on_an_event_is_one_on_its_package():
-    """An event is no element of the graph; the note of the package itself goes first."""
-    model = (
-        '<packagedElement xmi:type="uml:Package" xmi:id="EAPK_P" name="Signals"><packagedElement'
-        ' xmi:type="uml:TimeEvent" xmi:id="EAID_T" name="tick"/></packagedElement>'
-    )
-    element = '<element xmi:idref="{}"><properties documentation="{}"/></element>'
-    notes = element.format("EAPK_P", "Ours") + element.format("EAID_T", "In seconds")
-    graph = ea(model, f"<elements>{notes}</elements>").graph
-    comments = graph.owned(graph["EAPK_P"])
-    assert [comment.attrs["body"] for comment in comments] == ["Ours", "In seconds"]
-
-
 def test_constraints_of_the_extension_are_constraints(values, told):
     reading = ea(extension=constraint(values))
     (found,) = [e for e in reading.graph if e.kind == "Constraint"]
