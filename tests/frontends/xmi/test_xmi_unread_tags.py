@@ -24,6 +24,11 @@ def test_a_misspelt_tag_is_told_once():
     assert reading.graph["sp"].attrs["tag.directon"] == "in"
 
 
+def test_of_an_application_to_nothing_only_that_is_told():
+    reading = read(papyrus(PROPERTY, FLOW.format("gone", 'directon="in"')))
+    assert [finding.rule.code for finding in reading.sink] == ["SM113"]
+
+
 @pytest.mark.parametrize("tag", ["Txt='shall'", "><Txt>shall</Txt></sysml:Requirement"])
 def test_tags_of_magicdraw_as_attributes_and_as_children(tag):
     model = "<packagedElement xmi:type='uml:Class' xmi:id='r' name='R'/>"

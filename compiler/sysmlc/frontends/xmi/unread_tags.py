@@ -41,7 +41,8 @@ def report(context: Context) -> None:
         names = shapes[document.shape_numbers[row]]
         if document.ends[row] != row + 1:
             names += tuple(_unknown(document.features[at] for at in document.children(row)))
-        if names and namespaces.is_sysml(document.namespace(row)):
+        is_read = bool(names) and context.gids[row] in context.graph
+        if is_read and namespaces.is_sysml(document.namespace(row)):
             _approximate(context, row, names)
             for name in dict.fromkeys(names):
                 found.setdefault((document.features[row], name), []).append(row)
