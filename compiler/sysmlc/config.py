@@ -165,10 +165,37 @@ def _severity(word: str) -> Severity | None:
 
 def _pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
     options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
-    levels = table.get("recipe", {}).get("levels")
+    levels = _levels(table.get("recipe", {}).get("levels", {}))
     if levels:
         options.setdefault("recipe", {})["levels"] = dict(sorted(levels.items()))
     return options
+
+
+def _levels(given: dict[str, str | list[str]]) -> dict[str, str]:
+    """Levels by element, said by element (``"A::B" = "task"``) or by level (``task = "A::B"``)."""
+    found: dict[str, str] = {}
+    for key, value in given.items():
+        word = key.replace("-", " ").replace("_", " ")
+        if isinstance(value, list) or (value not in LEVELS and word in LEVELS):
+            names = [value] if isinstance(value, str) else value
+            found |= dict.fromkeys(names, word)
+        else:
+            found[key] = value
+    return found
+
+
+LEVELS = (
+    "recipe",
+    "task",
+    "machine service",
+    "infrastructure service",
+    "machine function",
+    "machine",
+    "material",
+    "capability",
+    "opc ua call",
+)
+"""Levels of a recipe, as docs/ir.md has them."""
 
 
 def _model(entry: dict[str, Any]) -> ModelUnit:

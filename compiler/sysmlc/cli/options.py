@@ -55,6 +55,12 @@ def reading(function: _F) -> _F:
                 metavar="DIR",
                 help="Validate the inputs against the XML Schemas (*.xsd) in a folder.",
             ),
+            click.option(
+                "--library",
+                default="",
+                metavar="PATH",
+                help="Folder or .kpar of the SysML v2 library, instead of the installed one.",
+            ),
             click.option("--verify-each", is_flag=True, help="Check the graph after each pass."),
             click.option(
                 "--print-after",

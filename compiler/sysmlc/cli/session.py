@@ -43,6 +43,7 @@ class Settings:
     templates: Path | None = None
     diagrams: str | None = None
     overlay: tuple[Path, ...] = ()
+    library: str = ""
     has_cache: bool = True
 
     @property
@@ -195,6 +196,7 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         overlays=settings.overlay,
         verify_each=settings.verify_each,
         schemas=_schemas(settings),
+        library=settings.library,
         cache=cache.default() if settings.is_plain else None,
     )
 

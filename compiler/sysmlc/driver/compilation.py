@@ -64,6 +64,8 @@ class Request:
     passes: tuple[Pass, ...] | None = None
     schemas: "Schemas | None" = None
     """Schemas that the inputs are validated against; None: they are not."""
+    library: str = ""
+    """Where the model library of SysML v2 is; empty where it is usually found."""
     cache: Cache | None = None
     """Where front ends keep what they parsed; None: nowhere."""
 
@@ -113,7 +115,7 @@ class Opened:
 def open_unit(request: Request) -> Opened:
     """Read the inputs of a request, and what they refer to; parse nothing."""
     sink = Sink(request.config.rules)
-    frontends = request.frontends or tuple(registry.frontends(request.cache))
+    frontends = request.frontends or tuple(registry.frontends(request.cache, request.library))
     root = unit_root((*request.inputs, *request.overlays), request.config.folder)
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     laid = [path for path in request.inputs if path.name.endswith(SUFFIX)]

@@ -42,6 +42,8 @@ def _parts(
     yield repr((sorted(config.rules.items()), config.suppress, _sorted(config.passes)))
     for found in opened.reading.recognised:
         yield repr((found.source.name, found.source.sha256, found.frontend.name))
+    if any(found.frontend.name == "sysml" for found in opened.reading.recognised):
+        yield from _library(request.library)
     for laid in opened.reading.overlays:
         yield repr((laid.source.name, laid.source.sha256))
     for beside in opened.drawings:
@@ -49,6 +51,14 @@ def _parts(
     for finding in opened.sink:
         yield repr((finding.rule.code, finding.message, finding.subject, opened.root))
     yield from _stamps(_in_folder(request.templates))
+
+
+def _library(path: str) -> Iterator[str]:
+    from sysmlc.language.library import place
+
+    found = place(path or None)
+    yield str(found)
+    yield from _stamps(_in_folder(found))
 
 
 def _sorted(value: object) -> object:

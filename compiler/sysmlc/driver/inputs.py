@@ -12,7 +12,10 @@ from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
 from sysmlc.values import dataclass
 
-SUFFIXES = frozenset({".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".aml", ".amlx", ".caex", ".ir"})
+_SUFFIXES = """
+    .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar
+"""
+SUFFIXES = frozenset(_SUFFIXES.split())
 """How files in a folder end that are worth a look; files that are named may end in anything."""
 
 

@@ -11,7 +11,7 @@ from sysmlc.cache import Cache
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
 from sysmlc.driver.distributions import may_be_named
-from sysmlc.frontends.base import Caching, Frontend
+from sysmlc.frontends.base import Caching, Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.suggest import did_you_mean
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 GROUP = "sysmlc.backends"
 """Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
 
-_FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "ir"))
+_FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
 _BACKENDS = {
     name: f"sysmlc.backends.{name}"
     for name in (
@@ -45,6 +45,7 @@ _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})
 """Ours with ``is_default``: the others are not even imported unless they are asked for."""
 _RULE_PACKAGES = (
     "frontends",
+    "language",
     "logic",
     "recipe",
     "overlay",
@@ -59,9 +60,14 @@ class BackendError(Exception):
     """A back end is unknown, twice there, or cannot be loaded."""
 
 
-def frontends(cache: Cache | None = None) -> list[Frontend]:
-    """The front ends, in the order in which they are asked; those that can use the cache do."""
+def frontends(cache: Cache | None = None, library: str = "") -> list[Frontend]:
+    """The front ends, in the order in which they are asked; those that can use the cache do.
+
+    ``library`` is where the model library of SysML v2 is; empty where it is usually found.
+    """
     found = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
+    if library:
+        found = [one.with_library(library) if isinstance(one, Libraried) else one for one in found]
     if cache is None:
         return found
     return [one.with_cache(cache) if isinstance(one, Caching) else one for one in found]

@@ -40,6 +40,14 @@ class Caching(Protocol):
 
 
 @runtime_checkable
+class Libraried(Protocol):
+    """A front end whose models refer to a library of models."""
+
+    def with_library(self, path: str) -> Frontend:
+        """The same front end, with the library from a folder or an archive."""
+
+
+@runtime_checkable
 class Mentioning(Protocol):
     """A front end whose files refer to others that are not read, but should be there."""
 

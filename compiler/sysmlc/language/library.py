@@ -133,6 +133,12 @@ def find(
     return core(cache)
 
 
+def place(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> Path | None:
+    """The folder or archive that ``find`` reads; None for the small library of our own."""
+    asked = str(path) if path else environment.get(VARIABLE, "")
+    return Path(asked) if asked else _installed()
+
+
 def core(cache: Cache | None = None) -> Library:
     """The small library of our own."""
     from sysmlc import resources

@@ -8,6 +8,7 @@ from sysmlc.frontends.sysml.kinds import BEHAVIOURS, FUNCTIONS
 from sysmlc.frontends.sysml.successions import steps
 from sysmlc.frontends.sysml.values import texts
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import BEHAVIORS
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def perform(low: "Lowering", node: Node, owner: Element) -> None:
     """What a classifier performs: its own behaviour, or one that stands elsewhere."""
     found = nodes.reference(node, "ReferenceSubsetting")
     if found is not None and not node.name and not nodes.body_of(node):
-        low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, found)
+        low.later(lambda: _performed(low, node, owner, found.target))
         return
     typed = nodes.reference(node, "FeatureTyping")
     if typed is not None and not node.name and not nodes.body_of(node):
@@ -61,6 +62,20 @@ def perform(low: "Lowering", node: Node, owner: Element) -> None:
     made = activity(low, node, owner)
     if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
         low.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, made)
+
+
+def _performed(low: "Lowering", node: Node, owner: Element, target: Node | None) -> None:
+    """A behaviour is run by the classifier; a step of one is allocated to it."""
+    known = low.element(target)
+    if known is None or known.kind in BEHAVIORS:
+        low.lead(Edge.CLASSIFIER_BEHAVIOR, owner, target)
+    elif known.kind in (Kind.ACTION, Kind.STRUCTURED):
+        above = low.graph.owner(owner)
+        made = low.add(node, Kind.DEPENDENCY, "", above, role="allocate", subkind="abstraction")
+        low.graph.connect(Edge.CLIENT, made, known)
+        low.graph.connect(Edge.SUPPLIER, made, owner)
+    elif known.kind is Kind.OPERATION:
+        low.approximated(node, "the performance of an operation", "the operation")
 
 
 # -- operations --------------------------------------------------------------------------------

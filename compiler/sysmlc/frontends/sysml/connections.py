@@ -20,11 +20,11 @@ def steps_of(end: Node) -> list[Node | None]:
     found: list[Node | None] = []
     for one in nodes.references(end, "ReferenceSubsetting", "Subsetting", "Redefinition"):
         found += _targets(one.targets, len(one.chain))
-    for one in end.members:
-        inner = nodes.reference(one, "Redefinition", "ReferenceSubsetting")
+    for member in end.members:
+        inner = nodes.reference(member, "Redefinition", "ReferenceSubsetting")
         if inner is not None:
             found += _targets(inner.targets, len(inner.chain))
-        value = nodes.value_of(one)
+        value = nodes.value_of(member)
         if inner is None and value is not None:
             found += steps_of_value(value)
     return found
@@ -54,9 +54,7 @@ def _targets(found: list[Node] | None, number: int) -> list[Node | None]:
 
 def connector(low: "Lowering", node: Node, owner: Element, role: str = "") -> Element:
     """A connection, an interface or a binding between features of a classifier."""
-    made = low.add(
-        node, Kind.CONNECTOR, nodes.name_of(node), owner, role=role, **visibility(node)
-    )
+    made = low.add(node, Kind.CONNECTOR, nodes.name_of(node), owner, role=role, **visibility(node))
     for end in nodes.ends_of(node):
         _end(low, end, made)
     _typed(low, node, made)

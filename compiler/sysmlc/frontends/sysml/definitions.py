@@ -25,7 +25,9 @@ def package(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.external(node)
         return
     kind, subkind = marked(node, Kind.PACKAGE)
-    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node), **outside(node))
+    made = low.add(
+        node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node), **outside(node)
+    )
     low.lower_all(node.members, made)
 
 
@@ -106,8 +108,7 @@ def occurrence(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _is_of_interaction(node: Node) -> bool:
-    is_message = node.kind == "FlowUsage" and bool(node.facts.get("isMessage"))
-    return is_message or node.kind == "EventOccurrenceUsage"
+    return nodes.is_message(node) or node.kind == "EventOccurrenceUsage"
 
 
 def define(

@@ -7,16 +7,14 @@ from sysmlc.sources import Source
 _SUFFIXES = (".sysml", ".kerml")
 _SKIPPED = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s+|//\*.*?\*/|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
 _WORD = re.compile(rb"[a-z]+|#|@")
-_FIRST = frozenset(
-    word.encode()
-    for word in """
+_WORDS = """
     package library standard private public protected import part action state item attribute port
     requirement constraint abstract doc comment enum interface connection flow use verification
     analysis view viewpoint occurrence individual allocation calc concern metadata namespace class
     classifier feature datatype struct assoc behavior function predicate interaction type alias
     dependency variation rendering case rep language locale ref # @ metaclass
-    """.split()
-)
+"""
+_FIRST = frozenset(word.encode() for word in _WORDS.split())
 _XMI = re.compile(rb"<(?:sysml|kerml):[A-Z]\w*[\s>]")
 
 

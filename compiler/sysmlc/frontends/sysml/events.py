@@ -69,7 +69,7 @@ def _received(low: "Lowering", made: Element, payload: Node) -> None:
         low.set(made, subkind="any")
     else:
         low.set(made, subkind="signal")
-        low.later(lambda: [low.lead(Edge.TYPED_BY, made, one) for one in types])
+        low.later(lambda: low.lead_all(Edge.TYPED_BY, made, types))
         low.later(lambda: _by_kind(low, made))
 
 

@@ -6,6 +6,7 @@ from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, visibility
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.query import generals
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -68,15 +69,28 @@ def relate(low: "Lowering", node: Node, made: Element) -> None:
     if any(one.kind == "ConjugatedPortTyping" for one in node.relations):
         low.set(made, conjugated=True)
     redefined = nodes.references(node, "Redefinition")
-    for edge, found in ((Edge.SUBSETS, nodes.subsetted(node)), (Edge.REDEFINES, redefined)):
-        for one in found:
-            if one.target is None or low.document(one.target) is not None:
-                low.refer(edge, made, one)
+    for one in redefined:
+        if one.target is None or low.document(one.target) is not None:
+            low.refer(Edge.REDEFINES, made, one)
+    for one in nodes.subsetted(node):
+        if one.target is None or low.document(one.target) is not None:
+            low.last(lambda one=one: _subset(low, made, one.target))  # type: ignore[misc]
     own = _own_class(low, node, made)
     if own is not None:
         low.graph.connect(Edge.TYPED_BY, made, own)
         return
     low.later(lambda: give_types(low, node, made))
+
+
+def _subset(low: "Lowering", made: Element, target: Node | None) -> None:
+    """A feature that the owner has or inherits is subsetted; one of another type is referred to."""
+    known = low.element(target)
+    owner, above = low.graph.owner(made), None if known is None else low.graph.owner(known)
+    if known is None or owner is None or above is None:
+        low.lead(Edge.SUBSETS, made, target)
+        return
+    is_inherited = above is owner or above in generals(low.graph, owner)
+    low.graph.connect(Edge.SUBSETS if is_inherited else Edge.REFERENCES, made, known)
 
 
 def give_types(low: "Lowering", node: Node, made: Element) -> None:
@@ -110,7 +124,7 @@ def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     kind = Kind.DATA_TYPE if role == "value type" else Kind.CLASS
     own = low.make(node, kind, made.name, owner, role=role, property_specific=True)
     low.made_for[id(node)] = own
-    low.later(lambda: [low.lead(Edge.SPECIALIZES, own, one) for one in types_of(low, node)])
+    low.later(lambda: low.lead_all(Edge.SPECIALIZES, own, types_of(low, node)))
     return own
 
 

@@ -100,8 +100,26 @@ def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
         interactions.message(low, node, owner)
     elif owner is not None and owner.kind in _STEPPED:
         objectflows.flow(low, node, owner)
+    elif nodes.is_message(node):
+        low.unsupported(node)
     else:
         connections.item_flow(low, node, owner)
+
+
+def _event(low: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is not None and owner.kind in _INTERACTING:
+        interactions.event(low, node, owner)
+    elif owner is not None and owner.kind is Kind.USE_CASE:
+        usecases.extension_point(low, node, owner)
+    else:
+        low.unsupported(node)
+
+
+def _succession(low: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is not None and owner.kind in _INTERACTING:
+        interactions.order(low, node, owner)
+    else:
+        low.unsupported(node)
 
 
 def _state(low: Lowering, node: Node, owner: Element | None) -> None:
@@ -183,7 +201,10 @@ HANDLERS: dict[str, Handler] = {
     "UseCaseDefinition": usecases.use_case,
     "UseCaseUsage": usecases.use_case,
     "IncludeUseCaseUsage": usecases.include,
-    "EventOccurrenceUsage": usecases.extension_point,
+    "EventOccurrenceUsage": _event,
+    "SuccessionAsUsage": _succession,
+    "Succession": _succession,
+    "Usage": _feature,
     "RequirementDefinition": requirements.requirement,
     "RequirementUsage": requirements.requirement,
     "ConcernDefinition": requirements.requirement,

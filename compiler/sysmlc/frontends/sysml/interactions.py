@@ -34,7 +34,13 @@ def lifeline(low: "Lowering", node: Node, owner: Element) -> None:
     """A lifeline: what takes part in the interaction."""
     made = low.add(node, Kind.LIFELINE, nodes.name_of(node), owner)
     low.later(lambda: _represent(low, node, made))
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    for one in nodes.body_of(node):
+        if one.kind == "EventOccurrenceUsage":
+            event(low, one, made)
+        elif nodes.is_text(one):
+            low.lower(one, made)
+        else:
+            low.approximated(one, "a feature of a lifeline", "nothing")
 
 
 def _represent(low: "Lowering", node: Node, made: Element) -> None:
@@ -64,17 +70,63 @@ def message(low: "Lowering", node: Node, owner: Element) -> None:
 
 def _join(low: "Lowering", node: Node, made: Element) -> None:
     edges = ((Edge.FLOW_SOURCE, Edge.SEND_EVENT), (Edge.FLOW_TARGET, Edge.RECEIVE_EVENT))
-    for (edge, event), end in zip(edges, nodes.ends_of(node), strict=False):
+    ends = nodes.ends_of(node) or nodes.events_of(node)
+    for (edge, event), end in zip(edges, ends, strict=False):
         known = [one for step in steps_of(end) if (one := low.element(step)) is not None]
         line = next((one for one in known if one.kind is Kind.LIFELINE), None)
         owner = low.graph.owner(made)
         if line is None or owner is None:
             continue
-        at = low.below(owner, Kind.OCCURRENCE, "")
-        low.set(at, subkind="message")
+        at = _occurrence(low, owner, known[-1] if known[-1] is not line else None)
         low.graph.connect(Edge.COVERS, at, line)
         low.graph.connect(edge, made, line)
         low.graph.connect(event, made, at)
+
+
+def _occurrence(low: "Lowering", owner: Element, event: Element | None) -> Element:
+    """The point at which something happens: an event that the model names, else a new one."""
+    if event is not None and event.kind is Kind.OCCURRENCE:
+        return event
+    at = low.below(owner, Kind.OCCURRENCE, "")
+    low.set(at, subkind="message")
+    return at
+
+
+def event(low: "Lowering", node: Node, owner: Element) -> None:
+    """An event of a lifeline, or of the interaction itself."""
+    is_line = owner.kind is Kind.LIFELINE
+    home = low.graph.owner(owner) if is_line else owner
+    found = nodes.reference(node, "ReferenceSubsetting")
+    if found is not None and not node.name:
+        low.later(lambda: _same(low, node, found.target))
+        return
+    made = low.add(node, Kind.OCCURRENCE, nodes.name_of(node), home, subkind="message")
+    if is_line:
+        low.graph.connect(Edge.COVERS, made, owner)
+
+
+def _same(low: "Lowering", node: Node, target: Node | None) -> None:
+    known = low.element(target)
+    if known is not None:
+        low.elements[id(node)] = known
+
+
+def order(low: "Lowering", node: Node, owner: Element) -> None:
+    """A succession between events: one comes before the other."""
+    ends = nodes.ends_of(node)
+    if len(ends) < 2:
+        low.approximated(node, "an order of events without ends", "nothing")
+        return
+    made = low.add(node, Kind.GENERAL_ORDERING, node.name or "", owner)
+    low.last(lambda: _order(low, made, ends))
+
+
+def _order(low: "Lowering", made: Element, ends: list[Node]) -> None:
+    for edge, end in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=False):
+        steps = steps_of(end)
+        known = low.element(steps[-1]) if steps else None
+        if known is not None:
+            low.graph.connect(edge, made, known)
 
 
 def fragment(low: "Lowering", node: Node, owner: Element) -> None:

@@ -25,6 +25,7 @@ CLASSIFIERS: dict[str, tuple[Kind, str]] = {
     "AssociationStructure": (Kind.ASSOCIATION, ""),
     "Predicate": (Kind.CLASS, "constraint block"),
     "Metaclass": (Kind.STEREOTYPE, ""),
+    "Definition": (Kind.CLASS, ""),
 }
 """Definitions whose members are features."""
 BEHAVIOURS: dict[str, tuple[Kind, str]] = {
@@ -73,5 +74,14 @@ STRUCTURAL = frozenset(
     }
 )
 """Kinds that own features."""
+LEVELS = (
+    "Recipe",
+    "Task",
+    "MachineService",
+    "InfrastructureService",
+    "MachineFunction",
+    "Machine",
+    "Material",
+)
 ACTIVITIES = frozenset({Kind.ACTIVITY, Kind.ACTION, Kind.STRUCTURED})
 """Kinds that own nodes of an activity."""

@@ -111,6 +111,7 @@ def while_(low: "Lowering", node: Node, owner: Element) -> None:
     exit_ = _control(low, node, owner, "merge")
     low.elements[id(node)] = entry
     low.spans[id(node)] = (entry, exit_)
+    low.last(lambda: low.last(lambda: _start(low, node, owner, entry)))
     test, until = _tests(node, given)
     at = entry
     if test is not None:
@@ -124,6 +125,13 @@ def while_(low: "Lowering", node: Node, owner: Element) -> None:
         _flow(low, node, (at, inside[0]), test)
         behind = inside[1]
     _repeat(low, node, owner, (behind, entry, exit_), until, None if inside else test)
+
+
+def _start(low: "Lowering", node: Node, owner: Element, entry: Element) -> None:
+    """A loop that nothing precedes starts with the behaviour: its own way back is no start."""
+    before = low.graph.sources(entry, Edge.FLOW_TARGET)
+    if all(low.is_made(flow, node) for flow in before):
+        _flow(low, node, (low.control(owner, "start"), entry))
 
 
 def _repeat(

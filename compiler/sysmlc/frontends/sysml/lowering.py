@@ -1,9 +1,9 @@
-"""One compile unit on its way from trees into the graph: elements first, then what they refer to."""
+"""A compile unit on its way into the graph: elements first, then what they refer to."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
+from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.sysml import nodes, stubs
 from sysmlc.frontends.sysml.places import Places
 from sysmlc.frontends.sysml.rules import APPROXIMATED, NOT_IN_GRAPH
@@ -53,6 +53,7 @@ class Lowering:
         self._handlers = handlers
         self._documents = {id(one.root): one for one in documents}
         self._later: list[Callable[[], None]] = []
+        self._brought: dict[int, set[str]] = {}
         self._last: list[Callable[[], None]] = []
         self._paths: dict[str, str] = {}
         self._taken: dict[str, int] = {}
@@ -87,7 +88,7 @@ class Lowering:
         return found if found is not None else self.model.target(node, relation)
 
     def element(self, node: Node | None) -> Element | None:
-        """What the node became; a redefinition that says nothing of its own is what it redefines."""
+        """What the node became; a redefinition that says nothing is what it redefines."""
         if node is None:
             return None
         known = self.elements.get(id(node))
@@ -136,9 +137,16 @@ class Lowering:
         source = "" if document is None else document.path
         ordinal = -1 if document is None else self._places.ordinal(document, node)
         id_ = self._id(kind, name, owner, source)
-        given = {key: value for key, value in attrs.items() if value not in (None, "", False)}
+        given: dict[str, AttrValue] = {
+            key: value for key, value in attrs.items() if value not in (None, "", False)
+        }
         above = None if owner is None else owner.id
+        self._brought.setdefault(id(node), set()).add(id_)
         return self.graph.add(Element(id_, kind, name, above, ordinal, source, given))
+
+    def is_made(self, element: Element, node: Node) -> bool:
+        """Whether an element is one of those that a node brought with it."""
+        return element.id in self._brought.get(id(node), ())
 
     def below(self, owner: Element, kind: Kind, name: str) -> Element:
         """An element that nothing in the text stands for, at the place of its owner."""
@@ -193,6 +201,11 @@ class Lowering:
         else:
             self._lost(edge, source, target)
 
+    def lead_all(self, edge: Edge, source: Element, targets: Iterable[Node]) -> None:
+        """Let edges lead to the elements of several nodes."""
+        for target in targets:
+            self.lead(edge, source, target)
+
     def lead_to(self, edge: Edge, source: Element, name: str, kind: Kind) -> None:
         """Let an edge lead to an element of the library by its qualified name."""
         self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
@@ -212,8 +225,8 @@ class Lowering:
     def _lost(self, edge: Edge, source: Element, target: Node) -> None:
         self._unresolved(source, edge)
         name = nodes.path_of(target)
-        facts = {"edge": str(edge.value), "name": name, "type": words(target.kind)}
-        self.sink.report(NOT_IN_GRAPH, self.graph.subject(source), **facts)
+        subject, type_ = self.graph.subject(source), words(target.kind)
+        self.sink.report(NOT_IN_GRAPH, subject, edge=str(edge.value), name=name, type=type_)
 
     # -- steps ---------------------------------------------------------------------------------
 
@@ -272,10 +285,6 @@ class Lowering:
         self.verdicts[id(node)] = Verdict.APPROXIMATED
         self._told.setdefault((said, written), []).append(node)
 
-    def report(self, rule: Rule, node: Node, **facts: object) -> None:
-        """Report a finding at a node."""
-        self.sink.report(rule, self.subject(node), **facts)
-
     def subject(self, node: Node) -> Subject:
         """The node as the subject of a diagnostic."""
         document = self.document(node)
@@ -289,11 +298,11 @@ class Lowering:
 
         for (said, written), found in self._told.items():
             if said == "unsupported":
-                facts: dict[str, object] = {"type": words(written), "count": len(found)}
-                self.report(UNSUPPORTED, found[0], **facts)
+                subject, type_ = self.subject(found[0]), words(written)
+                self.sink.report(UNSUPPORTED, subject, type=type_, count=len(found))
             else:
-                facts = {"said": said, "written": written, "count": len(found)}
-                self.report(APPROXIMATED, found[0], **facts)
+                count, subject = len(found), self.subject(found[0])
+                self.sink.report(APPROXIMATED, subject, count=count, said=said, written=written)
 
 
 def words(metaclass: str) -> str:

@@ -4,14 +4,13 @@ from collections.abc import Iterator
 
 from sysmlc.language.tree import Node, Reference
 
-EXPRESSIONS = frozenset(
-    """
+_EXPRESSIONS = """
     OperatorExpression IndexExpression SelectExpression CollectExpression FeatureChainExpression
     FeatureReferenceExpression MetadataAccessExpression InvocationExpression ConstructorExpression
     NullExpression LiteralBoolean LiteralString LiteralInteger LiteralRational LiteralInfinity
     LiteralExpression TriggerInvocationExpression
-    """.split()
-)
+"""
+EXPRESSIONS = frozenset(_EXPRESSIONS.split())
 TEXTS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
 """Metaclasses of what annotates its owner and gives it no feature."""
 _SUBSETS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
@@ -61,6 +60,16 @@ def result_of(node: Node) -> Node | None:
 def ends_of(node: Node) -> list[Node]:
     """The ends of a connector, in order."""
     return [one for one in node.members if one.membership == "EndFeatureMembership"]
+
+
+def is_message(node: Node) -> bool:
+    """Whether a flow is a message: it has events instead of ends."""
+    return node.kind == "FlowUsage" and not ends_of(node) and bool(node.facts.get("isAbstract"))
+
+
+def events_of(node: Node) -> list[Node]:
+    """The events at which a message is sent and received."""
+    return [one for one in held(node, "ParameterMembership") if one.kind.startswith("Event")]
 
 
 def last_name(found: Reference) -> str:

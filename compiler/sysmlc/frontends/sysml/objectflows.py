@@ -43,7 +43,7 @@ def _order(low: "Lowering", made: Element, order: Element) -> None:
 def _join(low: "Lowering", node: Node, made: Element, *, is_turned: bool) -> None:
     found = [_node(low, made, end) for end in nodes.ends_of(node)[:2]]
     found += [None] * (2 - len(found))
-    if is_turned and not _is_forward(low, made, found):
+    if is_turned and not _is_forward(found):
         found = found[::-1]
     for edge, one in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), found, strict=True):
         if one is None:
@@ -52,15 +52,13 @@ def _join(low: "Lowering", node: Node, made: Element, *, is_turned: bool) -> Non
             low.graph.connect(edge, made, one)
 
 
-def _is_forward(low: "Lowering", made: Element, found: list[Element | None]) -> bool:
+def _is_forward(found: list[Element | None]) -> bool:
     """Whether a binding's first end gives the value: ``bind a = b`` mostly sets ``a``."""
-    gives = [_gives(low, made, one) for one in found]
-    if gives[0] is True or gives[1] is False:
-        return True
-    return False
+    first, second = (_gives(one) for one in found)
+    return first is True or second is False
 
 
-def _gives(low: "Lowering", made: Element, one: Element | None) -> bool | None:
+def _gives(one: Element | None) -> bool | None:
     """Whether an end can only be a source (true) or a target (false) of a flow."""
     if one is None:
         return None

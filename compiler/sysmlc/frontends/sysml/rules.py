@@ -18,8 +18,8 @@ APPROXIMATED = rule(
     Severity.INFO,
     "{said} is read as {written} ({count} in the unit)",
     why="The graph has no element that means quite the same; the rest of the meaning is lost.",
-    wrong="package P {\n    individual part def Gate;\n}\n",
-    right="package P {\n    part def Gate;\n}\n",
+    wrong="package P {\n    requirement r;\n    part p;\n    not satisfy r by p;\n}\n",
+    right="package P {\n    requirement r;\n    part p;\n    satisfy r by p;\n}\n",
 )
 NOT_IN_GRAPH = rule(
     "SM482",

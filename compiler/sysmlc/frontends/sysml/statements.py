@@ -37,12 +37,12 @@ def _assignment(node: Node) -> Statement | None:
     values = [value for one in inputs if (value := nodes.value_of(one) or _expression(one))]
     if found is None or not values:
         return None
-    value = expressions.read(values[-1])
+    given = expressions.read(values[-1])
     target = expressions.named(found)
     for one in values[:-1]:
         base = expressions.read(one)
         target = target if base is None else _behind(base, target)
-    return None if value is None else Assignment(target, value)
+    return None if given is None else Assignment(target, given)
 
 
 def _behind(base: Expression, target: Expression) -> Expression:
@@ -72,7 +72,9 @@ def _send(node: Node) -> Statement | None:
     return Send(signal, args, target) if is_named and isinstance(signal, Name) else None
 
 
-_CREATED = frozenset({"ConstructorExpression", "InvocationExpression", "FeatureReferenceExpression"})
+_CREATED = frozenset(
+    {"ConstructorExpression", "InvocationExpression", "FeatureReferenceExpression"}
+)
 
 
 def inputs(node: Node) -> list[Node | None]:

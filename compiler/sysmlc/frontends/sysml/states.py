@@ -87,15 +87,25 @@ def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
     """A state that runs beside others: a region with its substates, or with itself alone."""
     region = low.make(node, Kind.REGION, nodes.name_of(node), owner)
     inside = [one for one in nodes.body_of(node) if _is_of_region(one)]
-    own = [one for one in nodes.body_of(node) if _is_sub(one)]
+    own = [one for one in nodes.body_of(node) if _is_sub(one) and not _is_empty(one)]
     if own or not inside or node.facts.get("isParallel"):
         made = state(low, node, region)
         start = low.make(node, Kind.PSEUDOSTATE, "", region, subkind="initial")
         _transition(low, node, region, start, made)
         return
     low.elements[id(node)] = region
-    low.lower_all((one for one in nodes.body_of(node) if not _is_of_region(one)), region)
+    rest = (one for one in nodes.body_of(node) if not (_is_of_region(one) or _is_sub(one)))
+    low.lower_all(rest, region)
     _vertices(low, node, region)
+
+
+def _is_empty(node: Node) -> bool:
+    """Whether a subaction says nothing but when something starts (``entry; then a``)."""
+    return node.kind == "ActionUsage" and not (node.name or node.members or _stated(node))
+
+
+def _stated(node: Node) -> bool:
+    return any(not one.implied for one in node.relations)
 
 
 def _transition(
@@ -109,7 +119,9 @@ def _transition(
 
 def state(low: "Lowering", node: Node, region: Element) -> Element:
     """A state with what it does and what is inside it; a keyword of ours makes a pseudostate."""
-    subkind = next((_PSEUDOSTATES[one] for one in annotations.ours(node) if one in _PSEUDOSTATES), "")
+    subkind = next(
+        (_PSEUDOSTATES[one] for one in annotations.ours(node) if one in _PSEUDOSTATES), ""
+    )
     if subkind:
         return _pseudostate(low, node, region, subkind)
     made = low.add(node, Kind.STATE, nodes.name_of(node), region, **visibility(node))
@@ -150,7 +162,7 @@ def held(low: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
         low.graph.connect(edge, owner, made)
         return
     found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    if not nodes.body_of(node) and found is None and not node.name:
+    if _is_empty(node):
         low.skipped.add(id(node))
     elif found is not None and not nodes.body_of(node):
         low.refer(edge, owner, found)

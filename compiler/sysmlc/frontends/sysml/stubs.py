@@ -30,15 +30,14 @@ _KINDS = {
     "Package": Kind.PACKAGE,
     "LibraryPackage": Kind.PACKAGE,
 }
-_BASES = frozenset(
-    """
+_NAMES = """
     Base::Anything Base::DataValue Occurrences::Occurrence Objects::Object Parts::Part
     Items::Item Ports::Port Attributes::AttributeValue Actions::Action States::StateAction
     Connections::Connection Interfaces::Interface Constraints::ConstraintCheck
     Requirements::RequirementCheck Calculations::Calculation UseCases::UseCase
     ScalarValues::ScalarValue ScalarValues::NumericalValue ScalarValues::Number
-    """.split()
-)
+"""
+_BASES = frozenset(_NAMES.split())
 """What every element of a kind specialises: no edge leads there."""
 
 

@@ -13,17 +13,15 @@ if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
 _SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
-_STEPS = frozenset(
-    """
+_NAMES = """
     ActionUsage PerformActionUsage SendActionUsage AcceptActionUsage AssignmentActionUsage
     IfActionUsage WhileLoopActionUsage ForLoopActionUsage TerminateActionUsage DecisionNode
     MergeNode ForkNode JoinNode CalculationUsage StateUsage ExhibitStateUsage Step Expression
     VerificationCaseUsage AnalysisCaseUsage CaseUsage UseCaseUsage IncludeUseCaseUsage
     ConstraintUsage AssertConstraintUsage EventOccurrenceUsage ItemUsage
-    """.split()
-)
-"""What the next succession without a source starts at."""
-Point = "Element | Node | Reference | None"
+"""
+_STEPS = frozenset(_NAMES.split())
+"""Members at which the next succession without a source may start."""
 
 
 @dataclass(slots=True)

@@ -26,7 +26,7 @@ def accepted(documents: Iterable[Document]) -> set[int]:
 
 def flowing(documents: Iterable[Document]) -> set[int]:
     """Identities of the features at which flows begin or end."""
-    found = set()
+    found: set[int] = set()
     for one in documents:
         for node in one.root.walk():
             if node.kind in _FLOWS:
@@ -41,7 +41,7 @@ def _payloads(node: Node) -> Iterable[Node]:
             yield from _targets(one, "FeatureTyping")
     elif node.kind in ("ConstructorExpression", "InvocationExpression"):
         yield from _targets(node, "Membership", "FeatureTyping")
-    elif node.kind == "FlowUsage" and node.facts.get("isMessage"):
+    elif nodes.is_message(node):
         for one in node.members:
             yield from _targets(one, "FeatureTyping")
 

@@ -40,11 +40,10 @@ def is_instance(node: Node) -> bool:
     return all(one.kind in _LINKS or (_redefines(one) and is_instance(one)) for one in inside)
 
 
-_LINKS = frozenset(
-    """
+_NAMES = """
     ConnectionUsage InterfaceUsage BindingConnectorAsUsage FlowUsage Dependency AllocationUsage
-    """.split()
-)
+"""
+_LINKS = frozenset(_NAMES.split())
 
 
 def _redefines(node: Node) -> bool:
@@ -104,7 +103,9 @@ def _slot(low: "Lowering", node: Node, owner: Element) -> None:
 
 
 def _value(low: "Lowering", made: Element, value: Node) -> None:
-    target = nodes.target(value, "Membership") if value.kind == "FeatureReferenceExpression" else None
+    target = (
+        nodes.target(value, "Membership") if value.kind == "FeatureReferenceExpression" else None
+    )
     if target is not None and target.kind != "EnumerationUsage" and low.document(target):
         low.later(lambda: low.lead(Edge.REFERENCES, made, target))
     else:

@@ -1,0 +1,226 @@
+"""Actions and states of SysML v2 in the graph."""
+
+from reading_v2 import read
+
+
+def test_steps_in_the_order_of_their_successions():
+    reading = read("""
+package P {
+    action def Pick;
+    action def Build {
+        first start;
+        then action pick : Pick;
+        then decide;
+            if count < 3 then pick;
+            else place;
+        action place;
+        then done;
+        attribute count : ScalarValues::Integer = 0;
+    }
+}""")
+    assert reading.flows("P::Build") == [
+        "start -> pick",
+        "pick -> decision",
+        "decision -> pick [count < 3]",
+        "decision -> place [else]",
+        "place -> done",
+    ]
+    assert reading.to("P::Build::pick", "calls") == ["P::Pick"]
+    assert reading.named("P::Build::pick").subkind == "call-behavior"
+    assert reading.named("P::Build::place").subkind == "opaque"
+
+
+def test_forks_and_joins_end_one_branch_with_a_flow_final():
+    reading = read("""
+package P {
+    action def A {
+        first start; then fork f;
+            then x;
+            then y;
+        action x; then j;
+        action y; then j;
+        join j; then done;
+    }
+}""")
+    assert reading.flows("P::A") == [
+        "start -> f",
+        "f -> x",
+        "f -> y",
+        "x -> j",
+        "y -> j",
+        "j -> done",
+    ]
+    assert reading.named("P::A::done").subkind == "flow-final"
+
+
+def test_calls_of_operations_with_pins():
+    reading = read("""
+package P {
+    part def Robot { action move { in attribute to : ScalarValues::Integer; } }
+    part def Cell {
+        part robot : Robot;
+        action work {
+            first start;
+            then perform action go ::> robot.move { in attribute :>> to = 3; }
+            then done;
+        }
+    }
+}""")
+    assert reading.owned("P::Robot") == ["Operation move"]
+    assert reading.owned("P::Cell") == ["Property robot", "Activity work"]
+    go = reading.named("P::Cell::work::go")
+    assert (go.subkind, reading.to("P::Cell::work::go", "calls")) == (
+        "call-operation",
+        ["P::Robot::move"],
+    )
+    pin = reading.named("P::Cell::work::go::to")
+    assert (pin.subkind, pin.attrs["value"]) == ("argument", 3)
+
+
+def test_flows_and_bindings_between_pins_and_parameters():
+    reading = read("""
+package P {
+    action def Build {
+        in item raw; out item made;
+        action cut { in item raw; out item piece; }
+        action glue { in item piece; out item whole; }
+        bind cut.raw = raw;
+        flow from cut.piece to glue.piece;
+        bind made = glue.whole;
+    }
+}""")
+    assert reading.flows("P::Build") == ["raw -> raw", "piece -> piece", "whole -> made"]
+    kinds = [line.split()[0] for line in reading.owned("P::Build")]
+    assert kinds.count("ActivityParameter") == 2
+
+
+def test_assignments_sendings_and_acceptings():
+    reading = read("""
+package P {
+    item def Go;
+    part def A {
+        port p;
+        attribute x : ScalarValues::Integer;
+        action run {
+            first start;
+            then action set assign x := x + 1;
+            then action say send new Go() via p;
+            then action wait accept Go via p;
+            then action sleep accept after 5 [SI::s];
+            then done;
+        }
+    }
+}""")
+    run = "P::A::run::"
+    assert reading.named(f"{run}set").attrs["body"] == "x := x + 1"
+    assert reading.to(f"{run}say", "calls") == ["P::Go"]
+    assert reading.named(f"{run}say").attrs["on_port"] == reading.named("P::A::p").id
+    wait = reading.named(f"{run}wait::<Trigger>")
+    assert (wait.subkind, wait.attrs["port"]) == ("signal", reading.named("P::A::p").id)
+    sleep = reading.named(f"{run}sleep::<Trigger>").attrs
+    assert (sleep["subkind"], sleep["when"], sleep["relative"]) == ("time", "5 s", True)
+    assert str(reading.named("P::Go").kind) == "Signal"
+
+
+def test_if_and_while_are_control_nodes_with_guards():
+    reading = read("""
+package P {
+    action def A {
+        attribute x : ScalarValues::Integer;
+        first start;
+        then while x < 3 { assign x := x + 1; }
+        then if x == 3 { action good; } else { action bad; }
+        then done;
+    }
+}""")
+    assert sorted(reading.flows("P::A")) == sorted(
+        [
+            "start -> merge",
+            "merge -> decision",
+            "decision -> merge [else]",
+            "decision -> merge [x < 3]",
+            "merge -> opaque",
+            "opaque -> merge",
+            "merge -> merge",
+            "merge -> decision",
+            "decision -> merge [x == 3]",
+            "merge -> good",
+            "good -> merge",
+            "merge -> merge",
+            "decision -> merge [else]",
+            "merge -> bad",
+            "bad -> merge",
+            "merge -> merge",
+            "merge -> done",
+        ]
+    )
+
+
+def test_state_machines_with_entry_transitions_and_effects():
+    reading = read("""
+package P {
+    item def Open; item def Close;
+    part def Door {
+        attribute locked : ScalarValues::Boolean;
+        exhibit state life {
+            entry; then closed;
+            state closed { entry assign locked := true; }
+            transition opening first closed accept Open if not locked
+                do assign locked := false then open;
+            state open;
+            accept Close then closed;
+            accept after 10 [SI::s] then done;
+        }
+    }
+}""")
+    assert reading.to("P::Door", "classifier-behavior") == ["P::Door::life"]
+    region = "P::Door::life::<Region>"
+    assert reading.flows(region) == [
+        "initial -> closed",
+        "closed -> open [not locked]",
+        "open -> closed",
+        "open -> ",
+    ]
+    opening = f"{region}::opening"
+    assert reading.to(f"{opening}::<Trigger>", "typed-by") == ["P::Open"]
+    effect = reading.to(opening, "effect")
+    assert reading.named(effect[0]).attrs["body"] == "locked := false"
+    entry = reading.to(f"{region}::closed", "entry")
+    assert reading.named(entry[0]).attrs["body"] == "locked := true"
+
+
+def test_parallel_states_are_regions():
+    reading = read("""
+package P {
+    state def S {
+        entry; then both;
+        state both parallel {
+            state left { entry; then a; state a; }
+            state right;
+        }
+    }
+}""")
+    both = "P::S::<Region>::both"
+    assert reading.owned(both) == ["Region left", "Region right"]
+    assert reading.owned(f"{both}::left") == ["Transition", "State a", "Pseudostate"]
+    assert reading.owned(f"{both}::right") == ["State right", "Pseudostate", "Transition"]
+
+
+def test_calculations_are_functions_and_constraints_of_definitions_have_no_name():
+    reading = read("""
+package P {
+    private import ScalarValues::*;
+    calc def Sum { in a : Real; in b : Real; return r : Real; a + b }
+    constraint def Law { in f : Real; in m : Real; f == m * 2.0 }
+}""")
+    assert (reading.named("P::Sum").subkind, reading.named("P::Sum").attrs["body"]) == (
+        "function",
+        "a + b",
+    )
+    assert [one.attrs["direction"] for one in reading.graph.owned(reading.named("P::Sum"))] == [
+        "in",
+        "in",
+        "return",
+    ]
+    assert reading.named("P::Law").role == "constraint block"
+    assert reading.named("P::Law::<Constraint>").attrs["body"] == "f == m * 2.0"

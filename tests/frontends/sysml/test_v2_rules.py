@@ -1,0 +1,61 @@
+"""What the front end for SysML v2 reports, and what it does not."""
+
+import pytest
+from reading_v2 import read
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.sysml import FRONTEND, rules
+from sysmlc.ir import Graph
+from sysmlc.sources import Source
+
+RULES = (rules.UNSUPPORTED, rules.APPROXIMATED, rules.NOT_IN_GRAPH)
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
+def test_the_wrong_model_has_the_finding_and_the_right_one_has_not(rule):
+    assert rule.code in read(rule.wrong).codes()
+    assert rule.code not in read(rule.right).codes()
+
+
+def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
+    reading = read("package P {\n    rendering def A;\n    rendering def B { part x; }\n}")
+    found = [one for one in reading.sink if one.rule.code == "SM480"]
+    assert [one.message for one in found] == [
+        "rendering definition is not read (2 in the unit, with all that they own)"
+    ]
+    assert found[0].subject.place.ordinal == 30
+    assert reading.totals() == {"elements": 5, "mapped": 2, "unsupported": 3}
+
+
+def test_sm483_a_damaged_interchange_file_is_told_and_left_out():
+    sink, graph = Sink(), Graph()
+    FRONTEND.read([Source("a.sysmlx", rules.UNREADABLE.wrong.encode())], graph, sink, Coverage())
+    assert [one.rule.code for one in sink if one.is_error]
+    assert len(graph) == 0
+
+
+def test_sm484_a_library_that_is_not_there_is_told(tmp_path):
+    sink, graph = Sink(), Graph()
+    front = FRONTEND.with_library(str(tmp_path / "nowhere"))
+    front.read([Source("a.sysml", b"package P { part def A; }")], graph, sink, Coverage())
+    assert [one.rule.code for one in sink if one.is_error] == ["SM484"]
+    assert [one.name for one in graph] == ["P", "A"]
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "is_ours"),
+    [
+        ("a.sysml", b"package P;", True),
+        ("b.txt", b"/* x */ // y\nprivate import A::*;", True),
+        ("c.sysml", b"", True),
+        (
+            "d.xml",
+            b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"/>',
+            True,
+        ),
+        ("e.uml", b'<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>', False),
+        ("f.ir", b'Package p "Plant"', False),
+        ("g.yaml", b"blocks:\n  - a", False),
+    ],
+)
+def test_files_are_recognised_by_their_content(name, data, is_ours):
+    assert (FRONTEND.detect(Source(name, data)) > 0) is is_ours

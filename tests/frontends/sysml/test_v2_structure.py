@@ -1,0 +1,189 @@
+"""Structure of SysML v2 in the graph: definitions, usages, ports, connections, values."""
+
+from reading_v2 import classified, read
+
+PLANT = """
+package Plant {
+    private import ScalarValues::*;
+    part def Pallet;
+    port def Transfer { out item pallet : Pallet; }
+    part def Gate {
+        attribute width : Real = 0.5;
+        attribute names : String[0..*] ordered nonunique;
+        port inlet : ~Transfer;
+        port leave : Transfer;
+    }
+    part def Cell {
+        part east : Gate;
+        part second : Gate[1..2];
+        ref part spare : Gate[0..1];
+        interface link connect east.leave to second.inlet;
+        flow of Pallet from east.leave.pallet to second.inlet.pallet;
+    }
+}
+"""
+
+
+def test_definitions_and_usages_have_the_kinds_and_roles_of_blocks():
+    reading = classified(PLANT)
+    roles = {
+        name: (str(reading.named(f"Plant::{name}").kind), reading.named(f"Plant::{name}").role)
+        for name in ("Gate", "Transfer", "Cell::east", "Cell::spare", "Gate::width", "Gate::inlet")
+    }
+    assert roles == {
+        "Gate": ("Class", "block"),
+        "Transfer": ("Class", "interface block"),
+        "Cell::east": ("Property", "part"),
+        "Cell::spare": ("Property", "reference"),
+        "Gate::width": ("Property", "value"),
+        "Gate::inlet": ("Port", "proxy port"),
+    }
+    assert reading.codes() == []
+
+
+def test_multiplicities_flags_and_values_are_attributes():
+    reading = read(PLANT)
+    names = reading.named("Plant::Gate::names").attrs
+    assert (names["multiplicity"], names["ordered"], names["unique"]) == ("*", True, False)
+    assert reading.named("Plant::Cell::second").attrs["multiplicity"] == "1..2"
+    assert "multiplicity" not in reading.named("Plant::Cell::east").attrs
+    assert reading.named("Plant::Gate::width").attrs["default"] == 0.5
+
+
+def test_conjugated_ports_are_typed_by_the_original():
+    reading = classified(PLANT)
+    inlet = reading.named("Plant::Gate::inlet")
+    assert (inlet.attrs["conjugated"], inlet.attrs["direction"]) == (True, "in")
+    assert reading.to("Plant::Gate::inlet", "typed-by") == ["Plant::Transfer"]
+
+
+def test_connections_have_ends_with_paths_and_flows_run_along_them():
+    reading = read(PLANT)
+    link = reading.graph.owned(reading.named("Plant::Cell::link"))
+    ends = [
+        [one.name for edge in ("path", "role") for one in reading.graph.targets(end, edge)]
+        for end in link
+    ]
+    assert ends == [["east", "leave"], ["second", "inlet"]]
+    flow = "Plant::Cell::<ItemFlow>"
+    assert reading.to(flow, "conveys") == ["Plant::Pallet"]
+    assert reading.to(flow, "realizing") == ["Plant::Cell::link"]
+    assert reading.to(flow, "flow-source") == ["Plant::Gate::leave"]
+
+
+def test_ids_are_those_of_qualified_names_wherever_they_stand_in_the_file():
+    one, other = read(PLANT), read("// a comment\n" + PLANT)
+    assert [e.id for e in one.graph] == [e.id for e in other.graph]
+    assert one.named("Plant::Gate").ordinal + 13 == other.named("Plant::Gate").ordinal
+
+
+def test_places_are_bytes_of_the_names():
+    text = "package 'Käse' { part def Gate; }"
+    gate = read(text).named("Käse::Gate")
+    assert text.encode()[gate.ordinal :].startswith(b"Gate")
+
+
+def test_redefinitions_have_the_name_and_the_type_of_what_they_redefine():
+    reading = read("""
+package P {
+    part def A { attribute mass : ScalarValues::Real; }
+    part def B :> A { attribute :>> mass = 3.5; }
+}""")
+    assert reading.to("P::B::mass", "redefines") == ["P::A::mass"]
+    assert reading.to("P::B::mass", "typed-by") == ["Real"]
+    assert reading.to("P::B", "specializes") == ["P::A"]
+
+
+def test_a_usage_with_members_of_its_own_is_typed_by_a_class_made_for_it():
+    reading = read("""
+package P {
+    part def Engine { attribute power : ScalarValues::Real; }
+    part def Car { part engine : Engine { attribute :>> power = 90.0; part filter; } }
+}""")
+    own = reading.named("P::Car::engine", "Class")
+    assert own.attrs["property_specific"] is True
+    assert reading.to("P::Car::engine", "typed-by", "Property") == ["P::Car::engine"]
+    assert reading.to("P::Car::engine", "specializes", "Class") == ["P::Engine"]
+    assert reading.owned("P::Car::engine", "Class") == ["Property power", "Property filter"]
+
+
+def test_usages_in_packages_are_instances_when_they_only_give_values():
+    reading = read("""
+package P {
+    part def Gate { attribute width : ScalarValues::Real; }
+    part east : Gate { :>> width = 0.8; }
+    part line { part gate : Gate; part second : Gate; connect gate to second; }
+}""")
+    assert str(reading.named("P::east").kind) == "Instance"
+    assert reading.to("P::east", "instance-of") == ["P::Gate"]
+    slot = reading.named("P::east::width")
+    assert (str(slot.kind), slot.attrs["value"]) == ("Slot", 0.8)
+    line = reading.named("P::line")
+    assert (str(line.kind), line.attrs["usage"]) == ("Class", True)
+    assert reading.owned("P::line")[2] == "Connector"
+
+
+def test_enumerations_and_values_that_name_their_literals():
+    reading = read("""
+package P {
+    enum def Colour { red; blue; }
+    part def A { attribute c : Colour = Colour::blue; }
+}""")
+    assert reading.owned("P::Colour") == ["EnumerationLiteral red", "EnumerationLiteral blue"]
+    attrs = reading.named("P::A::c").attrs
+    assert (attrs["default"], attrs["default_instance"]) == (
+        "blue",
+        reading.named("P::Colour::blue").id,
+    )
+
+
+def test_value_types_of_quantities_have_unit_and_quantity_kind():
+    reading = read("""
+package P { attribute def Mass :> ISQ::MassValue { attribute :>> mRef = SI::kg; } }
+""")
+    mass = reading.graph.targets(reading.named("P::Mass"), "references")
+    assert [(str(one.kind), one.name, one.attrs.get("symbol")) for one in mass] == [
+        ("Unit", "kilogram", "kg"),
+        ("QuantityKind", "mass", None),
+    ]
+
+
+def test_bindings_constraints_and_dependencies():
+    reading = read("""
+package P {
+    part def A {
+        attribute x : ScalarValues::Integer;
+        attribute y : ScalarValues::Integer;
+        bind x = y;
+        assert constraint small { x <= 3 and not (y > 2) }
+    }
+    part def B;
+    dependency uses from A to B;
+}""")
+    assert reading.named("P::A::<Connector>").role == "binding connector"
+    assert reading.named("P::A::small").attrs["body"] == "x <= 3 and not (y > 2)"
+    assert reading.to("P::uses", "client") == ["P::A"]
+    assert reading.to("P::uses", "supplier") == ["P::B"]
+
+
+def test_metadata_is_an_applied_stereotype_with_its_values():
+    reading = read(
+        """
+package P {
+    metadata def Cell { attribute speed : ScalarValues::Integer; attribute of : Anything; }
+    part def Gate { @Cell { speed = 2; } }
+}""".replace("attribute of : Anything; ", "")
+    )
+    applied = reading.named("P::Gate::Cell")
+    assert applied.attrs["tag.speed"] == "2"
+    assert reading.to("P::Gate::Cell", "subject") == ["P::Gate"]
+    assert reading.to("P::Gate::Cell", "instance-of") == ["P::Cell"]
+
+
+NODES = 34
+"""Nodes of the tree of PLANT; the import of the library is the external one."""
+
+
+def test_every_node_has_one_verdict():
+    reading = read(PLANT)
+    assert reading.totals() == {"elements": NODES, "mapped": NODES - 1, "external": 1}
