@@ -1,12 +1,15 @@
 """What may help with a name that leads nowhere: another kind, not visible, misspelt, elsewhere."""
 
-from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.names import contexts
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.tree import Node, Relation
 from sysmlc.suggest import did_you_mean
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.model import Model
 
 _WANTED = {
     "Subclassification": "a definition",
@@ -24,13 +27,14 @@ _WANTED = {
 
 
 def advice(
-    lookup: Lookup,
+    model: "Model",
     relation: Relation,
     names: tuple[str, ...],
     start: contexts.Start,
     within: Node | None,
 ) -> str:
     """One sentence for the help of the message; ``within`` is the element before a dot."""
+    lookup = model.lookup
     other = _search(lookup, names, start, within, everything=False)
     if other is not None and relation.kind in _WANTED:
         return f"'{names[-1]}' is {kind_of(other)}, {_WANTED[relation.kind]} is needed here"
@@ -38,7 +42,26 @@ def advice(
     if hidden is not None and hidden.visibility in ("private", "protected"):
         owner = f" in '{hidden.owner.name}'" if hidden.owner and hidden.owner.name else ""
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
-    return did_you_mean(names[-1], _known(lookup, names, start, within))
+    if hidden is not None and other is None:
+        return f"'{names[-1]}' is there by a private import only"
+    package = _elsewhere(model, names) if within is None else None
+    if package is not None:
+        return f"'{names[0]}' is in '{package.name}', which is not imported here"
+    known = _known(lookup, names, start, within)
+    roots = [p.name for p in model.packages() if p.name] if len(names) > 1 else []
+    return did_you_mean(names[-1], known or roots)
+
+
+def _elsewhere(model: "Model", names: tuple[str, ...]) -> Node | None:
+    """A package of the model or of a library file in use that has the name."""
+    if len(names) > 1:
+        return None
+    for package in model.packages():
+        if any(
+            h.visibility in ("", "public") for h in model.lookup.owned(package).get(names[0], ())
+        ):
+            return package
+    return None
 
 
 def _search(
@@ -51,16 +74,21 @@ def _search(
 ) -> Node | None:
     if within is not None:
         return lookup.descend(within, names, 0, None, everything)
+    if everything and start.inherited and start.scope is not None:
+        hits = (lookup.own(general, names[0]) for general in lookup.reached(start.scope))
+        return next((hit for found in hits for hit in found), None)
     return lookup.search(start._replace(everything=everything), names, None)
 
 
 def _known(
     lookup: Lookup, names: tuple[str, ...], start: contexts.Start, within: Node | None
-) -> Iterable[str]:
+) -> list[str]:
     """Names that would be known instead: in what the name before leads to, else around."""
     if within is None and len(names) > 1:
         within = lookup.search(start, names[:-1], None)
-    if within is not None:
+    if within is None and start.inherited and start.scope is not None:
+        scopes = lookup.reached(start.scope)
+    elif within is not None:
         scopes = [within, *lookup.reached(within)]
     else:
         scopes = []

@@ -11,7 +11,7 @@ from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
-from sysmlc.language.names.rules import CYCLE
+from sysmlc.language.names.rules import CORE, CYCLE
 from sysmlc.language.names.unresolved import report, subject
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
@@ -48,6 +48,11 @@ class Model:
 
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))
+
+    def packages(self) -> list[Node]:
+        """The root members of the documents and of the library files read so far."""
+        read = [*self.documents, *self.library.loaded()]
+        return [member for document in read for member in document.root.members]
 
     def _text(self, root: Node) -> str:
         document = self.document(root)
@@ -144,13 +149,10 @@ class Model:
 
     def document(self, node: Node) -> Document | None:
         """The document, of the model or of the library, that ``node`` is in."""
-        while node.owner is not None:
-            node = node.owner
-        found = self._by_root.get(node)
-        if found is None:
+        top = root(node)
+        if top not in self._by_root:
             self._by_root.update((d.root, d) for d in self.library.loaded())
-            found = self._by_root.get(node)
-        return found
+        return self._by_root.get(top)
 
     # What the text does not say
 
@@ -179,7 +181,8 @@ class Model:
 
     def needed_generals(self, node: Node) -> list[Node]:
         """What ``node`` implicitly specialises and no other general of it does already."""
-        possible = self.implied_generals(node)
+        redefined = self.lookup.by_position(node)
+        possible = [*redefined, *self.implied_generals(node)]
         written = self.lookup.generals(node)
         return [
             one
@@ -206,6 +209,8 @@ class Model:
         needed = dict.fromkeys(self.needed_generals(node))
         redefined = self.lookup.by_position(node)
         made = [_relation("Redefinition", self.qualified_name(one), one) for one in redefined]
+        for one in redefined:
+            needed.pop(one, None)
         for kind, target in self._candidates(node):
             if target in needed:
                 del needed[target]
@@ -235,22 +240,25 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     gc.disable()
     try:
         for document in model.documents:
-            _resolve(document, model.lookup, sink)
-        _report_cycles(model, sink)
+            _resolve(document, model, sink)
         model.add_implied()
+        _report_cycles(model, sink)
+        if library.is_core:
+            _report_core(model, sink)
     finally:
         if collecting:
             gc.enable()
     return model
 
 
-def _resolve(document: Document, lookup: Lookup, sink: Sink) -> None:
+def _resolve(document: Document, model: Model, sink: Sink) -> None:
+    lookup = model.lookup
     for node in document.root.walk():
         for relation in node.relations:
             if (
                 relation.reference.targets is None and lookup.target(node, relation) is None
             ) or relation.reference.target is None:
-                report(lookup, document, node, relation, sink)
+                report(model, document, node, relation, sink)
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
@@ -262,3 +270,24 @@ def _report_cycles(model: Model, sink: Sink) -> None:
             through = f" through {' and '.join(names)}" if names else ""
             place = subject(document, node, node.name_start)
             sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
+
+
+def _report_core(model: Model, sink: Sink) -> None:
+    """Tell once how many names the small library of our own had to serve, at the first use."""
+    roots = {document.root for document in model.library.loaded()}
+    uses = [
+        (document, node, relation.reference.start)
+        for document in model.documents
+        for node in document.root.walk()
+        for relation in node.relations
+        if relation.reference.target is not None and root(relation.reference.target) in roots
+    ]
+    if uses:
+        sink.report(CORE, subject(*uses[0]), count=len(uses))
+
+
+def root(node: Node) -> Node:
+    """The root namespace of the document that ``node`` is in."""
+    while node.owner is not None:
+        node = node.owner
+    return node

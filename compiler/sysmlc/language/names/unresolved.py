@@ -1,6 +1,7 @@
 """Names that lead nowhere, told in the modeller's words, once for each use."""
 
 import re
+from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.names import contexts
@@ -9,6 +10,9 @@ from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import UNRESOLVED
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
 _LINK = re.compile(
@@ -17,8 +21,9 @@ _LINK = re.compile(
 """A qualified name, one link of a chain."""
 
 
-def report(lookup: Lookup, document: Document, node: Node, relation: Relation, sink: Sink) -> None:
+def report(model: "Model", document: Document, node: Node, relation: Relation, sink: Sink) -> None:
     """Report the first name of a chain that was not found."""
+    lookup = model.lookup
     reference = relation.reference
     index = len(reference.targets or ())
     start = contexts.start(node, relation)
@@ -34,7 +39,7 @@ def report(lookup: Lookup, document: Document, node: Node, relation: Relation, s
         subject(document, node, _place(document, reference, index)),
         name=name,
         inside=inside,
-        advice=advice(lookup, relation, reference.chain[index], start, before),
+        advice=advice(model, relation, reference.chain[index], start, before),
     )
 
 
