@@ -109,6 +109,66 @@ def indented(text):
     return "".join(f"    {line}\n" if line else "\n" for line in text.splitlines())
 
 
+@pytest.mark.parametrize(
+    ("word", "found"),
+    [
+        ("defualt", "'defualt': did you mean 'default'?"),
+        ("colour", "'colour': it is no attribute of these models"),
+    ],
+)
+def test_a_word_that_nothing_is_called_cannot_be_ignored(plants, word, found):
+    done = plants.sysmlc("diff", "old.aml", "new.aml", "--ignore", f"id,{word}")
+    assert done.exit_code == 2
+    assert f"Error: Invalid value for '--ignore': {found}" in done.stderr
+
+
+@pytest.mark.parametrize("word", ["id", "default", "default_value", "unit", "typed-by", "Comment"])
+def test_what_a_model_may_say_can_be_ignored(plants, word):
+    assert plants.sysmlc("diff", "old.aml", "old.aml", "--ignore", word).exit_code == 0
+
+
+UNITS = """\
+Lib::C
+  ~ value plain: unit: m => mm
+  ~ value typed: unit: m => mm
+
+Types
+  ~ value type L: unit: m => mm
+
+3 changed
+"""
+
+
+def test_another_unit_is_told_once(plants):
+    """And not as another type and another quantity, too; nothing of it counts when ignored."""
+    body = (
+        '<CAEXFile SchemaVersion="3.0" FileName="p.aml"><SystemUnitClassLib Name="Lib">'
+        '<SystemUnitClass Name="C"><Attribute Name="plain" AttributeDataType="xs:double" Unit="m"/>'
+        '<Attribute Name="typed" RefAttributeType="Types/L" Unit="m"/></SystemUnitClass>'
+        '</SystemUnitClassLib><AttributeTypeLib Name="Types">'
+        '<AttributeType Name="L" AttributeDataType="xs:double" Unit="m"/></AttributeTypeLib>'
+        "</CAEXFile>"
+    )
+    plants.folder.joinpath("m.aml").write_text(body)
+    plants.folder.joinpath("mm.aml").write_text(body.replace('"m"', '"mm"'))
+    assert plants.sysmlc("diff", "m.aml", "mm.aml").stdout == UNITS
+    assert plants.sysmlc("diff", "m.aml", "mm.aml", "--ignore", "unit").exit_code == 0
+
+
+def test_another_type_with_another_unit_is_told_too(plants):
+    body = (
+        '<CAEXFile SchemaVersion="3.0" FileName="p.aml"><SystemUnitClassLib Name="Lib">'
+        '<SystemUnitClass Name="C"><Attribute Name="v" AttributeDataType="xs:double" Unit="m"/>'
+        "</SystemUnitClass></SystemUnitClassLib></CAEXFile>"
+    )
+    plants.folder.joinpath("m.aml").write_text(body)
+    changed = body.replace('"m"', '"kg"').replace("xs:double", "xs:int")
+    plants.folder.joinpath("kg.aml").write_text(changed)
+    told = plants.sysmlc("diff", "m.aml", "kg.aml").stdout
+    assert "  ~ value v: unit: m => kg\n" in told
+    assert "  ~ value v: retyped, type: length[m] => Integer mass[kg]\n" in told
+
+
 def test_markdown_is_a_table_for_each_owner(plants):
     done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "markdown")
     assert done.stdout == MARKDOWN

@@ -61,6 +61,7 @@ def command(
     if unread:
         session.show([found for one in unread for found in session.findings(one)], settings)
         ctx.exit(2)
+    _check(ignore, made)
     _refine(made)
     changes = compare(made[0].graph, made[1].graph, ignore)
     click.echo(_text(changes, form, made), nl=False, color=True)
@@ -77,6 +78,19 @@ def _is_unread(made: "Compilation") -> bool:
     """Whether an input gave nothing at all; what is wrong inside a file is no hindrance."""
     read = {element.source.partition("!")[0] for element in made.graph}
     return not made.is_complete and not (made.inputs and all(i.path in read for i in made.inputs))
+
+
+def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
+    """Refuse words that make no difference in any model: most likely they are misspelt."""
+    from sysmlc.ir.compare.ignoring import words
+    from sysmlc.suggest import did_you_mean
+
+    known = words(one.graph for one in made) if ignore else ()
+    for word in ignore:
+        if word not in known:
+            hint = did_you_mean(word, known)
+            found = hint if hint.startswith("did") else "it is no attribute of these models"
+            raise click.BadParameter(f"'{word}': {found}", param_hint="'--ignore'")
 
 
 def _refine(made: "list[Compilation]") -> None:

@@ -18,8 +18,10 @@ from sysmlc.ir.compare.plants import (
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
 from sysmlc.ir.compare.titles import ends_in_full, exactly, title, word
+from sysmlc.ir.compare.units import MEASURES, UNIT, is_same_but_for_unit
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
+from sysmlc.ir.kinds import Edge
 
 _Said = list[tuple[tuple[Token, Token], Fact]]
 
@@ -86,13 +88,27 @@ def _between(pairs: Pairs, old: Element, new: Element, ignore: Collection[str]) 
         there, here = owner_of(pairs.old, old), owner_of(pairs.new, new)
         yield _change(pairs, old, new, What.MOVED, "owner", there, here)
     yield from _reordered(pairs, old, new)
-    differing = _differing(pairs, old, new)
+    differing = _without_consequences(pairs, old, new, _differing(pairs, old, new))
     said = [one for one in differing if not one[0] & set(ignore) and not _is_unsaid(one)]
     telling = [found for found in said if not found[0] & IMPLIED]
     for _, what, label, before, after in telling or said:
         if what is What.RETYPED and _is_part_retyped(pairs, new):
             continue
         yield _change(pairs, old, new, what, label, before, after)
+
+
+def _without_consequences(
+    pairs: Pairs, old: Element, new: Element, found: "list[_Differing]"
+) -> "list[_Differing]":
+    """The differences without those that another unit brings along."""
+    if not any(names == UNIT for names, *_ in found):
+        return found
+    is_same = is_same_but_for_unit(pairs, old, new)
+    return [
+        one
+        for one in found
+        if not (one[0] & MEASURES or (is_same and one[0] == {Edge.TYPED_BY.value}))
+    ]
 
 
 def _is_unsaid(found: "_Differing") -> bool:
