@@ -49,14 +49,22 @@ NAMING = (
 )
 """Elements whose memberships name what they refer to."""
 
+_WITH_RESULT = NAMING - {"ConstructorExpression"}
+"""Expressions whose empty result is in no text; that of a constructor has the arguments."""
 _EXPRESSIONS = kinds_of("Expression")
 _INSTANTIATIONS = kinds_of("InstantiationExpression")
 _OWNING = kinds_of("OwningMembership")
 _IMPORTS = dict.fromkeys(kinds_of("MembershipImport"), "importedMembership") | dict.fromkeys(
     kinds_of("NamespaceImport"), "importedNamespace"
 )
+_EXPOSES = kinds_of("Expose")
 _PARAMETERS = kinds_of("ParameterMembership")
 _BARE = {"Feature", "ReferenceUsage"}
+_WITH_ROLE = (
+    kinds_of("StateSubactionMembership")
+    | kinds_of("TransitionFeatureMembership")
+    | {"RequirementConstraintMembership"}
+)
 _CONDITIONAL = {"if", "and", "or", "implies", "??"}
 _DROPPED_RELATIONS = {"PortConjugation"}
 
@@ -108,8 +116,10 @@ class Folding:
         node = inner.node
         if membership in _PARAMETERS:
             node.facts.pop("direction", None)
-        if owner.kind in _INSTANTIATIONS:
-            node = _argument(node, frame, owner)
+        if owner.kind == "ConstructorExpression":
+            _fold_arguments(node)
+        elif owner.kind in _INSTANTIATIONS:
+            node = _argument(node, owner)
         node.membership = membership if node is inner.node else "ParameterMembership"
         if not node.role:
             node.role = _role(frame)
@@ -136,7 +146,11 @@ class Folding:
             frame.node.own(inner.node)
             frame.targets.pop(feature, None)
         self._ends(frame, (feature,))
-        frame.node.visibility = str(frame.node.facts.pop("visibility", "private"))
+        visibility = str(frame.node.facts.pop("visibility", "private"))
+        if frame.kind in _EXPOSES:
+            frame.node.facts.pop("isImportAll", None)
+        else:
+            frame.node.visibility = visibility
         owner.node.own(frame.node)
 
     def _name(self, frame: Frame, owner: Frame) -> None:
@@ -198,7 +212,7 @@ def _is_implicit(node: Node, frame: Frame, owner: Frame) -> bool:
     if frame.kind == "ReturnParameterMembership" and owner.kind in _EXPRESSIONS:
         if node.facts.get("direction") == "out" and len(node.facts) == 1:
             del node.facts["direction"]
-        return _is_bare(node) and owner.kind in NAMING
+        return _is_bare(node) and owner.kind in _WITH_RESULT
     if owner.kind == "TransitionUsage" and frame.kind == "ParameterMembership":
         node.name = None
         return False
@@ -211,12 +225,21 @@ def _reaches(owner: Node) -> bool:
     return owner.kind == "TransitionUsage" or (owner.kind in _BARE and nameless)
 
 
-def _argument(node: Node, frame: Frame, owner: Frame) -> Node:
+def _fold_arguments(result: Node) -> None:
+    """Let the result of a constructor own what its parameters carry (KerML 8.2.5.8.3)."""
+    for index, node in enumerate(result.members):
+        if node.membership == "ParameterMembership" and node.kind == "Feature":
+            value = _carried(node)
+            if value is not node:
+                value.membership, value.role, value.owner = node.membership, "", result
+                result.members[index] = value
+
+
+def _argument(node: Node, owner: Frame) -> Node:
     """The expression that a parameter of an expression only carries, else the parameter."""
-    carries = node.kind == "Feature" and not (node.name or node.relations)
-    if not carries or [one.membership for one in node.members] != ["FeatureValue"]:
+    value = _carried(node)
+    if value is node:
         return node
-    value = node.members[0]
     inner = value.members[0] if len(value.members) == 1 and not value.relations else None
     is_reference = value.kind == "FeatureReferenceExpression" and inner is not None
     if inner is not None and is_reference and _is_late(owner.node):
@@ -225,6 +248,14 @@ def _argument(node: Node, frame: Frame, owner: Frame) -> Node:
     else:
         value.role = ""
     return value
+
+
+def _carried(node: Node) -> Node:
+    """The value of a parameter that has nothing but a value, else the parameter."""
+    carries = node.kind == "Feature" and not (node.name or node.relations)
+    if not carries or [one.membership for one in node.members] != ["FeatureValue"]:
+        return node
+    return node.members[0]
 
 
 def _is_late(owner: Node) -> bool:
@@ -239,7 +270,7 @@ def _role(frame: Frame) -> str:
         facts = frame.node.facts
         sign = ":=" if facts.get("isInitial") else "="
         return ("default" if sign == "=" else "default :=") if facts.get("isDefault") else sign
-    return str(frame.node.facts.get("kind", ""))
+    return str(frame.node.facts.get("kind", "")) if frame.kind in _WITH_ROLE else ""
 
 
 def _visibility(frame: Frame, owner: Frame) -> str:

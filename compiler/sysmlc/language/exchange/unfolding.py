@@ -230,6 +230,8 @@ def _import(node: Node, todo: list[Element]) -> Element:
     made.attributes.update(node.facts)
     if node.visibility:
         made.attributes["visibility"] = node.visibility
+    if is_a(node.kind, "Expose"):
+        made.attributes.update(isImportAll=True, visibility="protected")
     for relation in node.relations:
         made.targets.append((relation.kind, Link(relation.reference)))
     feature = next(end for kind, end in _IMPORTS.items() if is_a(node.kind, kind))
@@ -269,12 +271,16 @@ def _membership(owner: Element, node: Node, todo: list[Element]) -> Element:
 
 def _is_argument(node: Node) -> bool:
     """Whether it is an expression that a parameter carries to the one that owns it."""
-    return (
-        node.membership == "ParameterMembership"
-        and node.kind in _EXPRESSIONS
-        and node.owner is not None
-        and node.owner.kind in _INSTANTIATIONS
-    )
+    owner = node.owner
+    if node.membership != "ParameterMembership" or node.kind not in _EXPRESSIONS or owner is None:
+        return False
+    return owner.kind in _INSTANTIATIONS or _is_constructed(owner)
+
+
+def _is_constructed(node: Node) -> bool:
+    """Whether it is the result of a constructor, which has its arguments (KerML 8.2.5.8.3)."""
+    owner = node.owner
+    return owner is not None and owner.kind == "ConstructorExpression" and node.kind == "Feature"
 
 
 def _role(node: Node) -> dict[str, Fact]:
