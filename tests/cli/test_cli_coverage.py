@@ -130,6 +130,26 @@ def test_json_follows_the_schema_of_coverage_json_and_adds_up(plant):
     }
 
 
+UNKNOWN = """<?xml version="1.0" encoding="UTF-8"?>
+<xmi:XMI xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+ xmlns:flows="http://www.eclipse.org/papyrus/sysml/1.6/SysML/PortsAndFlows"
+ xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML">
+<uml:Model xmi:id="m" name="M"><packagedElement xmi:type="uml:Class" xmi:id="c" name="C">
+<ownedAttribute xmi:id="p" name="p" colour="red"><unit>mm</unit></ownedAttribute>
+</packagedElement></uml:Model>
+<flows:FlowProperty xmi:id="f" base_Property="p" directon="in"/></xmi:XMI>"""
+
+
+def test_what_nobody_knows_has_its_own_rule_and_reason_also_inside_one_another(here):
+    here.write("m.uml", UNKNOWN)
+    (file,) = json.loads(here.sysmlc("coverage", "m.uml", "--format", "json").stdout)["files"]
+    assert [(x["elements"], x["code"], x["element"], x["reason"]) for x in file["losses"]] == [
+        (1, "SM124", "M::C::p", "read without 'colour'"),
+        (1, "SM123", "M::C::p", "kept as text: no feature of UML has its name"),
+        (1, "SM125", "M::C::p::FlowProperty", "SysML has no tag 'directon'"),
+    ]
+
+
 def test_coverage_json_of_a_build_has_the_same_counts(plant):
     plant.sysmlc("plant.uml", "--emit", "graph")
     built = json.loads(plant.read("out/coverage.json"))
