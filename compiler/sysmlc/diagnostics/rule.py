@@ -35,6 +35,7 @@ class Rule:
 
 
 _rules: dict[str, Rule] = {}
+_names: set[str] = set()
 
 
 def rule(
@@ -49,9 +50,10 @@ def rule(
 ) -> Rule:
     """Make a rule and enter it in the catalogue; codes and names are never used twice."""
     made = Rule(code, name, severity, phrase, why, help, wrong, right)
-    if code in _rules or any(known.name == name for known in _rules.values()):
+    if code in _rules or name in _names:
         raise ValueError(f"rule {code} {name}: the code or the name is taken")
     _rules[code] = made
+    _names.add(name)
     return made
 
 

@@ -67,10 +67,12 @@ def groups_of(graph: Graph, activity: Element) -> dict[str, Element]:
 
     They start with what is around them and nothing follows them, so that only their nodes count.
     """
-    bodies = {h.body.id for e in graph.subtree(activity) for h in handlers_of(graph, e)}
+    within = list(graph.subtree(activity))
+    structured = [node for node in within if node.kind is Kind.STRUCTURED]
+    bodies = {h.body.id for e in within if structured for h in handlers_of(graph, e)}
     found: dict[str, Element] = {}
-    for node in graph.subtree(activity):
-        if node.kind is not Kind.STRUCTURED or node.subkind not in ("structured", ""):
+    for node in structured:
+        if node.subkind not in ("structured", ""):
             continue
         if node.id in bodies or "handlers" in node.attrs or _ends_itself(graph, node):
             continue
@@ -78,7 +80,7 @@ def groups_of(graph: Graph, activity: Element) -> dict[str, Element]:
         if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
             continue
         inside = {element.id for element in graph.subtree(node)}
-        if any(_crosses(graph, e, inside) for e in graph.subtree(activity) if e.kind in FLOWS):
+        if any(_crosses(graph, e, inside) for e in within if e.kind in FLOWS):
             found[node.id] = node
     return found
 

@@ -44,6 +44,15 @@ def domain_of(type_):
     return IntegerDomain(*type_) if isinstance(type_[0], int) else EnumerationDomain(tuple(type_))
 
 
+def test_json_is_laid_out_as_the_library_does():
+    """Some classes of conjuncts are empty, some are not; texts have quotes and umlauts."""
+    _, files, _ = emitted(GATE.replace('"Gate"', '"Gä\\"te"'))
+    (text,) = [one.text for path, one in files.items() if path.endswith(".json")]
+    assert '"liveness": []' in text
+    assert 'Gä\\"te' in text
+    assert text == json.dumps(json.loads(text), ensure_ascii=False, indent=2) + "\n"
+
+
 def test_three_files_a_contract():
     _, files, _ = emitted(GATE)
     assert list(files) == [

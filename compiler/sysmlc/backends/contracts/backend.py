@@ -3,14 +3,14 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.contracts.document import document
+from sysmlc.backends.contracts.document import text
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.spin import TooLargeError, spin
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
-from sysmlc.output import Output, json_text
+from sysmlc.output import Output
 from sysmlc.values import dataclass
 
 TOO_LARGE = rule(
@@ -51,8 +51,7 @@ class ContractsBackend:
         for contract in contracts:
             path = f"contracts/{names[contract.component]}"
             trace = tuple(_trace(graph, contract))
-            text = json_text(document(contract), 2)
-            output.add(f"{path}.contract.json", f"{text}\n", trace, self.name)
+            output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, self.name)
             _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
             _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
 

@@ -4,6 +4,7 @@ The neutral form of corpus/gr1 with ``{formula, class, origin, text}`` for each 
 """
 
 from collections.abc import Iterable
+from json.encoder import encode_basestring
 
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -15,27 +16,47 @@ from sysmlc.logic.contract import (
     IntegerDomain,
 )
 from sysmlc.logic.printing import print_formula
+from sysmlc.output import json_text
 
 FORMAT = "sysmlc-contract/1"
 
 
-def document(contract: Contract) -> dict[str, object]:
-    """JSON value of the contract (metamodels/sysmlc-contract.schema.json)."""
+def text(contract: Contract) -> str:
+    """JSON of the contract (metamodels/sysmlc-contract.schema.json), indented by two.
+
+    There are thousands of conjuncts, so they are written without dicts between.
+    """
+    known = {"format": FORMAT, "name": contract.component, "origin": contract.origin}
+    head = json_text(known | {"variables": _variables(contract)}, 2).removesuffix("\n}")
+    sides = (("assumptions", contract.assumptions), ("guarantees", contract.guarantees))
+    return f"{head}{''.join(_side_text(*side) for side in sides)}\n}}"
+
+
+def _variables(contract: Contract) -> dict[str, object]:
     return {
-        "format": FORMAT,
-        "name": contract.component,
-        "origin": contract.origin,
-        "variables": {
-            variable.name: {
-                "owner": variable.owner.value,
-                "type": _type(variable.domain),
-                "origin": variable.origin,
-            }
-            for variable in contract.variables
-        },
-        "assumptions": _side(contract.assumptions),
-        "guarantees": _side(contract.guarantees),
+        variable.name: {
+            "owner": str(variable.owner),
+            "type": _type(variable.domain),
+            "origin": variable.origin,
+        }
+        for variable in contract.variables
     }
+
+
+def _side_text(name: str, conjuncts: Iterable[Conjunct]) -> str:
+    found: dict[Class, list[str]] = {class_: [] for class_ in Class}
+    for one in conjuncts:
+        found[one.class_].append(
+            f'{{\n        "formula": {encode_basestring(print_formula(one.formula))},'
+            f'\n        "class": "{one.class_}",'
+            f'\n        "origin": {encode_basestring(one.origin)},'
+            f'\n        "text": {encode_basestring(one.text)}\n      }}'
+        )
+    rows = (
+        f'\n    "{class_}": [\n      {joined}\n    ]' if joined else f'\n    "{class_}": []'
+        for class_, joined in ((class_, ",\n      ".join(texts)) for class_, texts in found.items())
+    )
+    return f',\n  "{name}": {{{",".join(rows)}\n  }}'
 
 
 def _type(domain: Domain) -> str | list[int] | list[str]:
@@ -46,17 +67,3 @@ def _type(domain: Domain) -> str | list[int] | list[str]:
             return [low, high]
         case EnumerationDomain(literals):
             return list(literals)
-
-
-def _side(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, str]]]:
-    found: dict[str, list[dict[str, str]]] = {class_.value: [] for class_ in Class}
-    for one in conjuncts:
-        found[one.class_.value].append(
-            {
-                "formula": print_formula(one.formula),
-                "class": one.class_.value,
-                "origin": one.origin,
-                "text": one.text,
-            }
-        )
-    return found
