@@ -86,9 +86,8 @@ def test_parameters_redefine_by_position_so_a_nameless_one_has_the_name_of_the_g
         }
     """)
     assert model.name(element(model, "work::drill").members[0]) == "part1"
-    assert [model.qualified_name(g) for g in model.generals(element(model, "work::drill::result"))][
-        0
-    ] == "Drill::hole"
+    result = element(model, "work::drill::result")
+    assert model.qualified_name(model.generals(result)[0]) == "Drill::hole"
 
 
 def test_what_a_transition_accepts_is_known_in_its_guard_and_effect():

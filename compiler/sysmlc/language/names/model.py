@@ -280,7 +280,9 @@ def _report_core(model: Model, sink: Sink) -> None:
         for document in model.documents
         for node in document.root.walk()
         for relation in node.relations
-        if relation.reference.target is not None and root(relation.reference.target) in roots
+        if not relation.implied
+        and relation.reference.target is not None
+        and root(relation.reference.target) in roots
     ]
     if uses:
         sink.report(CORE, subject(*uses[0]), count=len(uses))
