@@ -24,6 +24,7 @@ def parse(
     from sysmlc.language.text import machine, nesting, tables
     from sysmlc.language.text.brackets import settle
     from sysmlc.language.text.build.namespaces import root
+    from sysmlc.language.text.check import check
     from sysmlc.language.text.errors import Errors
     from sysmlc.language.text.scan import scan
 
@@ -42,6 +43,8 @@ def parse(
         _recover(made, language, tokens, stack, wrong, errors)
     members: list[Node] = stack[3] if len(stack) > 3 and isinstance(stack[3], list) else []
     top = root(tokens, members)
+    if tokens.special or tokens.remarks:
+        check(tokens, errors)
     if nesting.has_long_expression(made, tokens):
         for node in nesting.cut(top):
             errors.deep(node.start)

@@ -13,7 +13,8 @@ from sysmlc.language.text.tables import Tables
 _GO_ON = (
     "} ?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ ** istype hastype @ as @@ "
     "meta . .? -> # ("
-).split()
+)
+"""What goes on with an expression, or ends the body that it is the result of."""
 
 
 def settle(tables: Tables, tokens: Tokens) -> None:
@@ -40,7 +41,7 @@ def _pattern(tables: Tables) -> re.Pattern[bytes]:
 
 @cache
 def _following(tables: Tables) -> frozenset[int]:
-    return frozenset(tables.types.words[word] for word in _GO_ON)
+    return frozenset(tables.types.words[word] for word in _GO_ON.split())
 
 
 def _closing(tokens: Tokens, index: int, opening: int, closing: int) -> int:

@@ -8,6 +8,7 @@ from sysmlc.language.text.grammar_words import expectation
 from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.text.scan import Fault, Tokens
 from sysmlc.sources import Source
+from sysmlc.suggest import did_you_mean
 
 _MOST = 100
 """Errors of one file that are told."""
@@ -72,7 +73,7 @@ class Errors:
         """A token does not fit."""
         said = expectation(expected, self.beginnings)
         found = self._found(at)
-        advice = _HINTS.get(self._tokens[at], "")
+        advice = _HINTS.get(self._tokens[at]) or self._about_word(at - 1)
         start = self._tokens.starts[at]
         self.report(rules.SYNTAX, start, found=found, expected=said, advice=advice)
 
@@ -97,8 +98,18 @@ class Errors:
         before = self._before(at)
         end = self._tokens.ends[before]
         said = self._found(before)
-        advice = f"put {words} there" if words != "';'" else "put ';' there, or a body in braces"
+        advice = f"put {words} there" if words != "';'" else self._about_word(before)
+        advice = advice or "put ';' there, or a body in braces"
         self.report(rules.MISSING, max(end - 1, 0), missing=words, before=said, advice=advice)
+
+    def _about_word(self, at: int) -> str:
+        """Where a member starts with a word that no keyword is: the keyword that may be meant."""
+        word = self._tokens[at] if at >= 0 else ""
+        is_first = at == 0 or self._tokens[at - 1] in (";", "{", "}")
+        if not is_first or not word.isidentifier():
+            return ""
+        said = did_you_mean(word, [known for known in self.beginnings if known.isalpha()])
+        return f"'{word}' is no keyword: {said}" if said.startswith("did") else ""
 
     def _before(self, at: int) -> int:
         """The last token before one that the text really has."""

@@ -55,6 +55,37 @@ CHARACTER = rule(
     wrong="part def Zelle { part Größe; }",
     right="part def Zelle { part 'Größe'; }",
 )
+PLACE = rule(
+    "SM195",
+    "v2-not-here",
+    Severity.ERROR,
+    "{what} stands {here}, where none may stand",
+    why="What it means is said of its owner, and this owner has no such thing.",
+    help="it belongs into the bodies of {where}",
+    wrong="part def Cell { subject cell : Cell; }",
+    right="requirement def Safe { subject cell : Cell; } part def Cell;",
+)
+PREFIX = rule(
+    "SM196",
+    "v2-prefix",
+    Severity.ERROR,
+    "{problem}",
+    why="The words before a declaration have one order and each a meaning for some declarations "
+    "only, so that all tools read the same (SysML 8.2.2.6.2, KerML 8.2.4.3.1).",
+    help="{advice}",
+    wrong="part def Cell { abstract in item tray; }",
+    right="part def Cell { in abstract item tray; }",
+)
+VISIBILITY = rule(
+    "SM197",
+    "v2-import-visibility",
+    Severity.ERROR,
+    "the import does not say who sees what it imports",
+    why="Imported names become names of this namespace, so the standard asks to say for whom.",
+    help="write private import, for this namespace alone, or public import, to pass the names on",
+    wrong="package Cell { import ScalarValues::*; }",
+    right="package Cell { private import ScalarValues::*; }",
+)
 DEEP = rule(
     "SM198",
     "v2-too-deep",
@@ -63,4 +94,14 @@ DEEP = rule(
     why="No model that a person wrote is so deep; tools that read it would stop without a word.",
     wrong="part p { " * 201 + "} " * 201,
     right="part p { " * 3 + "} " * 3,
+)
+COMBINATION = rule(
+    "SM199",
+    "v2-combination",
+    Severity.ERROR,
+    "{problem}",
+    why="Each kind of usage has its own words to say what it connects or does.",
+    help="{advice}",
+    wrong="part def Cell { part belt connect a to b; }",
+    right="part def Cell { connection belt connect a to b; }",
 )

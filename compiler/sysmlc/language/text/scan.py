@@ -36,12 +36,23 @@ class Fault:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What the builder found wrong: a ``prefix`` or a ``combination``, said in words."""
+
+    what: str
+    start: int
+    text: str
+    advice: str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Tokens:
     """The tokens of ``text``: their types by number, where each starts and ends.
 
     The last one is the end of the text. ``faults`` has what is no token. ``referential`` is for
     the builder: usages that say `ref`; whether that adds anything is known when owners are.
+    ``special`` has nodes that not every body takes, ``remarks`` what is wrong otherwise.
     """
 
     text: str
@@ -50,6 +61,8 @@ class Tokens:
     ends: list[int]
     faults: list[Fault]
     referential: list[Node]
+    special: list[Node]
+    remarks: list[Remark]
 
     def __getitem__(self, index: int) -> str:
         return self.text[self.starts[index] : self.ends[index]]
@@ -87,7 +100,7 @@ class Types:
 
 def scan(text: str, types: Types) -> Tokens:
     """All tokens of ``text``; never fails."""
-    tokens = Tokens(text, bytearray(), [], [], [], [])
+    tokens = Tokens(text, bytearray(), [], [], [], [], [], [])
     position = 0
     while position >= 0:
         position = _scan(tokens, types, position)

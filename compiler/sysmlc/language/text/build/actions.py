@@ -38,7 +38,7 @@ def _accept(
     members = [payload]
     if via is not None:
         members.append(parameter(via, via.start))
-    return Tail("AcceptActionUsage", members)
+    return Tail("AcceptActionUsage", "step", members)
 
 
 def _name(payload: Node) -> None:
@@ -78,11 +78,11 @@ def _send(
     while given and given[-1] is None:
         given.pop()
     start = tokens.ends[begin]
-    return Tail("SendActionUsage", [parameter(value, start) for value in given])
+    return Tail("SendActionUsage", "step", [parameter(value, start) for value in given])
 
 
 def _assign(tokens: Tokens, _at: int, begin: int, target: Node, value: Node) -> Tail:
-    tail = Tail("AssignmentActionUsage", [parameter(None, tokens.ends[begin])])
+    tail = Tail("AssignmentActionUsage", "step", [parameter(None, tokens.ends[begin])])
     if target.kind == "FeatureChainExpression":
         tail.relations = [target.relations[0]]
         tail.members = [parameter(target.members[0], target.start)]
@@ -95,7 +95,9 @@ def _assign(tokens: Tokens, _at: int, begin: int, target: Node, value: Node) -> 
 
 
 def _terminate(_tokens: Tokens, _at: int, _begin: int, value: Node | None) -> Tail:
-    return Tail("TerminateActionUsage", [] if value is None else [parameter(value, value.start)])
+    return Tail(
+        "TerminateActionUsage", "step", [] if value is None else [parameter(value, value.start)]
+    )
 
 
 def _block(tokens: Tokens, at: int, begin: int, body: list[Node]) -> Node:
@@ -131,20 +133,20 @@ def _if(tokens: Tokens, at: int, begin: int, condition: Node, *branches: Node | 
             members.append(nested)
         else:
             members.append(branch)
-    return Tail("IfActionUsage", members)
+    return Tail("IfActionUsage", "step", members)
 
 
 def _while(_tokens: Tokens, _at: int, _begin: int, *given: Node) -> Tail:
     for expression in (given[0], *given[2:]):
         _condition(expression)
-    return Tail("WhileLoopActionUsage", list(given))
+    return Tail("WhileLoopActionUsage", "step", list(given))
 
 
 def _loop(tokens: Tokens, _at: int, begin: int, body: Node, until: Node | None = None) -> Tail:
     members = [parameter(None, tokens.ends[begin]), body]
     if until is not None:
         members.append(_condition(until))
-    return Tail("WhileLoopActionUsage", members)
+    return Tail("WhileLoopActionUsage", "step", members)
 
 
 def _for(
@@ -158,7 +160,7 @@ def _for(
 ) -> Tail:
     variable = call(made("ReferenceUsage", FEATURE, tokens, begin + 1, begin + 2), names, tokens)
     specialize(variable, parts, tokens)
-    return Tail("ForLoopActionUsage", [variable, parameter(value, value.start), body])
+    return Tail("ForLoopActionUsage", "step", [variable, parameter(value, value.start), body])
 
 
 ACTIONS = {

@@ -8,7 +8,7 @@ from sysmlc.language.text.build.definitions import USAGES, Keyword, whole
 from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made
-from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.scan import Remark, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 from sysmlc.values import dataclass
 
@@ -33,6 +33,7 @@ class Tail:
     """
 
     kind: str = ""
+    word: str = ""
     members: list[Node] = field(default_factory=list)
     relations: list[Relation] = field(default_factory=list)
     ends: list[End] = field(default_factory=list)
@@ -40,6 +41,8 @@ class Tail:
 
 def apply(node: Node, tail: Tail, tokens: Tokens) -> Node:
     """Make the usage what its tail says."""
+    if tail.word and node.kind != tail.kind and node.kind not in _TAKEN[tail.word]:
+        _remark(node, tail, tokens)
     node.kind = tail.kind or node.kind
     node.relations += tail.relations
     for member in tail.members:
@@ -50,6 +53,37 @@ def apply(node: Node, tail: Tail, tokens: Tokens) -> Node:
     for end in tail.ends:
         node.own(make(end, tokens))
     return node
+
+
+_TAKEN = {
+    "connect": ("ConnectionUsage", "InterfaceUsage"),
+    "allocate": ("AllocationUsage",),
+    "bind": ("BindingConnectorAsUsage",),
+    "first": ("SuccessionAsUsage", "TransitionUsage"),
+    "of": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow"),
+    "from": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow", "Connector"),
+    "then": ("Succession",),
+    "step": ("ActionUsage", "PerformActionUsage"),
+}
+"""Words of tails, and the kinds of usages that they go with."""
+_OWNERS = {
+    "connect": "connections and interfaces",
+    "allocate": "allocations",
+    "bind": "bindings",
+    "first": "successions",
+    "of": "flows and messages",
+    "from": "flows and messages",
+    "then": "successions",
+    "step": "actions",
+}
+
+
+def _remark(node: Node, tail: Tail, tokens: Tokens) -> None:
+    words = "what an action does" if tail.word == "step" else f"'{tail.word}'"
+    text = f"{words} goes with {_OWNERS[tail.word]}, not with this declaration"
+    keyword = _OWNERS[tail.word].split(" and ")[0].removesuffix("s")
+    advice = f"declare it as {keyword}, or make two declarations of it"
+    tokens.remarks.append(Remark("combination", node.start, text, advice))
 
 
 def end_feature(end: End, tokens: Tokens) -> Node:
@@ -132,29 +166,29 @@ def _nary(_tokens: Tokens, _at: int, _begin: int, first: End, rest: list[End]) -
 
 
 def _connect(_tokens: Tokens, _at: int, _begin: int, ends: list[End]) -> Tail:
-    return Tail(ends=ends)
+    return Tail("", "connect", ends=ends)
 
 
 def _allocate(_tokens: Tokens, _at: int, _begin: int, ends: list[End]) -> Tail:
-    return Tail("AllocationUsage", ends=ends)
+    return Tail("AllocationUsage", "allocate", ends=ends)
 
 
 def _bind(_tokens: Tokens, _at: int, _begin: int, left: End, right: End) -> Tail:
-    return Tail("BindingConnectorAsUsage", ends=[left, right])
+    return Tail("BindingConnectorAsUsage", "bind", ends=[left, right])
 
 
 def _first_then(_tokens: Tokens, _at: int, _begin: int, source: End, target: End) -> Tail:
-    return Tail("SuccessionAsUsage", ends=[source, target])
+    return Tail("SuccessionAsUsage", "first", ends=[source, target])
 
 
 def _first_only(_tokens: Tokens, _at: int, _begin: int, end: End) -> Tail:
-    return Tail("Membership", relations=[Relation("Membership", end.reference)])
+    return Tail("Membership", "first", relations=[Relation("Membership", end.reference)])
 
 
 def _flow_of(_tokens: Tokens, _at: int, _begin: int, payload: Node) -> Tail:
     payload.membership = FEATURE
     payload.kind = "PayloadFeature"
-    return Tail(members=[payload])
+    return Tail("", "of", [payload])
 
 
 def _flow_of_between(
@@ -166,7 +200,7 @@ def _flow_of_between(
 
 
 def _flow_between(_tokens: Tokens, _at: int, _begin: int, source: End, target: End) -> Tail:
-    return Tail(ends=[source, target])
+    return Tail("", "from", ends=[source, target])
 
 
 def payload(
@@ -215,13 +249,18 @@ def _usage_tail(
     return whole(apply(node, tail, tokens), tokens, at, body or [])
 
 
+_BARE = {"of": "FlowUsage", "from": "FlowUsage"}
+
+
 def tail_usage(
     tokens: Tokens, at: int, begin: int, tail: Tail, body: list[Node] | None = None
 ) -> Node:
     """A usage without a declaration of its own."""
-    kind = tail.kind or "ConnectionUsage"
+    kind = tail.kind or _BARE.get(tail.word, "ConnectionUsage")
     membership = "" if kind == "Membership" else FEATURE
     node = apply(made(kind, membership, tokens, begin, at), tail, tokens)
+    if kind.endswith("ActionUsage") or kind == "Membership":
+        tokens.special.append(node)
     return whole(node, tokens, at, body or [])
 
 

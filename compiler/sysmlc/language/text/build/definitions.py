@@ -47,6 +47,7 @@ USAGES = {keyword: (f"{stem}Usage", FEATURE) for keyword, stem in _STEMS.items()
     "objective": ("RequirementUsage", "ObjectiveMembership"),
 }
 """Keyword of a usage: its metaclass, the membership by which it is owned."""
+_CONTROL = {"merge", "decide", "join", "fork"}
 Keyword = int | str
 
 
@@ -84,6 +85,8 @@ def _defined(
     node.relations += [Relation("Subclassification", name) for name in general or ()]
     if isinstance(body, Parallel):
         node.facts["isParallel"] = True
+    if kind == "EnumerationDefinition":
+        tokens.special.append(node)
     return own(node, body)
 
 
@@ -135,6 +138,8 @@ def _declared(
     node = call(made(kind, membership, tokens, begin, at), names, tokens)
     if word == "message":
         node.facts["isAbstract"] = True
+    if membership != FEATURE or word in _CONTROL:
+        tokens.special.append(node)
     if parts is not None:
         specialize(node, parts, tokens)
     return give(node, value)

@@ -7,6 +7,7 @@ from sysmlc.language.text.build.features import Part, give, multiplicity, specia
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.namespaces import metadata, prefix_metadata
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
+from sysmlc.language.text.build.prefixes import check
 from sysmlc.language.text.build.usages import Prefix
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Fact, Node, Reference, Relation
@@ -163,6 +164,10 @@ def _binding(
     return whole(apply(node, Tail(ends=ends or []), tokens), tokens, at, body)
 
 
+def _first_between(_tokens: Tokens, _at: int, _begin: int, source: End, target: End) -> Tail:
+    return Tail("", "then", ends=[source, target])
+
+
 def _namespace(tokens: Tokens, at: int, begin: int, names: Names | None, body: list[Node]) -> Node:
     return own(call(made("Namespace", OWNING, tokens, begin, at), names, tokens), body)
 
@@ -184,6 +189,7 @@ def _multiplicity_subset(
 def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
     """Apply what stands before a member."""
     node.start = tokens.starts[begin]
+    check(tokens, prefixes, node)
     for given in prefixes:
         if isinstance(given, Node):
             continue
@@ -310,6 +316,7 @@ ACTIONS = {
     "bound_name_of": _bound_name_of,
     "binding": _binding,
     "namespace": _namespace,
+    "first_between": _first_between,
     "multiplicity_range": _multiplicity_range,
     "multiplicity_subset": _multiplicity_subset,
     "prefixed": _prefixed,

@@ -44,19 +44,20 @@ def _nothing(_tokens: Tokens, _at: int, _begin: int, *_ignored: object) -> list[
     return []
 
 
-def _result(node: Node) -> Node:
+def _result(tokens: Tokens, node: Node) -> Node:
     node.membership = "ResultExpressionMembership"
+    tokens.special.append(node)
     return node
 
 
-def _only_result(_tokens: Tokens, _at: int, _begin: int, result: Node) -> list[Node]:
-    return [_result(result)]
+def _only_result(tokens: Tokens, _at: int, _begin: int, result: Node) -> list[Node]:
+    return [_result(tokens, result)]
 
 
 def _with_result(
-    _tokens: Tokens, _at: int, _begin: int, items: list[Node], result: Node
+    tokens: Tokens, _at: int, _begin: int, items: list[Node], result: Node
 ) -> list[Node]:
-    items.append(_result(result))
+    items.append(_result(tokens, result))
     return items
 
 

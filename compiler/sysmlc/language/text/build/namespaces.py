@@ -204,6 +204,7 @@ def _filtered(tokens: Tokens, at: int, begin: int, imported: Node, condition: No
 
 
 def _import(tokens: Tokens, at: int, begin: int, imported: Node, body: list[Node]) -> Node:
+    tokens.special.append(imported)
     imported.start, imported.end = tokens.starts[begin], tokens.ends[at - 1]
     return own(imported, body)
 
@@ -218,7 +219,8 @@ def _expose(tokens: Tokens, at: int, begin: int, imported: Node, body: list[Node
     return _import(tokens, at, begin, imported, body)
 
 
-def _filter(tokens: Tokens, at: int, begin: int, condition: Node) -> Node:
+def _filter(tokens: Tokens, _at: int, _begin: int, condition: Node) -> Node:
+    tokens.special.append(condition)
     condition.membership = "ElementFilterMembership"
     return condition
 

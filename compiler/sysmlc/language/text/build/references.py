@@ -42,6 +42,8 @@ def _usage(
         node = made(kind, membership, tokens, begin, at)
     node.kind, node.membership, node.role = kind, membership, role
     node.start = tokens.starts[begin]
+    if membership != FEATURE:
+        tokens.special.append(node)
     if negated:
         node.facts["isNegated"] = True
     return node

@@ -89,6 +89,12 @@ def _nameless(_tokens: Tokens, _at: int, _begin: int, parts: list[Part]) -> Name
     return None, parts
 
 
+def _started(tokens: Tokens, begin: int, at: int) -> Node:
+    node = made("TransitionUsage", FEATURE, tokens, begin, at)
+    tokens.special.append(node)
+    return node
+
+
 def _transition(
     tokens: Tokens,
     at: int,
@@ -99,7 +105,7 @@ def _transition(
     target: End,
     body: list[Node],
 ) -> Node:
-    node = made("TransitionUsage", FEATURE, tokens, begin, at)
+    node = _started(tokens, begin, at)
     if name is not None:
         specialize(call(node, name[0], tokens), name[1], tokens)
     node.relations.append(Relation("Membership", source))
@@ -122,7 +128,7 @@ def _target_transition(
     tokens: Tokens, at: int, begin: int, parts: list[Node] | None, target: End, body: list[Node]
 ) -> Node:
     """A transition from what stands before it."""
-    node = made("TransitionUsage", FEATURE, tokens, begin, at)
+    node = _started(tokens, begin, at)
     if parts and len(parts) == 1 and parts[0].role == "guard" and tokens[begin] == "if":
         node.own(parts[0])
         node.own(succession(target, tokens))
@@ -131,7 +137,7 @@ def _target_transition(
 
 
 def _else(tokens: Tokens, at: int, begin: int, target: End, body: list[Node]) -> Node:
-    node = made("TransitionUsage", FEATURE, tokens, begin, at)
+    node = _started(tokens, begin, at)
     node.own(succession(target, tokens))
     return own(node, body)
 
@@ -140,7 +146,7 @@ def _first_if_then(
     tokens: Tokens, _at: int, _begin: int, source: End, guard: Node, target: End
 ) -> Tail:
     members = [_part(guard, "guard"), succession(target, tokens)]
-    return Tail("TransitionUsage", members, [Relation("Membership", source.reference)])
+    return Tail("TransitionUsage", "first", members, [Relation("Membership", source.reference)])
 
 
 ACTIONS = {

@@ -8,6 +8,7 @@ from sysmlc.language.text.build.features import Part, multiplicity, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.namespaces import visible
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
+from sysmlc.language.text.build.prefixes import check
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Fact, Node, Reference, Relation
 
@@ -36,6 +37,8 @@ def prefix(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> No
     node.start = tokens.starts[begin]
     metadata = [given for given in prefixes if isinstance(given, Node)]
     words = [tokens[given] for given in prefixes if isinstance(given, int)]
+    if words:
+        check(tokens, prefixes, node)
     for word in words:
         if word == "library":
             node.kind = "LibraryPackage"
@@ -151,6 +154,7 @@ def _variant_reference(
 
 def _return(tokens: Tokens, _at: int, begin: int, node: Node) -> Node:
     node.membership = "ReturnParameterMembership"
+    tokens.special.append(node)
     node.start = tokens.starts[begin]
     return node
 
