@@ -26,10 +26,10 @@ xsi:schemaLocation="CAEX.xsd" SchemaVersion="3.0" FileName="plant.aml">
       <Attribute Name="y"><DefaultValue> 2 </DefaultValue><Value>3</Value></Attribute>
       <Attribute Name="z"><Value>3</Value><Value>4</Value></Attribute>
       <Attribute Name="y"><Value>5</Value></Attribute>
-      <Attribute Name="x > y" ID="&quot;q&quot;"/>
+      <Attribute Name="x > y" Unit="&quot;q&quot;"/>
       <ExternalInterface Name="p" ID="p1" RefBaseClassPath="L/P"/>
       <ExternalInterface Name="p" ID="p2" RefBaseClassPath="L/P"/>
-      <ExternalInterface Name="p" ID="&lt;p3&gt;" RefBaseClassPath="L/P" ChangeMode="Change"/>
+      <ExternalInterface Name="p" ID="p3" RefBaseClassPath="L/P" ChangeMode="Change"/>
       <InternalLink Name="l" RefPartnerSideA="p1" RefPartnerSideB="p2"/>
       <InternalLink Name="l &amp; m" RefPartnerSideA="p1" RefPartnerSideB="p2"/>
     </InternalElement>
@@ -94,6 +94,8 @@ NOT_PLAIN = {
     "a processing instruction": lambda text: text.replace("<Version", "<?tool <x> ?><Version"),
     "single quotes": lambda text: text.replace('"x > y"', "'x \" ID=\"5'"),
     "an attribute with prefix": lambda text: text.replace('="y"', '="y" xsi:type="T"'),
+    "a reference in an ID": lambda text: text.replace('ID="p2"', 'ID="&lt;p2&gt;"'),
+    "a line end in an ID": lambda text: text.replace('ID="p2"', 'ID="p\n2"'),
     "elements in a value": lambda text: text.replace(">5<", "><b>5</b><"),
     "another encoding": lambda text: text.replace("utf-8", "iso-8859-1"),
     "a fault": lambda text: text.replace("</Attribute>", "", 1),

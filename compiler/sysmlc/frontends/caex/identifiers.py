@@ -56,8 +56,8 @@ class Identifiers:
 
     def without(self, document: Document, tag: str) -> list[int]:
         """Rows of a file with this tag that have no ID."""
-        pairs = enumerate(zip(document.tags, document.ids, strict=True))
-        return [row for row, (name, id) in pairs if not id and name == tag]
+        tags = document.tags
+        return [row for row, id in enumerate(document.ids) if not id and tags[row] == tag]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:
         """The node with the ID: literally, else without regard to braces, case and alias.

@@ -14,7 +14,14 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.caex.columns import FOLDED
-from sysmlc.frontends.caex.tags import NotPlainError, Reader, Tag, text_in, without_references
+from sysmlc.frontends.caex.tags import (
+    NotPlainError,
+    Reader,
+    Tag,
+    is_plain,
+    text_in,
+    without_references,
+)
 from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
 from sysmlc.sources.encoding import codec
 from sysmlc.sources.xml import SEPARATOR, parse, parser
@@ -32,8 +39,8 @@ _ROOT = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*(?<!/)>(.*)""", re.DOTALL)
 _FOLDED_STARTS = "".join({name[0] for name in FOLDED})
 """What the names of folded elements start with: no others that are frequent do."""
 
-_SILENT, _FOLDING, _LISTENING = range(3)
-"""Whether text is listened to: not, for a column of its parent, for the row's own."""
+_SILENT, _LISTENING, _FOLDED = range(3)
+"""Whether text is listened to for the row's own; or it was taken for a column of its parent."""
 
 _Root = tuple[str, dict[str, str]]
 """Tag and attributes."""
@@ -125,12 +132,9 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
     for piece in pieces:
         if piece[0] == "/":
             end(piece)
-            if state != _FOLDING:
-                ends[pop()] = row
+            ends[pop()] = row
             state = _SILENT
             continue
-        if state == _FOLDING:
-            raise NotPlainError
         ordinal += 1
         above = stack[-1]
         tag, id = known(piece), ""
@@ -140,13 +144,16 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
                 column = texts.get(name)
                 if column is not None and above not in column:
                     column[above] = without_references(said) if "&" in said else said
-                    state = _FOLDING
+                    end(_ended(pieces))
                     continue
             tag, id = read(piece, row)
         name, values, is_empty, has_text, alike = tag
         if has_text or state:
-            state, is_row = _listen(texts, tag, piece, above, row)
-            if not is_row:
+            state = _listen(texts, tag, piece, above, row)
+            if state == _FOLDED:
+                state = _SILENT
+                if not is_empty:
+                    end(_ended(pieces))
                 continue
         add_tag(name)
         add_attributes(values)
@@ -163,6 +170,8 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
             add_end(0)
             if len(stack) > deepest:
                 raise NotPlainError
+    if not is_plain("".join(document.ids)):
+        raise NotPlainError
     document.has_changes = reader.has_changes
     document.has_stray = reader.has_stray or _has_stray(ended)
     document.shapes = {("CAEXFile", tuple(root)), *reader.shapes}
@@ -173,19 +182,25 @@ def _has_stray(ended: set[str]) -> bool:
     return any(piece.partition(">")[2].strip() for piece in ended)
 
 
-def _listen(
-    texts: dict[str, dict[int, str]], tag: Tag, piece: str, above: int, row: int
-) -> tuple[int, bool]:
-    """Take the text of a start tag; what is listened to then, and whether the tag is a row."""
+def _ended(pieces: Iterator[str]) -> str:
+    """The end tag of an element that is folded."""
+    piece = next(pieces)
+    if piece[0] != "/":
+        raise NotPlainError
+    return piece
+
+
+def _listen(texts: dict[str, dict[int, str]], tag: Tag, piece: str, above: int, row: int) -> int:
+    """Take the text of a start tag; what is listened to then."""
     name, values, is_empty, _, _ = tag
     said = "" if is_empty else text_in(piece)
     column = None if values else texts.get(name)
     if column is not None and above not in column:
         column[above] = said
-        return (_SILENT if is_empty else _FOLDING), False
+        return _FOLDED
     if said:
         texts[""][row] = said
-    return (_SILENT if is_empty else _LISTENING), True
+    return _SILENT if is_empty else _LISTENING
 
 
 def _chunks(text: str) -> Iterator[list[str]]:

@@ -49,6 +49,8 @@ class Reader:
     def read(self, piece: str, row: int) -> tuple[Tag, str]:
         """What a tag says and its ID, which is empty in attributes that several rows share.
 
+        The caller has to see that the IDs are plain.
+
         Raises NotPlainError.
         """
         if piece.startswith(_UNLIKE):
@@ -57,7 +59,7 @@ class Reader:
         head, sign, rest = piece.partition(' ID="')
         id, _, tail = rest.partition('"')
         known = self._with_id.get((head, tail)) if sign else None
-        if known is not None and _is_plain(id):
+        if known is not None:
             return known, id
         tag = self._parsed(piece, row)
         values = tag[1]
@@ -82,7 +84,7 @@ class Reader:
         name, names, is_empty, has_text = shape
         values = dict(zip(names, parts[1::2], strict=False))
         values.pop("xmlns", None)
-        if not _is_plain("".join(values.values())):
+        if not is_plain("".join(values.values())):
             values = {name: _value(text) for name, text in values.items()}
         return name, values, is_empty, has_text, row
 
@@ -123,14 +125,14 @@ def _character(reference: re.Match[str]) -> str:
     return chr(int(hexadecimal, 16) if hexadecimal else int(decimal))
 
 
-def _is_plain(value: str) -> bool:
+def is_plain(value: str) -> bool:
     """Whether the value of an attribute means what is written: no reference, no line end."""
     return "&" not in value and value.isprintable()
 
 
 def _value(text: str) -> str:
     """What the text of an attribute means: white space is blanks, unless it is referred to."""
-    return text if _is_plain(text) else without_references(text.translate(_SPACES))
+    return text if is_plain(text) else without_references(text.translate(_SPACES))
 
 
 def _remember(known: dict[_K, _V], key: _K, value: _V) -> None:
