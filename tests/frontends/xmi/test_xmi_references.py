@@ -182,6 +182,14 @@ def test_roots_of_magicdraw_have_the_same_id_in_every_project():
     assert alone.target == elsewhere
 
 
+def test_percent_encoded_folders_tell_files_of_one_name_apart():
+    """Ids as short as this one are in many files: only the whole path says which is meant."""
+    model = refers_to("wheel", "my%20parts/lib.uml")
+    others = [papyrus(LIBRARY, name=f"{folder}/lib.uml") for folder in ("my parts", "others")]
+    graph = read(model, *others).graph
+    assert "my parts/lib.uml#wheel" in [r.target for r in graph.pending]
+
+
 def test_percent_encoded_files_are_found():
     model = refers_to("wheel", "lib/My%20Parts%C3%A9.uml")
     other = papyrus(LIBRARY, name="lib/My Partsé.uml")
