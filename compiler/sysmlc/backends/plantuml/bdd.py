@@ -21,7 +21,7 @@ CLASSIFIERS = (
     Kind.ACTOR,
     Kind.ITEM,
 )
-BOXES = (*CLASSIFIERS, Kind.INSTANCE)
+BOXES = frozenset([*CLASSIFIERS, Kind.INSTANCE])
 ACTIVITY_NODES = frozenset(
     [
         Kind.ACTION,
@@ -38,7 +38,7 @@ _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All block definition diagrams of the graph, in the order of its packages."""
-    every = relations(graph)
+    every = [relation for relation in relations(graph) if _is_between_boxes(graph, relation)]
     homes = _homes(graph)
     drawn = {item.id for items in homes.values() for item in items}
     for package, classifiers in homes.items():
@@ -64,13 +64,13 @@ def is_block(element: Element) -> bool:
 
 def _is_shown(graph: Graph, element: Element) -> bool:
     """A behaviour has a box when it stands in a package and has no diagram of its own."""
+    if element.kind is not Kind.ACTIVITY and not is_block(element):
+        return False
     owner = graph.owner(element)
     if owner is not None and owner.kind is Kind.TEMPLATE_PARAMETER:
         return False
-    if element.kind is Kind.INSTANCE and is_in_frame(graph, element):
-        return False
     if element.kind is not Kind.ACTIVITY:
-        return is_block(element)
+        return element.kind is not Kind.INSTANCE or not is_in_frame(graph, element)
     is_free = owner is None or owner.kind is Kind.PACKAGE
     is_drawn = any(item.kind in ACTIVITY_NODES for item in graph.owned(element))
     return is_free and not is_drawn and not element.attrs.get("external")
@@ -91,7 +91,7 @@ def _of_package(
     drawn: set[str],
 ) -> Iterator[Diagram]:
     own = {item.id for item in classifiers}
-    ours = [relation for relation in every if _is_ours(graph, relation, own, drawn)]
+    ours = [relation for relation in every if _is_ours(relation, own, drawn)]
     in_rows = {r.row: r.shows for r in ours if r.row and r.target not in own}
     ours = [relation for relation in ours if relation.row not in in_rows]
     ours += _containments(graph, classifiers)
@@ -114,23 +114,24 @@ def _of_package(
         )
 
 
-def _is_ours(graph: Graph, relation: Relation, own: set[str], drawn: set[str]) -> bool:
+def _is_ours(relation: Relation, own: set[str], drawn: set[str]) -> bool:
     """A line belongs to the package of its source; if that is in no diagram, of its target."""
-    if not (_is_boxable(graph, relation.source) and _is_boxable(graph, relation.target)):
-        return False
-    if {graph[relation.source].kind, graph[relation.target].kind} == set(uc.FIGURES):
-        return False
     if relation.source in own:
         return True
     return relation.source not in drawn and relation.target in own
 
 
-def _is_boxable(graph: Graph, id: str) -> bool:
-    element = graph[id]
-    return element.kind in (*BOXES, *_STUBS) and element.role != "requirement"
+def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
+    ends = (graph[relation.source], graph[relation.target])
+    return all(map(_is_boxable, ends)) and {end.kind for end in ends} != set(uc.FIGURES)
+
+
+def _is_boxable(element: Element) -> bool:
+    return element.kind in _BOXABLE and element.role != "requirement"
 
 
 _STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
+_BOXABLE = frozenset([*BOXES, *_STUBS])
 
 
 def _containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:

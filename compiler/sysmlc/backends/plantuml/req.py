@@ -40,9 +40,9 @@ def relations(graph: Graph) -> list[Relation]:
 
 
 def _containments(graph: Graph) -> Iterator[Relation]:
-    for element in graph:
+    for element in filter(is_requirement, graph):
         owner = graph.owner(element)
-        if owner is not None and is_requirement(element) and is_requirement(owner):
+        if owner is not None and is_requirement(owner):
             yield Relation(owner.id, element.id, "+--")
 
 
