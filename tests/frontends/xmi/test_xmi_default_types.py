@@ -182,3 +182,14 @@ def _is_noted(child):
         etree.QName(above).localname in ("eAnnotations", "Extension")
         for above in (child, *child.iterancestors())
     )
+
+
+def test_a_file_of_plain_emf_has_its_types_from_xml_schema():
+    model = (
+        '<packagedElement {0}type="uml:Class" xmi:id="k" name="K"><ownedAttribute xmi:id="p">'
+        '<defaultValue {0}type="uml:LiteralInteger" xmi:id="v" value="3"/></ownedAttribute>'
+        "</packagedElement>"
+    )
+    plain, usual = read(papyrus(model.format("xsi:"))), read(papyrus(model.format("xmi:")))
+    assert plain.findings == []
+    assert plain.text == usual.text

@@ -9,6 +9,9 @@ from sysmlc.frontends.xmi.columns import fill, fill_swiftly
 from sysmlc.frontends.xmi.prefixes import IrregularError, Prefixes
 from sysmlc.sources import Source, SourceError
 
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+"""Its ``type`` says what ``xmi:type`` says where EMF saves without the options of UML2."""
+
 Shape = tuple[str, str, tuple[str, ...]]
 """What decides what becomes of a row: feature, type, and names of the attributes in order."""
 
@@ -161,9 +164,14 @@ def _local(tag: str) -> str:
 
 
 def _index_types(document: Document) -> None:
-    key = document.type_key
+    document.types = _types(document, document.type_key)
+    if _XSI in document.declared and not any(document.types):
+        document.types = _types(document, f"{_XSI}}}type")
+
+
+def _types(document: Document, key: str) -> list[str]:
     short = _Short()
-    document.types = [short[values.pop(key, "")] for values in document.attributes]
+    return [short[values.pop(key, "")] for values in document.attributes]
 
 
 class _Short(dict[str, str]):
