@@ -24,6 +24,13 @@ def test_a_misspelt_tag_is_told_once():
     assert reading.graph["sp"].attrs["tag.directon"] == "in"
 
 
+def test_tags_beyond_fifty_are_counted():
+    tags = " ".join(f'colour{number}="red"' for number in range(5000))
+    findings = list(read(papyrus(PROPERTY, FLOW.format("p", tags))).sink)
+    assert len(findings) == 50
+    assert findings[-1].notes == ("4950 more such tags are in the file",)
+
+
 def test_of_an_application_to_nothing_only_that_is_told():
     reading = read(papyrus(PROPERTY, FLOW.format("gone", 'directon="in"')))
     assert [finding.rule.code for finding in reading.sink] == ["SM113"]

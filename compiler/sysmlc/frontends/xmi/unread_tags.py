@@ -5,6 +5,7 @@ they have, and are often not there.
 """
 
 from collections.abc import Iterable, Iterator
+from itertools import islice
 
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
@@ -23,6 +24,9 @@ _WORDS = (
 )
 _TAGS = frozenset(_WORDS.split(" "))
 """Properties of all stereotypes of SysML 1.0 to 1.7 in lower case: tools differ in capitals."""
+
+_MOST = 50
+"""So many are told one by one, the others as a number."""
 
 _NO_TAGS = ("base_", "__EA")
 
@@ -46,8 +50,9 @@ def report(context: Context) -> None:
             _approximate(context, row, names)
             for name in dict.fromkeys(names):
                 found.setdefault((document.features[row], name), []).append(row)
-    for (stereotype, name), rows in found.items():
-        _report(context, stereotype, name, rows)
+    more = len(found) - _MOST
+    for number, ((stereotype, name), rows) in enumerate(islice(found.items(), _MOST), 1):
+        _report(context, stereotype, name, rows, more if number == _MOST else 0)
 
 
 def _unknown(names: Iterable[str]) -> Iterator[str]:
@@ -62,13 +67,14 @@ def _approximate(context: Context, row: int, names: tuple[str, ...]) -> None:
         context.told[row] = rules.UNKNOWN_TAG, f"SysML has no tag '{names[0]}'"
 
 
-def _report(context: Context, stereotype: str, name: str, rows: list[int]) -> None:
+def _report(context: Context, stereotype: str, name: str, rows: list[int], more: int) -> None:
     first, others = rows[0], len(rows) - 1
     application = context.graph[context.gids[first]]
     element = context.graph.qualified_name(context.graph.owner(application) or application)
     context.sink.report(
         rules.UNKNOWN_TAG,
         Subject(element, application.id, context.place(first)),
+        notes=(f"{more} more such tags are in the file",) if more > 0 else (),
         help=_near(name),
         tag=name,
         stereotype=stereotype,
