@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, types
 
-from sysmlc.frontends.caex import members
+from sysmlc.frontends.caex import members, structures
 from sysmlc.frontends.caex.plain import Plain
 from sysmlc.frontends.caex.swift import Swift
 from sysmlc.sources import load
@@ -24,6 +24,7 @@ def generally(monkeypatch):
             patch.setattr(Swift, "lower", lambda swift, site: members.lower(swift._context, site))
             patch.setattr(Plain, "attribute", lambda *_: False)
             patch.setattr(Plain, "interface", lambda *_: False)
+            patch.setattr(structures, "structure", lambda *_: None)
             return Read(*sources)
 
     return read
@@ -67,6 +68,19 @@ REPEATED = [
     '<Attribute Name="new" AttributeDataType="xs:int"><Value>7</Value></Attribute>',
     '<Attribute Name="new" Unit="foo"/>',
     '<Attribute Name="new" RefAttributeType="1/a"/>',
+    '<Attribute Name="new"><Attribute Name="x"/><Attribute Name="y" Unit="m"/></Attribute>',
+    '<Attribute Name="new"><Attribute Name="x"><Attribute Name="y"/></Attribute></Attribute>' * 2,
+    '<Attribute Name="new" RefAttributeType="Types/T"><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="new" RefAttributeType="Types/Gone"><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="new" Unit="m"><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="new"><Value>7</Value><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="new"><DefaultValue>7</DefaultValue><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="new"><RefSemantic CorrespondingAttributePath="x"/><Attribute Name="x"/>'
+    "</Attribute>",
+    '<Attribute Name="new" ID="n"><Attribute Name="x" ID="x"/></Attribute>',
+    '<Attribute Name="new"><Description>why</Description><Attribute Name="x"/></Attribute>',
+    '<Attribute><Attribute Name="x"/></Attribute>',
+    '<Attribute Name="s"><Attribute Name="i"><Attribute Name="x"/></Attribute></Attribute>',
     "<Attribute/>",
     '<ExternalInterface Name="p" ID="ip" RefBaseClassPath="Interfaces/P"/>',
     '<ExternalInterface Name="p" ID="ip" RefBaseClassPath="Interfaces/Gone"/>',

@@ -9,6 +9,7 @@ from sysmlc.frontends.caex import (
     mirrors,
     ports,
     special,
+    structures,
 )
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
@@ -57,7 +58,9 @@ def attribute(context: Context, owner: Type, top: Node, document: Document) -> N
         holder, row = waiting.pop()
         if plain is not None and plain.attribute(holder, row):
             continue
-        structure = _attribute(context, holder, document.node(row), document)
+        structure = None if plain is None else structures.structure(context, plain, holder, row)
+        if structure is None:
+            structure = _attribute(context, holder, document.node(row), document)
         if structure is not None:
             inside = document.children(row)
             waiting += [(structure, r) for r in reversed(inside) if document.tags[r] == "Attribute"]

@@ -54,7 +54,7 @@ class Plain:
 
     def __init__(self, context: Context, document: Document) -> None:
         self._context = context
-        self._document = document
+        self.document = document
         self._shapes: dict[_Stated, _Shape | None] = {}
         self._named: dict[int, _Named] = {}
         """By the first row that states the same."""
@@ -67,15 +67,15 @@ class Plain:
 
     def attribute(self, owner: Type, row: int) -> bool:
         """Add an attribute of a class; False when it is not plain."""
-        document = self._document
+        document = self.document
         if document.ends[row] > row + 1:
             return False
-        name, data_type, shape = self._named.get(document.alike[row]) or self._name(row)
+        name, data_type, shape = self._named.get(document.alike[row]) or self.named(row)
         if shape is None or document.ids[row] or row in self._defaults:
             return False
-        if owner.base is not None and owner.base.find("Attribute", name) is not None:
+        if owner.inherits("Attribute", name):
             return False
-        made = self._new(f"{owner.id}/{name or 'Attribute'}", name, owner.id, row, shape.attrs)
+        made = self.new(f"{owner.id}/{name or 'Attribute'}", name, owner.id, row, shape.attrs)
         if made is None:
             return False
         text = self._values.get(row)
@@ -92,24 +92,24 @@ class Plain:
         owner.members["Attribute", name] = Member(made.id, shape.type, document, row)
         return True
 
-    def _name(self, row: int) -> _Named:
+    def named(self, row: int) -> _Named:
         """The name, data type and shape of an attribute, and of all that state the same."""
-        values = self._document.attributes[row]
+        values = self.document.attributes[row]
         name, data_type = values.get("Name", ""), values.get("AttributeDataType", "")
         stated = (data_type, values.get("RefAttributeType", ""), values.get("Unit", ""))
         shape = self._shapes[stated] if stated in self._shapes else self._shape(stated, row)
-        found = self._named[self._document.alike[row]] = name, data_type, shape
+        found = self._named[self.document.alike[row]] = name, data_type, shape
         return found
 
     def _unfit(self, row: int, text: str, stated: str, shape: _Shape) -> AttrValue:
         data_type = fitting.data_type_of(stated, shape.type)
-        return fitting.unfit(self._context, self._document, row, text, data_type, stated)
+        return fitting.unfit(self._context, self.document, row, text, data_type, stated)
 
-    def _new(
+    def new(
         self, id: str, name: str, owner: str, row: int, attrs: dict[str, AttrValue]
     ) -> Element | None:
         """Add an attribute; None when the graph has the id."""
-        document = self._document
+        document = self.document
         source, ordinal = document.name, document.ordinals[row]
         if document.is_built_in:
             source, ordinal = "", -1
@@ -121,7 +121,7 @@ class Plain:
 
     def _shape(self, stated: _Stated, row: int) -> _Shape | None:
         data_type, path, unit = stated
-        context, document = self._context, self._document
+        context, document = self._context, self.document
         declared = self._declared(path.strip(), Family.ATTRIBUTE)
         shape = None
         if not isinstance(declared, Missing) and measures.is_unit(unit):
@@ -142,11 +142,11 @@ class Plain:
         id = path.partition("/")[0] if family is Family.ATTRIBUTE else path
         if mirrors.is_reference(self._context, id):
             return Missing("class", path)
-        return self._context.look_up(path, family, self._document)
+        return self._context.look_up(path, family, self.document)
 
     def interface(self, owner: Type, row: int) -> bool:
         """Add an interface of a class; False when it is not plain."""
-        document, context = self._document, self._context
+        document, context = self.document, self._context
         if not self._has_only_attributes(row):
             return False
         values = document.attributes[row]
@@ -154,7 +154,7 @@ class Plain:
         shape = self._ports[path] if path in self._ports else self._port(path)
         if shape is None:
             return False
-        if owner.base is not None and owner.base.find("ExternalInterface", name) is not None:
+        if owner.inherits("ExternalInterface", name):
             return False
         made = context.add_at(_PORT, document, row, owner.id)
         if shape.target is not None:
@@ -171,7 +171,7 @@ class Plain:
 
     def _said(self, row: int) -> dict[str, AttrValue]:
         """What the attributes of an interface say, told once of a single one and its value."""
-        document, context = self._document, self._context
+        document, context = self.document, self._context
         if document.ends[row] > row + 2 or row + 1 in self._defaults:
             return ports.said_of(context, document.node(row))
         key = document.alike[row + 1], self._values.get(row + 1)
@@ -185,14 +185,14 @@ class Plain:
 
     def _mean(self, meaning: str, owner: Type, made: Element, row: int) -> None:
         """What a port of a special class is for; it may name a file of another language."""
-        context, document = self._context, self._document
+        context, document = self._context, self.document
         context.special[made.id] = meaning
         if meaning in special.DOCUMENTS:
             node = document.node(row)
             documents.lower(context, node, document, owner.id, made.id, meaning, made.attrs)
 
     def _has_only_attributes(self, row: int) -> bool:
-        document = self._document
+        document = self.document
         if document.ends[row] == row + 1:
             return True
         tags = document.tags

@@ -32,6 +32,7 @@ class Sides:
         self._context = context
         self._sites = sites
         self._named: dict[Node, dict[str, Node]] = {}
+        self._below: dict[Node, dict[str, list[Node]]] = {}
 
     def direct(self, text: str) -> End | None:
         """The end that is named by the ID of an interface and nothing else, as in CAEX 3.0."""
@@ -74,16 +75,23 @@ class Sides:
         return Problem("no element has that id" if _is_id(text) else "it names no interface")
 
     def _by_path(self, path: str) -> tuple[Document, Node] | None:
-        names = path.split("/")
+        top, *names = path.split("/")
         for document in self._context.documents:
-            nodes = [n for n in document.root.children if n.name == names[0]]
-            for name in names[1:]:
-                nodes = [
-                    n for above in nodes for n in above.of("InternalElement") if n.name == name
-                ]
+            nodes = self._inside(document.root).get(top, [])
+            for name in names:
+                nodes = [node for above in nodes for node in self._inside(above).get(name, ())]
             if len(nodes) == 1:
                 return document, nodes[0]
         return None
+
+    def _inside(self, node: Node) -> dict[str, list[Node]]:
+        """What a path can mean next, by name: all paths of a file ask for it."""
+        known = self._below.get(node)
+        if known is None:
+            known = self._below[node] = {}
+            for one in node.children if node.row == 0 else node.of("InternalElement"):
+                known.setdefault(one.name, []).append(one)
+        return known
 
     def _of_node(self, node: Node) -> End | Problem:
         above = node.parent

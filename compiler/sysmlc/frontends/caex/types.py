@@ -64,6 +64,10 @@ class Type:
             one = one.base
         return None
 
+    def inherits(self, tag: str, name: str) -> bool:
+        """Whether a class that it specialises has the feature."""
+        return self.base is not None and self.base.find(tag, name) is not None
+
     def conforms(self, *names: str) -> bool:
         """Whether it is, or specialises, a class with the path."""
         return any(one.path == names for one in self.chain())
