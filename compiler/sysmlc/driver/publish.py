@@ -32,7 +32,12 @@ class Plan:
 
     def missing(self) -> list[str]:
         """Paths that the folder does not hold as they should be."""
-        return [path for path, digest in self.digests.items() if self._digest(path) != digest]
+        listed = {folder: self._names(folder) for folder in {*map(_parent, self.digests)}}
+        return [
+            path
+            for path, digest in self.digests.items()
+            if path.rpartition("/")[2] not in listed[_parent(path)] or self._digest(path) != digest
+        ]
 
     def differences(self) -> list[str]:
         """Paths that ``apply`` would write or remove, sorted."""
@@ -42,12 +47,23 @@ class Plan:
         """Where the file at the path is; a text, for there may be thousands."""
         return os.path.join(self.folder, path)  # noqa: PTH118
 
+    def _names(self, folder: str) -> frozenset[str]:
+        """What is in a folder: to look for each of thousands of new files takes longer."""
+        try:
+            return frozenset(os.listdir(self.place(folder)))  # noqa: PTH208
+        except (FileNotFoundError, NotADirectoryError):
+            return frozenset()
+
     def _digest(self, path: str) -> str:
         try:
             with open(self.place(path), "rb", buffering=0) as stream:  # noqa: PTH123
                 return hashlib.sha256(stream.read()).hexdigest()
         except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
             return ""
+
+
+def _parent(path: str) -> str:
+    return path.rpartition("/")[0]
 
 
 def plan(outcome: Outcome, folder: Path) -> Plan:

@@ -110,12 +110,17 @@ def _compiled(source: str, function: str) -> CodeType:
     return code
 
 
+@cache
+def _places(number: int) -> tuple[str, ...]:
+    return tuple(f"_{at}" for at in range(number))
+
+
 def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
     """The code with the names of fields instead of ``_0``, ``_1`` and so on."""
-    new = {f"_{number}": name for number, name in enumerate(names)}
+    get = dict(zip(_places(len(names)), names, strict=True)).get
     return code.replace(
-        co_varnames=tuple(new.get(name, name) for name in code.co_varnames),
-        co_names=tuple(new.get(name, name) for name in code.co_names),
+        co_varnames=tuple([get(name, name) for name in code.co_varnames]),
+        co_names=tuple([get(name, name) for name in code.co_names]),
     )
 
 

@@ -65,7 +65,8 @@ def _is_simple(cls: type) -> bool:
 def _is_special(annotation: object) -> bool:
     if isinstance(annotation, str):
         return any(word in annotation for word in ("ClassVar", "InitVar", "KW_ONLY"))
-    return isinstance(annotation, InitVar) or annotation in (InitVar, dataclasses.KW_ONLY)
+    is_mark = annotation is InitVar or annotation is dataclasses.KW_ONLY
+    return is_mark or isinstance(annotation, InitVar)
 
 
 def _made(cls: type[_T], *, frozen: bool, eq: bool) -> type[_T]:

@@ -27,6 +27,7 @@ _INFIX = {
 _PREFIX = {Op.NOT: "!", Op.NEXT: "X ", Op.ALWAYS: "[]", Op.EVENTUALLY: "<>"}
 _ATOM = re.compile(r"!?(X )?(\{[^{}]*\}|\w+)")
 _NAME = re.compile(r"[a-z_]\w*")
+_WORDS = ("false", "true")
 LIMIT = 20_000
 """Most propositions that one comparison may be written out to."""
 
@@ -155,7 +156,11 @@ def _cases(
     for value in values:
         chosen = {first.name: value}
         before, after = (now, then | chosen) if first.primed else (now | chosen, then)
-        inner = _cases(truth, rest, before, after, known)
+        inner = (
+            _cases(truth, rest, before, after, known)
+            if rest
+            else _WORDS[bool(truth(before, after))]
+        )
         if inner != "false":
             atom = _proposition(first.name, first.primed, value, known)
             parts.append(atom if inner == "true" else f"({atom} && {_wrapped(inner)})")
