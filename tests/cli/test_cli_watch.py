@@ -247,6 +247,9 @@ def test_the_configuration_is_watched_too(watch):
     watched = watch(files, "plant.uml")
     (watched.folder / "sysmlc.toml").write_bytes(b'output = "made"\n')
     watched.until(lambda: (watched.folder / "made" / "graph.json").exists())
+    in_pieces(watched.folder / "sysmlc.toml", b'output = "again"\n', 0.35)
+    watched.until(lambda: (watched.folder / "again" / "graph.json").exists())
+    assert watched.said() == ""
 
 
 class Clock:

@@ -78,7 +78,7 @@ class Watch:
 
         patience = self._settle * _PATIENCE
         for _ in range(_ROUNDS):
-            before = settling.rested(self._paths, self._settle)
+            before = settling.rested(self._paths, self._rest(patience))
             made = compiled(self._models, self._output, self._settings)
             if settling.stamps(before) != before:
                 continue
@@ -93,6 +93,15 @@ class Watch:
                 break
         self._told = _findings(made)
         return made
+
+    def _rest(self, patience: float) -> float:
+        """How long files must rest: faults of a configuration are told at once, when it is read."""
+        from sysmlc.cli import settling
+        from sysmlc.config import FILE_NAME
+
+        named = [path for path in self._paths if path.name in (FILE_NAME, "pyproject.toml")]
+        is_new = bool(named) and settling.is_fresh(settling.stamps(named), patience)
+        return patience if is_new else self._settle
 
 
 def compiled(

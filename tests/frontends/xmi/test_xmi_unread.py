@@ -72,6 +72,13 @@ def test_tags_notation_and_what_tools_name_in_their_own_namespaces_are_not_meant
     assert told(read(papyrus(model, applications))) == []
 
 
+def test_magicdraws_own_values_name_an_element_by_an_attribute():
+    value = "<defaultValue xmi:type='uml:ElementValue' xmi:id='v' element='c'/>"
+    owned = f"<ownedAttribute xmi:type='uml:Property' xmi:id='p'>{value}</ownedAttribute>"
+    model = f"<packagedElement xmi:type='uml:Class' xmi:id='c' name='C'>{owned}</packagedElement>"
+    assert read(magicdraw(model)).findings == []
+
+
 def test_what_tools_keep_in_extensions_is_not_meant():
     extension = "<xmi:Extension extender='T'><modelExtension colour='red'/></xmi:Extension>"
     held = "<packagedElement xmi:type='uml:Class' xmi:id='a'>{}</packagedElement>"

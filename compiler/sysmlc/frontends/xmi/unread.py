@@ -16,8 +16,9 @@ from sysmlc.sources import DEFAULT_LIMITS
 _OF_XMI = frozenset({"id", "idref", "href", "label", "nil", "type", "uuid", "version"})
 """Attributes in the namespace of XMI (XMI 2.5.1, clause 7.5.2)."""
 
-_WITH_READERS = frozenset({"href", "nsURI"})
-"""Attributes of no metaclass: a reference to another file, and Ecore's name of a profile."""
+_WITH_READERS = frozenset({"element", "href", "nsURI"})
+"""Attributes of no metaclass: what MagicDraw's ElementValue names, a reference to another file,
+and Ecore's name of a profile."""
 
 _MOST = 50
 """So many names are told one by one, the others as a number."""
