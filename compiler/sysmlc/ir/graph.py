@@ -114,9 +114,11 @@ class Graph:
             top = stack.pop()
             yield top
             below = owned.get(top.id)
+            if below is None:
+                continue
             if isinstance(below, Element):
                 stack.append(below)
-            elif below is not None:
+            else:
                 stack.extend(reversed(below))
 
     def ancestors(self, element: Element) -> Iterator[Element]:
