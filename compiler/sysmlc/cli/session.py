@@ -3,13 +3,12 @@
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
