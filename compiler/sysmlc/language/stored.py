@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from sysmlc import __version__
+from sysmlc import __version__, resources
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Sink
 from sysmlc.language.tree import Document, Node, Reference, Relation
@@ -111,7 +111,8 @@ def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | No
 def _code() -> str:
     """What a stored tree depends on beside the text: Python, our version, the parser's code."""
     here = Path(__file__).parent
-    files = [here / "tree.py", here / "stored.py", *sorted((here / "text").glob("*.py"))]
+    files = [here / "tree.py", here / "stored.py", *sorted((here / "text").rglob("*.py"))]
+    files += sorted(resources.path("grammars").glob("*.lark"))
     stats = [file.stat() for file in files]
     size, newest = sum(s.st_size for s in stats), max(s.st_mtime_ns for s in stats)
     return f"{sys.version_info.major}.{sys.version_info.minor}-{__version__}-{size:x}-{newest:x}"

@@ -106,7 +106,7 @@ class Errors:
         """Where a member starts with a word that no keyword is: the keyword that may be meant."""
         word = self._tokens[at] if at >= 0 else ""
         is_first = at == 0 or self._tokens[at - 1] in (";", "{", "}")
-        if not is_first or not word.isidentifier():
+        if not is_first or not word.isidentifier() or word in self.beginnings:
             return ""
         said = did_you_mean(word, [known for known in self.beginnings if known.isalpha()])
         return f"'{word}' is no keyword: {said}" if said.startswith("did") else ""

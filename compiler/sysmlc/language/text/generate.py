@@ -46,7 +46,8 @@ def tables(grammar: str) -> bytes:
 
 def _compact(table: "Table", terminals: "Collection[TerminalDef]") -> dict[str, object]:
     texts = {term.name: str(term.pattern.value) for term in terminals if term.pattern is not None}
-    rules = _rules(table)
+    states = _ordered(table)
+    rules = _rules(table, states)
     names = sorted(
         {str(name) for row in table.states.values() for name in row}
         - {r.origin.name for r in rules}
@@ -55,12 +56,12 @@ def _compact(table: "Table", terminals: "Collection[TerminalDef]") -> dict[str, 
     for rule in rules:
         numbers.setdefault(rule.origin.name, len(numbers) + 1)
     order = {rule: number for number, rule in enumerate(rules)}
-    rows, defaults = _rows(table, numbers, order)
+    rows, defaults = _rows(table, states, numbers, order)
     forms = [_form(rule, numbers) for rule in rules]
     _skip_units(rows, defaults, forms)
     return {
         "item": numbers["item"],
-        "start": table.start_states["start"],
+        "start": 0,
         "types": {name: numbers[name] for name in names},
         "words": {texts[name]: numbers[name] for name in names if name in texts},
         "rows": rows,
@@ -69,24 +70,42 @@ def _compact(table: "Table", terminals: "Collection[TerminalDef]") -> dict[str, 
     }
 
 
-def _rules(table: "Table") -> "list[Rule]":
+def _ordered(table: "Table") -> list[int]:
+    """The states in an order that only the grammar decides: as they are reached, by names."""
+    found = dict.fromkeys([table.start_states["start"]])
+    waiting = list(found)
+    while waiting:
+        reached = []
+        for _, (action, target) in sorted(table.states[waiting.pop(0)].items(), key=_name):
+            if action.name == "Shift" and target not in found:
+                found[target] = None
+                reached.append(target)
+        waiting += reached
+    return list(found)
+
+
+def _name(item: "tuple[str, object]") -> str:
+    return str(item[0])
+
+
+def _rules(table: "Table", states: list[int]) -> "list[Rule]":
     found: dict[Rule, None] = {}
-    for _, row in sorted(table.states.items()):
-        for name in sorted(row):
-            action, argument = row[name]
+    for state in states:
+        for _, (action, argument) in sorted(table.states[state].items(), key=_name):
             if action.name == "Reduce":
                 found.setdefault(argument)
     return list(found)
 
 
 def _rows(
-    table: "Table", numbers: Mapping[str, int], order: "Mapping[Rule, int]"
+    table: "Table", states: list[int], numbers: Mapping[str, int], order: "Mapping[Rule, int]"
 ) -> tuple[list[Row], list[int | None]]:
     rows, defaults = [], []
-    for state, row in sorted(table.states.items()):
+    renumbered = {state: number for number, state in enumerate(states)}
+    for state in states:
         made = {
-            numbers[name]: argument if action.name == "Shift" else ~order[argument]
-            for name, (action, argument) in sorted(row.items())
+            numbers[name]: renumbered[argument] if action.name == "Shift" else ~order[argument]
+            for name, (action, argument) in sorted(table.states[state].items(), key=_name)
         }
         only = set(made.values())
         default = only.pop() if len(only) == 1 and max(only) < 0 else None

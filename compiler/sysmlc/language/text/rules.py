@@ -92,8 +92,8 @@ DEEP = rule(
     Severity.ERROR,
     "this is nested more than {limit} levels deep and is not read",
     why="No model that a person wrote is so deep; tools that read it would stop without a word.",
-    wrong="part p { " * 201 + "} " * 201,
-    right="part p { " * 3 + "} " * 3,
+    wrong="201 parts, each in the body of the one before",
+    right="200 parts, each in the body of the one before",
 )
 COMBINATION = rule(
     "SM199",

@@ -73,7 +73,6 @@ ACTIONS = {
     "with_result": _with_result,
     "bracket": _same,
     "arguments": _same,
-    "commas": _same,
     "general": _same,
     "from": _nothing,
     "typed_by": _nothing,

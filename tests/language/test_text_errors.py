@@ -1,0 +1,207 @@
+"""What is wrong with a text is said where it is, in words, once, and the rest is read."""
+
+import pytest
+from texts_v2 import advised, parsed, said, understood
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.text import parse, rules
+
+EXAMPLES = [
+    rules.SYNTAX,
+    rules.MISSING,
+    rules.KEYWORD,
+    rules.UNCLOSED,
+    rules.CHARACTER,
+    rules.PLACE,
+    rules.PREFIX,
+    rules.VISIBILITY,
+    rules.COMBINATION,
+]
+
+
+@pytest.mark.parametrize("rule", EXAMPLES, ids=lambda rule: rule.code)
+def test_the_wrong_text_has_it_and_the_right_one_nothing(rule):
+    assert [line.split()[1] for line in said(rule.wrong)] == [rule.code]
+    assert said(rule.right) == []
+
+
+def test_sm190_says_what_was_found_and_what_was_expected():
+    tree, messages = parsed("part a : ; part b = 1 +; part c;")
+    assert messages == [
+        "1:10 SM190 ';' stands where a name is expected",
+        "1:24 SM190 ';' stands where an expression is expected",
+    ]
+    assert tree == [
+        "OwningMembership PartUsage a",
+        "OwningMembership PartUsage b",
+        "  FeatureValue (=) LiteralInteger value=1",
+        "OwningMembership PartUsage c",
+    ]
+
+
+def test_a_head_that_is_not_understood_keeps_its_body():
+    tree, messages = parsed("part a : : B { part c; part d : ; } part e;")
+    assert messages == [
+        "1:10 SM190 ':' stands where a name is expected",
+        "1:33 SM190 ';' stands where a name is expected",
+    ]
+    assert tree == [
+        "OwningMembership PartUsage a",
+        "  FeatureMembership PartUsage c",
+        "  FeatureMembership PartUsage d",
+        "OwningMembership PartUsage e",
+    ]
+
+
+def test_sm191_a_missing_semicolon_is_told_where_it_should_stand():
+    tree, messages = parsed("part a : A\npart b { part c }\npart d")
+    assert messages == [
+        "1:10 SM191 ';' is missing after 'A'",
+        "2:15 SM191 ';' is missing after 'c'",
+        "3:6 SM191 ';' is missing after 'd'",
+    ]
+    assert len(tree) == 4
+
+
+def test_sm191_a_missing_bracket_is_put_in():
+    assert said("attribute a = (1 + 2;") == ["1:20 SM191 ')' is missing after '2'"]
+    assert said("part b[2;") == ["1:8 SM191 ']' is missing after '2'"]
+
+
+def test_sm192_a_keyword_is_taken_as_the_name_that_it_was_meant_for():
+    tree, messages = parsed("part def Cell { port in : Input; attribute end = 3; }")
+    assert [message.split()[0] for message in messages] == ["1:22", "1:44"]
+    assert "  FeatureMembership PortUsage in FeatureTyping->Input" in tree
+    assert understood("port 'in' : Input;") == [
+        "OwningMembership PortUsage in FeatureTyping->Input"
+    ]
+    assert understood("port step;") == ["OwningMembership PortUsage step"]
+
+
+def test_a_binding_where_an_assignment_is_meant():
+    text = "action a { assign x = 1; } attribute y := 2;"
+    assert said(text) == ["1:21 SM190 '=' stands where ':=' is expected"]
+    assert "':='" in advised(text)[0]
+
+
+def test_sm193_the_innermost_open_brace_is_told_once():
+    assert said("part a { part b { part c; }") == ["1:8 SM193 this '{' is never closed"]
+    assert said("part a { part b { part c; ") == ["1:17 SM193 this '{' is never closed"]
+
+
+def test_sm193_comments_and_quotes_that_never_close():
+    assert said("part a; /* b") == ["1:9 SM193 this comment is never closed"]
+    assert said("part 'a b : C;\npart d;") == ["1:6 SM193 this name in quotes is never closed"]
+    assert said('attribute a = "b;') == ["1:15 SM193 this text in quotes is never closed"]
+
+
+def test_sm194_letters_that_want_quotes_are_told_at_their_bytes():
+    assert said("part ä : Ö;") == [
+        "1:6 SM194 'ä' belongs to no name, symbol or text",
+        "1:10 SM194 'Ö' belongs to no name, symbol or text",
+    ]
+    assert understood("part 'ä' : 'Ö'; /* ü */ // ß") == [
+        "OwningMembership PartUsage ä FeatureTyping->Ö",
+        "OwningMembership Comment body=ü ",
+    ]
+
+
+def test_sm194_a_number_that_no_computer_holds():
+    assert said("attribute a = 1e999;") == ["1:15 SM194 '1e999' is too large a number"]
+    assert said("attribute a = 1e300;") == []
+
+
+def test_a_comment_between_words_should_be_a_note():
+    tree, messages = parsed("part a /* b */ : C;")
+    assert messages == ["1:8 SM190 a comment /* */ stands where something else is expected"]
+    assert tree == ["OwningMembership PartUsage a FeatureTyping->C"]
+    assert "//* ... */" in advised("part a /* b */ : C;")[0]
+
+
+def test_a_symbol_too_much_is_told_and_left_out():
+    tree, messages = parsed("part a;; } part b;")
+    assert messages == [
+        "1:8 SM190 ';' stands where a declaration or '}' is expected",
+    ]
+    assert len(tree) == 2
+
+
+def test_a_word_that_nearly_is_a_keyword_is_asked_about():
+    assert advised("attribut x : T;") == ["'attribut' is no keyword: did you mean 'attribute'?"]
+
+
+def test_sm195_members_stand_only_where_they_mean_something():
+    assert said("part p { entry; return x; x + 1 }") == [
+        "1:10 SM195 an 'entry', 'do' or 'exit' action stands in 'p', where none may stand",
+        "1:17 SM195 'return' stands in 'p', where none may stand",
+        "1:27 SM195 an expression stands in 'p', where none may stand",
+    ]
+    assert said("state s { entry; } calc c { return x; x + 1 }") == []
+    assert said("enum def E { a; part b; }") == [
+        "1:17 SM195 what is no enumerated value stands in 'E', where none may stand"
+    ]
+
+
+def test_sm196_prefixes_have_an_order_and_a_meaning():
+    assert said("abstract in item a; in out item b; standard part c;") == [
+        "1:10 SM196 'in' stands after 'abstract'",
+        "1:24 SM196 'out' and 'in' exclude one another",
+        "1:36 SM196 'standard' cannot stand before this declaration",
+    ]
+    assert said("standard library package P { in abstract ref item a; end item b; }") == []
+    assert said("const end feature a; abstract class B;", "kerml") == []
+
+
+def test_sm197_every_import_says_for_whom():
+    assert said("import A::*; public import B; package P { import C::**; }") == [
+        "1:1 SM197 the import does not say who sees what it imports",
+        "1:43 SM197 the import does not say who sees what it imports",
+    ]
+
+
+def test_sm198_what_is_nested_too_deep_is_not_read():
+    fits, deep = ("part p { " * n + "}" * n for n in (200, 201))
+    assert said(fits) == []
+    assert said(deep) == ["1:1808 SM198 this is nested more than 200 levels deep and is not read"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "part p {" * 10_000,
+        "a = " + "(" * 10_000,
+        "a = " + "- " * 10_000 + "1;",
+        "a = 1" + "+1" * 9_999,
+    ],
+    ids=["braces", "parentheses", "signs", "sums"],
+)
+def test_sm198_ten_thousand_levels_are_one_message(text):
+    assert [line.split()[1] for line in said(text) if "SM191" not in line] == ["SM198"]
+
+
+def test_a_long_sequence_is_not_deep():
+    document = parse(f"attribute a = ({'1, ' * 3_000}1);", "m.sysml", "sysml", Sink())
+    literals = [node for node in document.root.walk() if node.kind == "LiteralInteger"]
+    assert len(literals) == 3_001
+
+
+def test_sm199_each_usage_has_its_own_words():
+    assert [line.split()[1] for line in said("part a connect b to c; connect b to c;")] == ["SM199"]
+
+
+def test_errors_of_one_line_do_not_flood():
+    assert len(said("part a : b c d e f g;\n" * 3)) == 3
+
+
+def test_of_very_many_errors_the_first_hundred_are_told():
+    assert len(said("part a : ;\n" * 1_000)) == 100
+
+
+@pytest.mark.parametrize("text", ["", " \n", "// nothing", "\ufeff"])
+def test_nothing_is_no_error(text):
+    assert understood(text) == []
+
+
+@pytest.mark.parametrize("text", ["\0", "\ufffd\ufffd", "'", '"', "/*", "}", "{", ";", "§" * 99])
+def test_what_is_no_text_at_all_is_told(text):
+    assert said(text)
