@@ -80,6 +80,7 @@ WRITTEN = {
     "with blanks in tags": lambda text: text.replace('">', '" >').replace("/>", " />"),
     "with letters of other scripts": lambda text: text.replace('"A"', '"Förderer \u6a5f"'),
     "with text between elements": lambda text: text.replace("</Attribute>", "</Attribute>more"),
+    "with a reference behind the root": lambda text: text.replace("  <Addi", "&#10;<Addi"),
     "with a namespace below": lambda text: text.replace("<WriterHeader", '<WriterHeader xmlns=""'),
 }
 
@@ -122,6 +123,16 @@ def test_a_file_that_is_too_deep_is_left_to_the_parser():
 def test_text_that_is_no_utf_8_is_left_to_the_parser():
     data = PLANT.encode("utf-16")
     assert not pieces.fill(Document("plant.aml"), Source("plant.aml", data))
+
+
+@pytest.mark.parametrize("said", ["more", '"', '"more"', "&amp;"])
+@pytest.mark.parametrize("tag", ["</Attribute>", 'RefPartnerSideB="p2"/>', '<Attribute Name="y">'])
+def test_text_where_there_should_be_none_is_noticed_in_both_ways(tag, said):
+    clean = PLANT.replace(", more", "")
+    before, _, behind = clean.rpartition(tag)
+    for fill in (pieces.fill, columns.fill):
+        assert not read(clean, fill).has_stray
+        assert read(before + tag + said + behind, fill).has_stray
 
 
 def test_rows_that_say_the_same_but_for_the_id_share_their_attributes():

@@ -110,7 +110,7 @@ def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
     document.ordinals.append(0)
     document.ends.append(0)
     if found[1]:
-        document.texts[""][0] = found[1]
+        document.texts[""][0] = without_references(found[1])
 
 
 def _cut(document: "Document", text: str, root: dict[str, str]) -> None:

@@ -81,6 +81,9 @@ class Reader:
         if shape is None:
             shape = self._shape(piece)
             _remember(self._shapes, key, shape)
+        if not len(parts) % 2:
+            # A quote behind the tag: all others come in pairs.
+            self.has_stray = True
         name, names, is_empty, has_text = shape
         values = dict(zip(names, parts[1::2], strict=False))
         values.pop("xmlns", None)
