@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields, replace
+from dataclasses import fields
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
@@ -15,6 +15,7 @@ from sysmlc.frontends.base import Caching, Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.suggest import did_you_mean
+from sysmlc.values import replace
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
