@@ -40,6 +40,7 @@ _BACKENDS = {
         "uml",
         "sysml",
         "aml",
+        "sysmlx",
     )
 }
 _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})

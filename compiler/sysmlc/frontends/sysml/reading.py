@@ -28,13 +28,14 @@ def read(
     cache: "Cache | None" = None,
 ) -> None:
     """Add the files to the graph. Raises SourceError for what exceeds the limits."""
-    from sysmlc.language.names import resolve
+    from sysmlc.language.names import Model, resolve
 
     documents = [one for source in sources if (one := _document(source, sink, cache)) is not None]
+    found = _library(library, cache, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
 
-        link(documents, sink)
+        link(documents, sink, found)
     own = [one for one in documents if not _is_ours(one)]
     ours = [one for one in documents if _is_ours(one)]
     for document in ours:
@@ -43,7 +44,8 @@ def read(
     if not own:
         return
     ours += _missing(own, ours, cache)
-    model = resolve([*own, *ours], _library(library, cache, sink), sink)
+    model = resolve([*own, *ours], found, sink)
+    graph.store(Model, [*graph.derived(Model), model])
     lower(own, model, graph, sink, coverage)
 
 

@@ -8,7 +8,7 @@ import re
 from uuid import NAMESPACE_URL, UUID, uuid5
 
 from sysmlc.language.exchange.naming import effective
-from sysmlc.language.exchange.unfolding import Element
+from sysmlc.language.exchange.unfolding import Element, unfold, walk
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Document, Node
 
@@ -17,6 +17,20 @@ _BASIC = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _ESCAPES = str.maketrans(
     {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\f": "\\f", "\b": "\\b"}
 )
+
+
+def ids(document: Document) -> dict[str, Node]:
+    """The elements of a document by the ids that they and their memberships have in interchange."""
+    root = unfold(document.root)
+    identify(root, document)
+    found: dict[str, Node] = {}
+    for element, owner in walk(root):
+        node = element.node
+        if element.kind == "ConjugatedPortDefinition" and owner is not None:
+            node = conjugated(element)
+        if node is not None:
+            found[element.id] = node
+    return found
 
 
 def identify(root: Element, document: Document) -> None:
@@ -100,15 +114,15 @@ def _name(owned: Element) -> str:
         return ""
     member = owned.owned[0]
     if member.kind == "ConjugatedPortDefinition":
-        return f"~{_conjugated(member)}"
+        original = conjugated(member)
+        return f"~{effective(original)}" if original else ""
     return effective(member.node) if member.node is not None else ""
 
 
-def _conjugated(member: Element) -> str:
-    for feature, target in member.owned[0].targets:
-        if feature == "originalPortDefinition" and isinstance(target, Element) and target.node:
-            return effective(target.node)
-    return ""
+def conjugated(definition: Element) -> Node | None:
+    """The port definition that a ConjugatedPortDefinition conjugates."""
+    targets = (target for _, target in definition.owned[0].targets)
+    return next((one.node for one in targets if isinstance(one, Element) and one.node), None)
 
 
 def escaped(name: str) -> str:

@@ -1,7 +1,7 @@
 """Effective and qualified names of elements whose references are resolved (KerML 1.0, 8.3.2.1)."""
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Reference
 
 _PERFORMANCES = kinds_of("PerformActionUsage")
 _NAMED_BY_REFERENCE = kinds_of("RequirementConstraintMembership") | {"VariantMembership"}
@@ -49,8 +49,16 @@ def effective(node: Node, depth: int = 0) -> str:
         return ""
     kinds = _naming_relations(node)
     named = next((one for kind in kinds for one in node.relations if one.kind == kind), None)
-    target = named.reference.target if named else None
-    return effective(target, depth + 1) if target else ""
+    if named is None:
+        return ""
+    target = named.reference.target
+    return effective(target, depth + 1) if target else _last(named.reference)
+
+
+def _last(reference: Reference) -> str:
+    """The name by which a reference that is not resolved calls its target; none for an id."""
+    name = reference.chain[-1][-1] if reference.chain and reference.chain[-1] else ""
+    return "" if "#" in name else name
 
 
 def _naming_relations(node: Node) -> tuple[str, ...]:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
-from posixpath import dirname, join, normpath
+from posixpath import basename, dirname, join, normpath, splitext
 from urllib.parse import unquote
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.naming import Naming, shown
+from sysmlc.language.library import Library
 from sysmlc.language.tree import Document, Node, Reference
 from sysmlc.values import dataclass
 
@@ -77,21 +78,47 @@ def resolve(references: References, path: str, sink: Sink) -> list[Pending]:
     return outward
 
 
-def link(documents: Iterable[Document], sink: Sink) -> None:
+def link(documents: Iterable[Document], sink: Sink, library: Library | None = None) -> None:
     """Resolve references between documents that were read from interchange files.
 
-    Hrefs into files that are not among the documents stay as they are, with ``targets`` None.
+    Hrefs into files that are not among the documents lead into the library, where it has a file
+    of that name and an element that the standard gives that id; others stay as they are, with
+    ``targets`` None.
     """
     read = [one for one in documents if isinstance(one, ExchangeDocument)]
-    by_path = {normpath(document.path): document for document in read}
+    finder = _Finding(read, library)
     naming = Naming()
     for document in read:
         for pending in document.pending:
-            files = [_file(document.path, link) for link in pending.links]
-            if all(file in by_path for file in files):
-                _resolve(pending, _finder(document, by_path), document.path, sink)
+            if all(finder.has(_file(document.path, link)) for link in pending.links):
+                _resolve(pending, finder.of(document.path), document.path, sink)
     for document in read:
         name(document.root, naming)
+
+
+class _Finding:
+    """Elements by their ids, in documents that were read and in files of the library."""
+
+    def __init__(self, read: Iterable[ExchangeDocument], library: Library | None) -> None:
+        self._ids = {normpath(document.path): document.ids for document in read}
+        self._library = library
+        paths = library.paths() if library else ()
+        self._stems = {basename(splitext(path)[0]): path for path in paths}
+
+    def has(self, file: str) -> bool:
+        return file in self._ids or basename(splitext(file)[0]) in self._stems
+
+    def of(self, path: str) -> _Finder:
+        """What finds the links of the file ``path``."""
+        return lambda link: self._known(_file(path, link)).get(_local(link))
+
+    def _known(self, file: str) -> Mapping[str, Node]:
+        if file not in self._ids and self._library is not None:
+            from sysmlc.language.exchange.identity import ids
+
+            stem = basename(splitext(file)[0])
+            self._ids[file] = ids(self._library.document(self._stems[stem]))
+        return self._ids[file]
 
 
 def name(root: Node, naming: Naming) -> None:
@@ -101,13 +128,6 @@ def name(root: Node, naming: Naming) -> None:
             targets = relation.reference.targets
             if targets is not None and len(targets) == len(relation.reference.chain):
                 relation.reference.chain = tuple(map(naming.qualified, targets))
-
-
-def _finder(document: ExchangeDocument, by_path: Mapping[str, ExchangeDocument]) -> _Finder:
-    def find(link: str) -> Node | None:
-        return by_path[_file(document.path, link)].ids.get(_local(link))
-
-    return find
 
 
 def _resolve(pending: Pending, find: _Finder, path: str, sink: Sink) -> None:

@@ -1,12 +1,12 @@
 """Writes the tree of KerML and SysML v2 as XMI (.kermlx, .sysmlx; KerML 1.0, 10.2)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from posixpath import dirname, relpath, splitext
 from urllib.parse import quote
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
-from sysmlc.language.exchange.identity import identify
+from sysmlc.language.exchange.identity import conjugated, identify
 from sysmlc.language.exchange.naming import shown
 from sysmlc.language.exchange.unfolding import Element, Link, unfold, walk
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
@@ -17,20 +17,25 @@ _MEMBERSHIPS = {"importedMembership"}
 """Features that refer to the membership of an element, not to the element."""
 
 
-def write(document: Document, others: Sequence[Document], sink: Sink) -> bytes:
+def write(
+    document: Document,
+    others: Sequence[Document],
+    sink: Sink,
+    place: Callable[[Document], str] | None = None,
+) -> bytes:
     """The document as an interchange file; references are those that names were resolved to.
 
     ``others`` are the documents, libraries included, that references may lead to: they become
-    hrefs relative to the path of the document, to interchange files of the same names. What
-    leads nowhere is reported and left out.
+    hrefs relative to the path of the document, to where ``place`` says that the interchange
+    files are, by default those of the same names. What leads nowhere is reported and left out.
     """
-    writer = _Writer(document, others, sink)
+    writer = _Writer(document, others, sink, place or interchange_path)
     return ("\n".join(lines(writer.root, writer.targets)) + "\n").encode()
 
 
 def interchange_path(document: Document) -> str:
     """The path of the interchange file of a document: another suffix, archives as folders."""
-    path = document.path.replace("!", "/")
+    path = document.path.removeprefix("sysmlc:").replace("!", "/")
     return splitext(path)[0] + _SUFFIXES[document.language]
 
 
@@ -49,7 +54,7 @@ class _File:
                 self.memberships.setdefault(element.node, element)
                 self.elements[element.node] = element
             if element.kind == "ConjugatedPortDefinition" and owner is not None:
-                self.conjugates[_definition(element)] = element
+                self.conjugates[conjugated(element)] = element
 
     def target(self, node: Node, feature: str) -> Element | None:
         if feature == "conjugatedPortDefinition":
@@ -57,19 +62,20 @@ class _File:
         return (self.memberships if feature in _MEMBERSHIPS else self.elements).get(node)
 
 
-def _definition(conjugate: Element) -> Node | None:
-    """The port definition that is conjugated."""
-    targets = (target for _, target in conjugate.owned[0].targets)
-    return next((one.node for one in targets if isinstance(one, Element) and one.node), None)
-
-
 class _Writer:
-    def __init__(self, document: Document, others: Sequence[Document], sink: Sink) -> None:
+    def __init__(
+        self,
+        document: Document,
+        others: Sequence[Document],
+        sink: Sink,
+        place: Callable[[Document], str],
+    ) -> None:
+        self._place = place
         self._document = document
         self._sink = sink
         self._roots = {one.root: one for one in others}
         self._files: dict[Node, _File] = {document.root: _File(document)}
-        self._folder = dirname(interchange_path(document)) or "."
+        self._folder = dirname(place(document)) or "."
         self.root = self._files[document.root].root
         self._prune()
 
@@ -96,7 +102,7 @@ class _Writer:
             return "", ""
         if root is self._document.root:
             return target.id, ""
-        path = relpath(interchange_path(file.document), self._folder)
+        path = relpath(self._place(file.document), self._folder)
         return f"{quote(path)}#{target.id}", target.kind
 
     def _file(self, root: Node) -> _File | None:

@@ -1,0 +1,67 @@
+"""Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
+
+from collections.abc import Sequence
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.language.exchange import interchange_path, write
+from sysmlc.language.names import Model
+from sysmlc.language.tree import Document
+from sysmlc.output import Output
+from sysmlc.values import dataclass
+
+_LIBRARY = "sysml.library.xmi"
+"""The folder of the standard library's interchange files in its releases; references lead there."""
+
+
+@dataclass(frozen=True, slots=True)
+class SysmlxBackend:
+    """Writes models of SysML v2 as they were read, other models as SysML v2 would say them."""
+
+    name: str = "sysmlx"
+    summary: str = "the model as SysML v2 interchange (XMI), sysmlx/*.sysmlx"
+    is_default: bool = False
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add a file for each file of the model; report what cannot be said."""
+        models = graph.derived(Model)
+        if not models or any(one.language != "sysml" for one in options.inputs):
+            models = [_said(graph, sink, options)]
+        for model in models:
+            known = [*model.documents, *model.library.loaded()]
+            for document in model.documents:
+                path = f"sysmlx/{interchange_path(document)}"
+                data = write(document, known, sink, _Places(model.documents))
+                output.add(path, data.decode(), (), self.name)
+
+
+class _Places:
+    """Where the interchange files of documents are, relative to the folder of ours."""
+
+    def __init__(self, own: Sequence[Document]) -> None:
+        self._own = {document.root for document in own}
+
+    def __call__(self, document: Document) -> str:
+        path = interchange_path(document)
+        return path if document.root in self._own else f"{_LIBRARY}/{path}"
+
+
+def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
+    """The graph as SysML v2 text says it, with names resolved; losses are those of the text."""
+    from sysmlc.backends.sysml import BACKEND as TEXT
+    from sysmlc.language.library import find
+    from sysmlc.language.names import resolve
+    from sysmlc.language.text import parse
+
+    written = Output()
+    TEXT.emit(graph, written, sink, options)
+    unseen = Sink()
+    documents = [
+        parse(one.text, one.path.removeprefix("sysml/"), "sysml", unseen)
+        for one in written.artefacts()
+    ]
+    return resolve(documents, find(), unseen)
+
+
+BACKEND = SysmlxBackend()

@@ -1,0 +1,129 @@
+"""The back end ``sysmlx``: v2 inputs as their syntax says them, others as their text would."""
+
+from uuid import NAMESPACE_URL, uuid5
+
+import pytest
+
+from sysmlc.backends.base import EmitOptions, InputFile
+from sysmlc.backends.sysmlx import BACKEND
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.sysml import FRONTEND
+from sysmlc.ir import Graph
+from sysmlc.ir.text import parse_text
+from sysmlc.language.exchange import link, read
+from sysmlc.output import Output
+from sysmlc.sources import Source
+
+SCALARS = uuid5(NAMESPACE_URL, "https://www.omg.org/spec/KerML/ScalarValues")
+REAL = uuid5(SCALARS, "ScalarValues::Real")
+"""As KerML 1.0, 9.1, gives ids to the elements of its libraries."""
+
+ROBOTS = """\
+package Robots {
+    private import ScalarValues::Real;
+    part def Robot {
+        attribute reach : Real = 1.5;
+        port tool : ~Tool;
+    }
+    port def Tool;
+}
+"""
+CELL = """\
+package Cells {
+    private import Robots::*;
+    part def Cell {
+        part arm : Robot[2];
+    }
+}
+"""
+
+
+def compiled(*files):
+    graph, sink = Graph(), Sink()
+    sources = [Source(path, text.encode()) for path, text in files]
+    FRONTEND.read(sources, graph, sink, Coverage())
+    inputs = tuple(InputFile(path, "", "sysml") for path, _ in files)
+    return graph, inputs
+
+
+def emitted(graph, inputs=()):
+    output, sink = Output(), Sink()
+    BACKEND.emit(graph, output, sink, EmitOptions(inputs=inputs))
+    return {one.path: one.text for one in output.artefacts()}, [one.rule.code for one in sink]
+
+
+def again(files):
+    sink = Sink()
+    documents = [read(Source(path, text.encode()), sink) for path, text in files.items()]
+    link(documents, sink)
+    assert [found.message for found in sink] == []
+    return documents
+
+
+def test_each_file_of_a_v2_model_becomes_one_of_its_own():
+    graph, inputs = compiled(("cells/cell.sysml", CELL), ("robots.sysml", ROBOTS))
+    files, codes = emitted(graph, inputs)
+    assert (list(files), codes) == (["sysmlx/cells/cell.sysmlx", "sysmlx/robots.sysmlx"], [])
+    assert 'href="../robots.sysmlx#' in files["sysmlx/cells/cell.sysmlx"]
+    cells, robots = again(files)
+    (arm,) = (node for node in cells.root.walk() if node.name == "arm")
+    (robot,) = (node for node in robots.root.walk() if node.name == "Robot")
+    assert arm.relations[0].reference.target is robot
+
+
+def test_references_to_the_standard_library_lead_to_its_released_files():
+    files, _ = emitted(*compiled(("robots.sysml", ROBOTS)))
+    text = files["sysmlx/robots.sysmlx"]
+    assert 'href="sysml.library.xmi/' in text
+    assert f"ScalarValues.kermlx#{REAL}" in text
+
+
+def test_what_was_written_is_read_to_the_same_graph():
+    graph, inputs = compiled(("robots.sysml", ROBOTS))
+    files, _ = emitted(graph, inputs)
+    (path, text), read_again = next(iter(files.items())), Graph()
+    FRONTEND.read([Source(path, text.encode())], read_again, Sink(), Coverage())
+    assert names(read_again) == names(graph)
+
+
+def names(graph):
+    return sorted((str(one.kind), graph.qualified_name(one)) for one in graph)
+
+
+def test_other_models_are_written_as_their_text_would_be():
+    graph = parse_text('Package p "Plant"\n  Class a "Gate"\n    Property b "open"\n')
+    files, _ = emitted(graph)
+    (document,) = again(files)
+    assert next((node.kind, node.name) for node in document.root.walk() if node.name) == (
+        "Package",
+        "Plant",
+    )
+    assert "Gate" in {node.name for node in document.root.walk()}
+
+
+def test_what_the_text_cannot_say_is_told():
+    graph = parse_text('Package p "Plant"\n  Class a "A"\n    TemplateParameter t ""\n')
+    assert emitted(graph)[1] == ["SM730"]
+
+
+@pytest.mark.corpus
+def test_the_ice_laboratory_is_valid_for_the_metamodel(corpus, tmp_path):
+    from pyecore.resources import URI, ResourceSet
+
+    folder = corpus / "sysml2/ice-lab"
+    paths = sorted(folder.rglob("*.sysml"))
+    graph, inputs = compiled(
+        *((path.relative_to(folder).as_posix(), path.read_text("utf-8")) for path in paths)
+    )
+    files, codes = emitted(graph, inputs)
+    assert (len(files), set(codes)) == (18, {"SM758"})
+    resources = ResourceSet()
+    metamodel = corpus / "sysml2/interchange/metamodel/SysML.ecore"
+    package = resources.get_resource(URI(str(metamodel))).contents[0]
+    resources.metamodel_registry[package.nsURI] = package
+    for path, text in list(files.items())[:8]:
+        file = tmp_path / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, "utf-8")
+        (root,) = resources.get_resource(URI(str(file))).contents
+        assert sum(1 for _ in root.eAllContents()) == text.count("xmi:id=") - 1
