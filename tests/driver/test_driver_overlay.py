@@ -162,7 +162,23 @@ def test_a_broken_overlay_is_an_error_and_the_model_is_compiled_without(folder):
 def test_an_overlay_that_is_not_there_ends_with_exit_code_2(folder):
     code, _, errors = sysmlc("check", folder / "line.ir", "--overlay", folder / "gone.yaml")
     assert code == 2
-    assert "SM179" in errors
+    assert "error[SM170 missing-file]: there is no file or folder" in errors
+    assert "gone.yaml" in errors
+
+
+def test_a_model_is_no_overlay_though_it_is_an_input_too(folder):
+    code, _, errors = sysmlc("check", folder / "line.ir", "--overlay", folder / "line.ir")
+    assert code == 1
+    assert "error[SM321 overlay-shape]" in errors
+
+
+def test_what_rests_on_an_entry_that_is_wrong_is_withheld(folder):
+    """The diagram with the connector whose flow has no item; the other diagrams are written."""
+    write(folder, "line.overlay.yaml", FLOW.replace("item: Pallet", "item: Palette"))
+    made = build(folder / "line.ir", emit=("plantuml",))
+    assert [one[0] for one in told(made)] == ["SM300", "SM300", "SM324"]
+    assert [path.rpartition("/")[2] for path in made.withheld] == ["Plant.Line.ibd.puml"]
+    assert any(one.path.endswith("bdd.puml") for one in made.written())
 
 
 def test_a_link_beside_a_model_that_leads_out_of_the_folder_is_not_followed(folder):

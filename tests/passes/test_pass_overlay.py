@@ -134,7 +134,9 @@ def test_mixed_domains_on_one_connector_are_reported():
     items = ITEMS + "  Tag2: {domain: information}\n" + FLOW.removeprefix(ITEMS)
     text = items + "{item: MiniPallet, to: sw}\n    - {item: Tag2, to: sw}\n"
     _, sink = laid_over(text, until="flows")
-    assert "SM317" in codes(sink)
+    (found,) = (one for one in sink if one.rule.code == "SM317")
+    assert found.subject.place.file == "0.overlay.yaml"
+    assert text[found.subject.place.ordinal :].startswith("MiniPallet, to: sw")
 
 
 def test_different_items_over_ports_of_one_interface_block_are_no_fault():
@@ -195,6 +197,48 @@ def test_an_activity_that_lost_its_file_is_told_so():
     (found,) = laid_over(GATE + "    behavior: gone.uml#Gate::Handle\n")[1]
     assert found.rule.code == "SM324"
     assert found.help == "the file 'gone.uml' is not part of the compile unit"
+
+
+def test_an_id_that_is_gone_is_not_answered_with_names():
+    id = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
+    (found,) = laid_over(f"overlay: 1\nports:\n  {id}: {{direction: in}}\n")[1]
+    assert (found.rule.code, found.help) == ("SM324", "'sysmlc show MODEL' prints all ids")
+
+
+def test_many_names_of_which_none_is_near_are_not_listed():
+    ports = "".join(f'    Port s{n} "p{n}"\n' for n in range(20))
+    model = f'Package plant "Plant"\n  Class gate "Gate" role="block"\n{ports}'
+    (found,) = laid_over("overlay: 1\nports:\n  Xyz: {direction: in}\n", model=model)[1]
+    assert (found.rule.code, found.help) == ("SM324", "'sysmlc show MODEL' prints all names")
+
+
+def test_a_value_that_a_general_block_has_is_there_already():
+    model = PLANT + 'Class base "Base" role="block"\n  Property base.v "v" role="value"\n'
+    text = "overlay: 1\nblocks:\n  Plant/Switch: {specializes: [Base], values: {v: }}\n"
+    (found,) = laid_over(text, model=model)[1]
+    assert found.rule.code == "SM334"
+    assert found.message == "block 'Plant::Switch' has 'v' already, inherited from 'Base'"
+
+
+ENUMERATION = 'Enumeration e "Bay"\n  EnumerationLiteral e.f "free"\n'
+
+
+@pytest.mark.parametrize(
+    ("type_", "good", "bad"),
+    [
+        ("Boolean", "true", "1"),
+        ("Integer", "7", "7.5"),
+        ("Integer", "0", "true"),
+        ("Real", "7", '"7"'),
+        ("String", '"7"', "7"),
+        ("Bay", "free", "fre"),
+    ],
+)
+def test_a_default_is_a_value_of_its_type(type_, good, bad):
+    for default, expected in ((good, []), (bad, ["SM637"])):
+        value = f"{{type: {type_}, default: {default}}}"
+        text = f"overlay: 1\nblocks:\n  Plant/Switch: {{values: {{v: {value}}}}}\n"
+        assert codes(laid_over(text, model=PLANT + ENUMERATION)[1]) == expected
 
 
 def test_of_many_lost_entries_the_first_are_answered_with_the_nearest_name():

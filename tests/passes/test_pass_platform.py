@@ -10,7 +10,7 @@ from sysmlc.passes.platform import rules as _rules
 from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.platform import Platform as Found
 
-RULES = [rule for rule in catalogue().values() if "SM623" <= rule.code <= "SM639"]
+RULES = [rule for rule in catalogue().values() if "SM623" <= rule.code <= "SM630"]
 assert _rules
 
 

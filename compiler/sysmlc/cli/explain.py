@@ -33,7 +33,9 @@ def command(code: str | None) -> None:
     found = {**rules, **{rule.name: rule for rule in rules.values()}}
     key = code.upper() if code.upper() in found else code.lower()
     if key not in found:
-        fail(f"unknown rule '{code}'; {did_you_mean(key, found)}")
+        hint = did_you_mean(key, found)
+        near = hint if hint.startswith("did") else "'sysmlc explain' lists all rules"
+        fail(f"unknown rule '{code}'; {near}")
     click.echo("\n".join(_explanation(found[key])))
 
 

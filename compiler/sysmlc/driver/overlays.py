@@ -37,6 +37,9 @@ def beside(model: Path) -> Path | None:
 def load_overlay(path: Path, root: Path, sink: Sink, *, is_named: bool) -> LoadedOverlay | None:
     """Read an overlay. What cannot be read, or leads out of the root unnamed, is reported."""
     name = name_of(path, root)
+    if is_named and not path.exists():
+        sink.report(faults.MISSING_FILE, faults.about_file(name), path=name)
+        return None
     if not is_named and not Roots((root,)).allows(path):
         sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         return None

@@ -56,6 +56,7 @@ class _Reader:
         self._frontends = frontends
         self._sink = sink
         self._seen: set[Path] = set()
+        self._laid: set[Path] = set()
         self._waiting: list[tuple[Path, Recognised]] = []
 
     def read(self, path: Path, otherwise: Rule | None) -> None:
@@ -75,8 +76,9 @@ class _Reader:
     def read_overlay(self, path: Path, *, is_named: bool) -> None:
         """Read an overlay, and the models that its entries name."""
         real = Path(os.path.realpath(path))
-        if real in self._seen:
+        if real in self._laid:
             return
+        self._laid.add(real)
         self._seen.add(real)
         found = load_overlay(path, self._root, self._sink, is_named=is_named)
         if found is None:

@@ -130,9 +130,9 @@ class Refinement:
     blocks: tuple[BlockEntry, ...]
     allocations: tuple[Allocation, ...]
 
-    def subject(self, term: Term | Key) -> Subject:
-        """A word of the overlay as the subject of a finding."""
-        return Subject(term.text, place=place_of(self.file, term.spot))
+    def subject(self, term: Term | Key, about: str = "") -> Subject:
+        """A word of the overlay as the subject of a finding about the element of this id."""
+        return Subject(term.text, about, place_of(self.file, term.spot))
 
 
 def place_of(file: str, spot: Spot) -> Place:

@@ -197,7 +197,8 @@ def _joined(graph: Graph, connector: Element) -> set[str]:
 
 def _settle_domain(graph: Graph, sink: Sink, connector: Element) -> None:
     carried: dict[str, list[str]] = {}
-    for flow in graph.sources(connector, Edge.REALIZING):
+    flows = graph.sources(connector, Edge.REALIZING)
+    for flow in flows:
         for item in graph.targets(flow, Edge.CONVEYS):
             domain = domain_of(graph, item)
             if domain is not None:
@@ -208,7 +209,8 @@ def _settle_domain(graph: Graph, sink: Sink, connector: Element) -> None:
         lists = {domain: ", ".join(dict.fromkeys(names)) for domain, names in carried.items()}
         sink.report(
             MIXED_DOMAINS,
-            graph.subject(connector),
+            # What an overlay adds to a connector of the model is mended in the overlay.
+            graph.subject(next((f for f in flows if f.source != connector.source), connector)),
             connector=_title(graph, connector),
             physical=lists["physical"],
             information=lists["information"],

@@ -99,3 +99,17 @@ def test_a_link_to_an_interface_of_another_class_leads_to_its_own_port():
     reading = Read(CLASSES + body + of_instance(interface("Socket", "i") + other + link))
     assert reading.links() == {"l": ("p", "q")}
     assert [one.id for one in reading.all("Plant::i::p")] == ["i"]
+
+
+def mirror(id, master):
+    return f'<InternalElement Name="{id}" ID="{id}" RefBaseSystemUnitPath="{master}"/>'
+
+
+@pytest.mark.parametrize("ids", ["abcd", "dcba", "cbad"])
+def test_each_mirror_that_leads_into_a_circle_is_told_with_its_master(ids):
+    """In whatever order they stand: b and c are the circle."""
+    masters = {"a": "b", "b": "c", "c": "b", "d": "a"}
+    reading = Read(plant("".join(mirror(one, masters[one]) for one in ids)))
+    assert reading.findings == [
+        f"SM143: '{one}' is a mirror of itself, by way of '{masters[one]}'" for one in ids
+    ]

@@ -55,6 +55,8 @@ class Context:
         """The first row that names a data type that there is not."""
         self.repeated: set[tuple[Document, int]] = set()
         """Rows whose name another element beside them may have."""
+        self.endless: set[Node] = set()
+        """Mirrors that lead into a circle."""
         self.references: dict[str, bool] = {}
         """Whether texts in the place of class paths are ids."""
         self.shown: dict[tuple[Document, str], Kind | None] = {}

@@ -37,21 +37,23 @@ def is_reference(context: Context, id: str) -> bool:
 
 def master(context: Context, document: Document, node: Node) -> Node | None:
     """What the mirror stands for in the end; a missing one and a circle are reported."""
-    seen: list[Node] = []
-    while is_mirror(context, node) and node not in seen:
-        seen.append(node)
+    seen: dict[Node, None] = {}
+    while is_mirror(context, node) and node not in seen and node not in context.endless:
+        seen[node] = None
         found = context.find(master_id(node), document)
         next_node = found[1] if found else None
         if next_node is not None and node.tag == "Attribute":
             next_node = _attribute(next_node, node)
         if next_node is None:
-            _report(context, document, seen[0], master_id(node))
+            _report(context, document, next(iter(seen)), master_id(node))
             return None
         node = next_node
+    first = next(iter(seen), node)
     if seen:
-        context.tell_lenient(document, seen[0], master_id(seen[0]))
-    if node in seen:
-        _report(context, document, seen[0], master_id(seen[0]), is_circle=True)
+        context.tell_lenient(document, first, master_id(first))
+    if node in seen or node in context.endless:
+        context.endless.update(seen)
+        _report(context, document, first, master_id(first), is_circle=True)
         return None
     return node
 

@@ -5,6 +5,7 @@ from sysmlc.ir.query import generals, parameters
 from sysmlc.overlay.model import BlockEntry, OperationEntry, Term, ValueEntry
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import BLOCK, TYPE, Finder
+from sysmlc.passes.overlay.fitting import fits
 from sysmlc.passes.overlay.items import describe
 
 _Signature = list[tuple[str, AttrValue]]
@@ -28,10 +29,14 @@ def refine_block(finder: Finder, entry: BlockEntry) -> None:
 def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
     graph = finder.graph
     id = derived_id(block.id, f"value of an overlay:{entry.name.text}")
-    same = [one for one in graph.owned(block) if one.name == entry.name.text and one.id != id]
-    if same:
+    holder = next(
+        (one for one in _with_generals(finder, block) if _has(finder, one, entry, id)), None
+    )
+    if holder is not None:
         name = graph.qualified_name(block)
-        finder.report(rules.FEATURE_TWICE, entry.name, feature=entry.name.text, block=name)
+        where = "" if holder is block else f", inherited from '{graph.qualified_name(holder)}'"
+        facts = {"feature": entry.name.text, "block": name, "where": where}
+        finder.report(rules.FEATURE_TWICE, entry.name, **facts)
         return
     type_ = None if entry.type is None else finder.term(entry.type, TYPE)
     made = finder.add(
@@ -46,6 +51,19 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
     )
     if type_ is not None:
         graph.connect(Edge.TYPED_BY, made, type_)
+        if entry.default is not None and not fits(graph, entry.default, type_):
+            facts = {"value": str(entry.default), "feature": entry.name.text, "type": type_.name}
+            finder.report(rules.UNFIT_VALUE, entry.name, **facts)
+
+
+def _with_generals(finder: Finder, block: Element) -> list[Element]:
+    return [block, *generals(finder.graph, block)]
+
+
+def _has(finder: Finder, block: Element, entry: ValueEntry, id: str) -> bool:
+    """Whether a block owns another feature of the name."""
+    owned = finder.graph.owned(block)
+    return any(one.name == entry.name.text and one.id != id for one in owned)
 
 
 def _add_operation(finder: Finder, block: Element, entry: OperationEntry) -> None:

@@ -58,6 +58,8 @@ class Finder:
     """Item types by the keys of their entries."""
     behaviors: dict[str, list[Element]] = field(default_factory=dict)
     """What the words for behaviours meant before any behaviour was moved."""
+    about: str = ""
+    """Id of the element that the entry is about which is being added: errors in it are its own."""
     _other_ids: dict[str, Element] | None = None
     _named: dict[str, tuple[tuple[int, str], _ByName]] = field(default_factory=dict)
     _advised: int = 0
@@ -69,7 +71,10 @@ class Finder:
         found = self.named(key.text, sort)
         if key.path:
             found = self._with_path(key, found, self.named(key.path, sort))
-        return self.only(Term(key.text, key.spot), found, sort, key.path)
+        self.about = ""
+        one = self.only(Term(key.text, key.spot), found, sort, key.path)
+        self.about = "" if one is None else one.id
+        return one
 
     def _with_path(self, key: Key, found: list[Element], other: list[Element]) -> list[Element]:
         """What the id means, else the path; that the two do not agree is reported."""
@@ -174,7 +179,8 @@ class Finder:
 
     def report(self, rule: Rule, term: Term | Key, **facts: str) -> None:
         """Report a rule about a word of the overlay."""
-        self.sink.report(rule, self.refinement.subject(term), notes=(), help="", **facts)
+        subject = self.refinement.subject(term, self.about)
+        self.sink.report(rule, subject, notes=(), help="", **facts)
 
     def only(self, term: Term, found: list[Element], sort: Sort, path: str) -> Element | None:
         """The one that was found; that there is none, or several, is reported."""
@@ -202,7 +208,10 @@ class Finder:
         self._advised += 1
         if self._advised > _ADVISED:
             return "the first findings of this kind name what is near"
-        return did_you_mean(word, self.known(sort))
+        if _GUID.fullmatch(word.strip()):
+            return "'sysmlc show MODEL' prints all ids"
+        hint = did_you_mean(word, self.known(sort))
+        return hint if not hint.endswith(" more") else "'sysmlc show MODEL' prints all names"
 
     def _listed(self, found: Iterable[Element]) -> str:
         words = [f"{self.path(one)} ({one.id})" for one in found]

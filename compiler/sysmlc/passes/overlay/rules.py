@@ -120,11 +120,22 @@ FEATURE_TWICE = rule(
     "SM334",
     "value-twice",
     Severity.ERROR,
-    "block '{block}' has '{feature}' already",
+    "block '{block}' has '{feature}' already{where}",
     why="Guards and bodies that name it would mean either of the two.",
     help="name the value otherwise, or leave it to the model",
     wrong=_BLOCKS + "    values: {st: }\n",
     right=_BLOCKS + "    values: {bayIsFree: {type: Boolean}}\n",
+)
+UNFIT_VALUE = rule(
+    "SM637",
+    "overlay-value-not-of-type",
+    Severity.ERROR,
+    "the default {value} of '{feature}' is no {type}",
+    why="Guards that compare the value would hold always or never.",
+    help="write true or false for a Boolean, digits for a number, a literal of the enumeration, "
+    "and quotes around a text that looks like a number",
+    wrong=_BLOCKS + "    values: {bayIsFree: {type: Boolean, default: 1}}\n",
+    right=_BLOCKS + "    values: {bayIsFree: {type: Boolean, default: true}}\n",
 )
 BEHAVIOR_TAKEN = rule(
     "SM335",

@@ -92,7 +92,8 @@ class Context:
         if not clause.startswith("did you mean '"):
             return ""
         near = clause.removeprefix("did you mean '").removesuffix("'?")
-        several = [f"'{self.plant.name_of(one)}' (id {one.id})" for one in names[near][:3]]
+        told = [f"'{self.plant.name_of(one)}' (id {one.id})" for one in names[near]]
+        several = list(dict.fromkeys(told))[:3]
         return f"did you mean {' or '.join(several)}?"
 
 
