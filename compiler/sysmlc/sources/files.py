@@ -14,13 +14,17 @@ from sysmlc.sources.whole import read_whole
 
 _MODEL_ENTRY = re.compile(
     r"(^|/)com\.nomagic\.magicdraw\.uml_model(?!____sharepoints).*\.(shared_)?model$"
-    r"|\.(uml|xmi|mdxml|aml|caex|sysml|kerml)$"
+    r"|\.(uml|xmi|mdxml|aml|caex|sysml|kerml|sysmlx|kermlx)$"
 )
 
 
 _LIBRARY_ENTRY = re.compile(
     r"(^|/)proxy\..*_resource_com\$dnomagic\$dmagicdraw\$duml_umodel\$d(shared_u)?model\$dsnapshot$"
 )
+
+
+_DESCRIPTION_ENTRY = re.compile(r"(^|/)\.(project|meta)\.json$")
+"""What a project archive says about itself and its files (KerML 1.0, 10.3)."""
 
 
 def is_model_entry(name: str) -> bool:
@@ -37,9 +41,18 @@ def is_library_entry(name: str) -> bool:
     return _LIBRARY_ENTRY.search(name) is not None
 
 
+def is_description_entry(name: str) -> bool:
+    """Whether an entry of an archive describes the project that the archive holds."""
+    return _DESCRIPTION_ENTRY.search(name) is not None
+
+
 def is_wanted_entry(name: str) -> bool:
-    """Whether an entry of an archive is read: a model, or what one takes from elsewhere."""
-    return is_model_entry(name) or is_library_entry(name)
+    """Whether an entry of an archive is read: a model, or what is needed to read one."""
+    return is_model_entry(name) or _is_beside(name)
+
+
+def _is_beside(name: str) -> bool:
+    return is_library_entry(name) or is_description_entry(name)
 
 
 def _is_plain_entry(name: str) -> bool:
@@ -63,6 +76,6 @@ def load(
     if package.is_package(name, listed := names(source)):
         package.check(name, listed, entries(source, package.is_relationships, limits))
     found = entries(source, wanted, limits) or entries(source, _is_plain_entry, limits)
-    if all(is_library_entry(source.name.partition("!")[2]) for source in found):
+    if all(_is_beside(source.name.partition("!")[2]) for source in found):
         raise SourceError("the archive holds no model", name)
     return [in_utf8(source) for source in found]

@@ -3,6 +3,7 @@
 import re
 
 from sysmlc.sources import Source
+from sysmlc.sources.files import is_description_entry
 
 _SUFFIXES = (".sysml", ".kerml")
 _SKIPPED = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s+|//\*.*?\*/|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
@@ -20,6 +21,8 @@ _XMI = re.compile(rb"<(?:sysml|kerml):[A-Z]\w*[\s>]")
 
 def score(source: Source) -> float:
     """How sure it is that the bytes are text or XMI of SysML v2 or KerML."""
+    if is_description(source):
+        return 1.0
     head = source.data[:8192]
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         return 1.0 if _XMI.search(head) and b"omg.org/spec/" in head else 0.0
@@ -34,6 +37,11 @@ def _of_text(name: str, head: bytes) -> float:
     if is_named:
         return 1.0 if is_known else 0.5
     return 0.6 if is_known and b"\0" not in head else 0.0
+
+
+def is_description(source: Source) -> bool:
+    """Whether it is what a project archive says about itself (KerML 1.0, 10.3)."""
+    return is_description_entry(source.name.rpartition("!")[2]) and "!" in source.name
 
 
 def is_xml(source: Source) -> bool:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
-from sysmlc.frontends.sysml.detect import is_xml, language
+from sysmlc.frontends.sysml.detect import is_description, is_xml, language
 from sysmlc.frontends.sysml.libraries import FILES
 from sysmlc.frontends.sysml.rules import NO_LIBRARY, UNREADABLE
 from sysmlc.frontends.sysml.unit import lower
@@ -30,12 +30,17 @@ def read(
     """Add the files to the graph. Raises SourceError for what exceeds the limits."""
     from sysmlc.language.names import Model, resolve
 
-    documents = [one for source in sources if (one := _document(source, sink, cache)) is not None]
+    models = [source for source in sources if not is_description(source)]
+    documents = [one for source in models if (one := _document(source, sink, cache)) is not None]
     found = _library(library, cache, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
 
         link(documents, sink, found)
+    if any("!" in source.name for source in sources):
+        from sysmlc.frontends.sysml.projects import examine
+
+        examine(sources, sink, has_library=not found.is_core)
     own = [one for one in documents if not _is_ours(one)]
     ours = [one for one in documents if _is_ours(one)]
     for document in ours:

@@ -164,7 +164,7 @@ def _compare(
 
 def _place(source: Source, text: str) -> Place:
     """Where a JSON file says the text."""
-    return Place(source.name, offset=max(source.data.find(json.dumps(text).encode()), 0))
+    return Place(source.name, offset=max(source.data.rfind(json.dumps(text).encode()), 0))
 
 
 def _report(sink: Sink, rule: Rule, place: Place, **facts: str) -> None:

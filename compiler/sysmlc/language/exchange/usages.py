@@ -8,18 +8,24 @@ from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.projects import Project, Usage
 
+_STANDARD = ("https://www.omg.org/spec/KerML/", "https://www.omg.org/spec/SysML/")
 _COMPARISON = re.compile(r"(>=|<=|>|<|==|=|\^|~)?\s*v?(\d+(?:\.\d+)*)$")
 
 
-def used(project: Project, given: Sequence[Project], sink: Sink) -> Mapping[Usage, Project]:
-    """The project for each usage; one that is not among the given, or too old, is reported."""
+def used(
+    project: Project, given: Sequence[Project], sink: Sink, *, has_standard: bool = False
+) -> Mapping[Usage, Project]:
+    """The project for each usage; one that is not among the given, or too old, is reported.
+
+    ``has_standard`` says that the standard libraries are known in another way.
+    """
     found: dict[Usage, Project] = {}
     for usage in project.usages:
         named = [one for one in given if one is not project and _is_named(one, usage.resource)]
         fitting = [one for one in named if fits(one.version, usage.constraint)]
         if fitting:
             found[usage] = fitting[-1]
-        else:
+        elif not (has_standard and not named and usage.resource.startswith(_STANDARD)):
             _report(project, usage, named, sink)
     return found
 

@@ -1,0 +1,59 @@
+"""Project archives as inputs: one model, and what they say of themselves is examined."""
+
+import hashlib
+import io
+import json
+import zipfile
+
+import pytest
+
+from sysmlc.driver import Request, compile_model
+
+TEXT = b"package Robots { part def Robot; }"
+SUM = hashlib.sha256(TEXT).hexdigest()
+STANDARD = "https://www.omg.org/spec/SysML/20250201/Systems-Library.kpar"
+
+
+def pack(path, value=SUM, usage=(), described=True):
+    about = {"name": "Robots", "version": "1.0.0", "usage": [{"resource": one} for one in usage]}
+    meta = {"index": {}, "checksum": {"R.sysml": {"value": value, "algorithm": "SHA256"}}}
+    written = io.BytesIO()
+    with zipfile.ZipFile(written, "w") as zipped:
+        zipped.writestr("R.sysml", TEXT)
+        if described:
+            zipped.writestr(".project.json", json.dumps(about))
+            zipped.writestr(".meta.json", json.dumps(meta))
+    path.write_bytes(written.getvalue())
+    return path
+
+
+def compiled(*paths):
+    made = compile_model(Request(inputs=paths))
+    told = [(one.rule.code, one.subject.place.file) for one in made.diagnostics]
+    return {made.graph.qualified_name(one) for one in made.graph}, told
+
+
+def test_the_models_of_an_archive_are_compiled(tmp_path):
+    names, told = compiled(pack(tmp_path / "robots.kpar", usage=[STANDARD]))
+    assert "Robots::Robot" in names
+    assert told == []
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        ({"value": "00"}, [("SM168", "robots.kpar!.meta.json")]),
+        ({"usage": ["Gone.kpar"]}, [("SM169", "robots.kpar!.project.json")]),
+        (
+            {"described": False},
+            [("SM752", "robots.kpar!.project.json"), ("SM752", "robots.kpar!.meta.json")],
+        ),
+    ],
+)
+def test_what_does_not_fit_is_told(tmp_path, said, expected):
+    assert sorted(compiled(pack(tmp_path / "robots.kpar", **said))[1]) == sorted(expected)
+
+
+def test_archives_that_are_given_together_are_found(tmp_path):
+    user = pack(tmp_path / "plant.kpar", usage=["https://example.org/1.0/Robots.kpar"])
+    assert compiled(user, pack(tmp_path / "robots.kpar"))[1] == []
