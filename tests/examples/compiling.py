@@ -9,6 +9,9 @@ EXAMPLES = sorted(p for p in (ROOT / "examples").glob("*/*.uml") if p.stem == p.
 PLANT = ROOT / "examples" / "baygate" / "baygate.aml"
 """AutomationML with an overlay, which names the behaviours of ``gate.uml`` beside it."""
 
+TEXT = ROOT / "examples" / "lego-recipe-v2" / "lego-recipe.sysml"
+"""The lego recipe in SysML v2."""
+
 
 def compile_example(model: Path, *emit: str) -> Compilation:
     """Compile with the default back ends, or with those named as after ``--emit``."""

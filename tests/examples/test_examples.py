@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from examples.compiling import EXAMPLES, PLANT, ROOT, compile_example, findings, outputs
+from examples.compiling import EXAMPLES, PLANT, ROOT, TEXT, compile_example, findings, outputs
 
 _TELLING = re.compile(r"recipes/.*|diagrams/.*|contracts/.*\.md|contracts/.*(Stopper|Gripper)\..*")
 
@@ -25,13 +25,13 @@ def test_an_example_gives_its_golden_outputs(model, golden):
     golden.check(f"examples/{model.parent.name}", kept)
 
 
-def test_there_are_four_examples():
-    names = [path.parent.name for path in (PLANT, *EXAMPLES)]
-    assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe"]
+def test_there_are_five_examples():
+    names = [path.parent.name for path in (PLANT, *EXAMPLES, TEXT)]
+    assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe", "lego-recipe-v2"]
     assert {path.name for path in (ROOT / "examples").iterdir()} == set(names)
 
 
-@pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("model", [*EXAMPLES, PLANT, TEXT], ids=lambda path: path.parent.name)
 def test_an_example_is_in_the_graph_whole(model):
     total = compile_example(model, "ir").coverage.as_json()["total"]
     assert total["unsupported"] == 0

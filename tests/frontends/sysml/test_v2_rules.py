@@ -2,6 +2,7 @@
 
 import pytest
 from reading_v2 import read
+
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND, rules
 from sysmlc.ir import Graph

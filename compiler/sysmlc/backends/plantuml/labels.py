@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 from sysmlc.ir import Edge, Element, Graph, Kind, templates
-from sysmlc.ir.query import redefined
+from sysmlc.ir.query import applications, lineage, redefined
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
@@ -20,8 +20,8 @@ _ROLE_WORDS = {
     "value type": "valueType",
     "requirement": "requirement",
     "test case": "testCase",
-    "full port": "full",
-    "proxy port": "proxy",
+    "full port": "fullPort",
+    "proxy port": "proxyPort",
     "flow port": "flowPort",
     "constraint property": "constraint",
     "unit": "unit",
@@ -51,11 +51,19 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
     found = applied(graph, element)
     by_kind = _KIND_WORDS.get(element.kind, "")
     if found:
-        return (by_kind, *found) if element.kind in _ALWAYS_NAMED else found
+        first = by_kind if element.kind in _ALWAYS_NAMED else _unsaid_role(graph, element, found)
+        return (first, *found) if first else found
     if element.kind is Kind.ACTIVITY:
         by_kind = f"{element.subkind} behavior" if element.subkind else "activity"
     word = _ROLE_WORDS.get(element.role, "") or by_kind
     return (word,) if word else ()
+
+
+def _unsaid_role(graph: Graph, element: Element, found: tuple[str, ...]) -> str:
+    """The word for a role that no applied stereotype gives: SysML v2 says it with a keyword."""
+    word = _ROLE_WORDS.get(element.role, "")
+    general = (one for app in applications(graph, element) for one in lineage(app))
+    return "" if word.lower() in {one.lower() for one in (*found, *general)} else word
 
 
 def applied(graph: Graph, element: Element) -> tuple[str, ...]:

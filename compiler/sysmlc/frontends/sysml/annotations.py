@@ -74,12 +74,21 @@ def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
     if definition is not None and low.document(definition) is not None:
         low.later(lambda: _instance_of(low, made, definition))
     for key, value in facts_of(node):
-        low.later(lambda key=key, value=value: _tag(low, made, key, value))  # type: ignore[misc]
+        give_tag(low, made, key, value)
+
+
+def give_tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
+    """Give a tagged value to an applied stereotype, when all elements are there."""
+    low.later(lambda: _tag(low, made, key, value))
+
+
+_RENAMED = {"MaterialUse": "Material"}
+"""A usage of metadata cannot have the name of the level, which is a part definition."""
 
 
 def _definition_name(node: Node, definition: Node | None) -> str:
     if definition is not None:
-        return definition.name or definition.short or ""
+        return _RENAMED.get(definition.name or "", definition.name or definition.short or "")
     found = nodes.reference(node, "FeatureTyping")
     return "" if found is None else nodes.last_name(found)
 

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS, MARKED
+from sysmlc.frontends.sysml.levels import give_levels, is_of_recipes
 from sysmlc.frontends.sysml.libraries import FILES
 from sysmlc.frontends.sysml.measures import give_measures, is_measured
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -127,8 +128,11 @@ def define(
 
 
 def generalize(low: "Lowering", node: Node, made: Element) -> None:
-    """Edges to the general classifiers; a quantity of the library is told otherwise."""
+    """Edges to the general classifiers; quantities and recipe levels are told otherwise."""
+    give_levels(low, node, made)
     for found in nodes.references(node, *_GENERALS):
+        if found.target is not None and is_of_recipes(found.target):
+            continue
         if made.kind is not Kind.DATA_TYPE or not is_measured(found):
             low.later(lambda found=found: _general(low, made, found))  # type: ignore[misc]
 

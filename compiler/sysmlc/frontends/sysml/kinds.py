@@ -74,14 +74,5 @@ STRUCTURAL = frozenset(
     }
 )
 """Kinds that own features."""
-LEVELS = (
-    "Recipe",
-    "Task",
-    "MachineService",
-    "InfrastructureService",
-    "MachineFunction",
-    "Machine",
-    "Material",
-)
 ACTIVITIES = frozenset({Kind.ACTIVITY, Kind.ACTION, Kind.STRUCTURED})
 """Kinds that own nodes of an activity."""

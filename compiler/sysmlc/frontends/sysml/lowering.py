@@ -54,6 +54,8 @@ class Lowering:
         self._documents = {id(one.root): one for one in documents}
         self._later: list[Callable[[], None]] = []
         self._brought: dict[int, set[str]] = {}
+        self._generals: list[tuple[Element, Element]] = []
+        self._waits = False
         self._last: list[Callable[[], None]] = []
         self._paths: dict[str, str] = {}
         self._taken: dict[str, int] = {}
@@ -110,6 +112,9 @@ class Lowering:
         while self._last:
             self._last.pop(0)()
             self.work()
+        for source, general in self._generals if self._waits else ():
+            self.graph.disconnect(Edge.SPECIALIZES, source, general)
+            self.graph.refer(Pending(Edge.SPECIALIZES, source.id, general.id))
         self._report()
 
     def work(self) -> None:
@@ -194,6 +199,8 @@ class Lowering:
             self._unresolved(source, edge)
             return
         known = self.element(target)
+        if known is not None and edge is Edge.SPECIALIZES:
+            self._generals.append((source, known))
         if known is not None:
             self.graph.connect(edge, source, known)
         elif self.document(target) is None:
@@ -207,7 +214,13 @@ class Lowering:
             self.lead(edge, source, target)
 
     def lead_to(self, edge: Edge, source: Element, name: str, kind: Kind) -> None:
-        """Let an edge lead to an element of the library by its qualified name."""
+        """Let an edge lead to an element of the library by its qualified name.
+
+        Generalizations inside the unit that were stated later wait for it, to come behind it.
+        """
+        if edge is Edge.SPECIALIZES and not self._waits:
+            self._waits = True
+            self._generals.clear()
         self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
 
     def _outside(self, edge: Edge, source: Element, target: Node) -> None:
@@ -237,27 +250,35 @@ class Lowering:
             return self.elements.get(id(node))
         return entry_and_exit[0] if is_target else entry_and_exit[1]
 
-    def control(self, owner: Element, name: str) -> Element:
+    def control(self, owner: Element, name: str, node: Node | None = None) -> Element:
         """The start or the end of a behaviour; made when a succession needs it.
 
         Where a fork is, the end of one branch is not the end of all: ``done`` is a flow final.
         """
         known = self._controls.get((owner.id, name))
         if known is None:
-            known = self._controls[owner.id, name] = self.below(owner, Kind.CONTROL, name)
-            beside = self.graph.owned(owner)
-            has_fork = any(one.subkind == "fork" for one in beside if one.kind is Kind.CONTROL)
-            last = "flow-final" if has_fork else "final"
-            self.set(known, subkind="initial" if name == "start" else last)
+            known = self._made(node, Kind.CONTROL, name, owner)
+            self._controls[owner.id, name] = known
+            self.set(known, subkind="initial" if name == "start" else "final")
+            if name == "done":
+                self.later(lambda: self._end_one_branch(owner, known))
         return known
 
-    def vertex(self, region: Element, name: str) -> Element:
+    def _end_one_branch(self, owner: Element, end: Element) -> None:
+        beside = self.graph.owned(owner)
+        if any(one.subkind == "fork" for one in beside if one.kind is Kind.CONTROL):
+            self.set(end, subkind="flow-final")
+
+    def _made(self, node: Node | None, kind: Kind, name: str, owner: Element) -> Element:
+        return self.make(node, kind, name, owner) if node else self.below(owner, kind, name)
+
+    def vertex(self, region: Element, name: str, node: Node | None = None) -> Element:
         """The initial pseudostate or the final state of a region; made when it is needed."""
         known = self._controls.get((region.id, name))
         if known is None:
             is_start = name == "start"
             kind = Kind.PSEUDOSTATE if is_start else Kind.FINAL_STATE
-            known = self._controls[region.id, name] = self.below(region, kind, "")
+            known = self._controls[region.id, name] = self._made(node, kind, name, region)
             self.set(known, subkind="initial" if is_start else "")
         return known
 

@@ -6,7 +6,7 @@ from sysmlc.frontends.sysml import annotations, nodes, statements, values
 from sysmlc.frontends.sysml.activities import fill
 from sysmlc.frontends.sysml.definitions import flags, generalize, marked, visibility
 from sysmlc.frontends.sysml.events import trigger
-from sysmlc.frontends.sysml.successions import guard_of
+from sysmlc.frontends.sysml.successions import guard_of, is_of_library
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
 
@@ -90,7 +90,7 @@ def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
     own = [one for one in nodes.body_of(node) if _is_sub(one) and not _is_empty(one)]
     if own or not inside or node.facts.get("isParallel"):
         made = state(low, node, region)
-        start = low.make(node, Kind.PSEUDOSTATE, "", region, subkind="initial")
+        start = low.vertex(region, "start", node)
         _transition(low, node, region, start, made)
         return
     low.elements[id(node)] = region
@@ -227,6 +227,8 @@ def _step(
     source: "Node | Reference | None",
     target: "Node | Reference",
 ) -> None:
+    for point in (source, target):
+        _mention(low, region, point, node)
     made = low.add(node, Kind.TRANSITION, node.name or "", region)
     low.last(lambda: _ends(low, made, source, target))
 
@@ -237,8 +239,9 @@ def transition(
     """A transition with its trigger, guard and effect."""
     _, subkind = marked(node, Kind.TRANSITION)
     name = node.name or ""
-    made = low.add(node, Kind.TRANSITION, name, region, subkind=subkind, **visibility(node))
     source = nodes.reference(node, "Membership") or previous
+    _mention(low, region, source, node)
+    made = low.add(node, Kind.TRANSITION, name, region, subkind=subkind, **visibility(node))
     guard = guard_of(node)
     if guard is not None:
         low.later(lambda: low.set(made, guard=values.texts(guard, low)))
@@ -253,6 +256,16 @@ def transition(
         elif nodes.is_text(one) or one.kind.endswith("ConstraintUsage"):
             low.lower(one, made)
     low.last(lambda: _ends(low, made, source, target))
+
+
+def _mention(
+    low: "Lowering", region: Element, point: "Node | Reference | None", node: Node
+) -> None:
+    """Make the start of a region, or its end, where the text first names it."""
+    if isinstance(point, Reference) and len(point.chain) == 1 and is_of_library(low, point):
+        low.vertex(region, nodes.last_name(point), node)
+    elif isinstance(point, Node) and _is_sub(point):
+        low.vertex(region, "start", node)
 
 
 def _ends(
@@ -280,7 +293,7 @@ def _vertex(low: "Lowering", region: Element, point: "Node | Reference | None") 
     target, name = point.target, nodes.last_name(point)
     if target is not None and _is_sub(target):
         return low.vertex(region, "start")
-    if name in ("start", "done") and (target is None or low.document(target) is None):
+    if is_of_library(low, point):
         before = [low.element(one) for one in (point.targets or [])[:-1]]
         holder = before[-1] if before and len(point.chain) > 1 else None
         inside = region if holder is None else _region_in(low, holder)

@@ -44,6 +44,7 @@ def steps(low: "Lowering", found: Iterable[Node], owner: Element) -> None:
             _guarded(low, node, run)
         elif node.kind == "Membership" and not node.name and not node.short:
             run.previous = nodes.reference(node, "Membership")
+            _mention(low, run.owner, run.previous, node)
         else:
             low.lower(node, owner)
             if node.kind in _STEPS and "direction" not in node.facts:
@@ -100,6 +101,8 @@ def _flow(
     guard: Node | None,
 ) -> None:
     """A control flow; without a guard of its own a guarded succession is the one for else."""
+    for point in (source, target):
+        _mention(low, run.owner, point, node)
     made = low.add(node, Kind.CONTROL_FLOW, node.name or "", run.owner)
     if guard is node:
         low.set(made, guard="else")
@@ -107,6 +110,18 @@ def _flow(
         low.later(lambda: low.set(made, guard=values.texts(guard, low)))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.last(lambda: _join(low, made, source, target))
+
+
+def _mention(low: "Lowering", owner: Element, point: "Node | Reference | None", node: Node) -> None:
+    """Make the start or the end of a behaviour where the text first names it."""
+    if isinstance(point, Reference) and len(point.chain) == 1 and is_of_library(low, point):
+        low.control(owner, nodes.last_name(point), node)
+
+
+def is_of_library(low: "Lowering", point: Reference) -> bool:
+    """Whether an end is the start or the end that every behaviour has."""
+    is_outside = point.target is None or low.document(point.target) is None
+    return is_outside and nodes.last_name(point) in ("start", "done")
 
 
 def _join(
@@ -133,10 +148,8 @@ def vertex(
         return None
     if isinstance(point, Node):
         return low.point(point, is_target=is_target)
-    target = point.target
-    name = nodes.last_name(point)
-    is_library = target is None or low.document(target) is None
-    if name in ("start", "done") and is_library:
+    target, name = point.target, nodes.last_name(point)
+    if is_of_library(low, point):
         before = (point.targets or [])[:-1]
         holder = low.element(before[-1]) if before and len(point.chain) > 1 else owner
         return None if holder is None else low.control(holder, name)
