@@ -9,7 +9,7 @@ from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming,
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.dangling import Loose, Names
 from sysmlc.frontends.xmi.rows import Rows
-from sysmlc.frontends.xmi.shapes import PASSED_OVER
+from sysmlc.frontends.xmi.shapes import KEYS, PASSED_OVER
 from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -53,6 +53,8 @@ class Context(Rows):
         self.opaque: dict[str, tuple[Element, int]] = {}
         self.guards: list[tuple[Element, str, int]] = []
         self.rows_of: dict[str, list[tuple[Element, int]]] = {}
+        self.odd_values: list[tuple[int, str, str]] = []
+        """Rows with an attribute whose value is none that UML knows for it."""
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
         self.naming: dict[Names, list[bool]] = {}
@@ -111,16 +113,10 @@ class Context(Rows):
                 edge = v.SPECIAL.get((element.kind, name), edge)
             for target in self._targets(row, name, value):
                 self.link(edge, element.id, target, row, name)
-        elif name in v.FLAGS:
-            if value in v.TRUE:
-                element.attrs[v.FLAGS[name]] = True
-        elif name in v.TEXTS:
-            key, default = v.TEXTS[name]
-            if value != default:
-                element.attrs[key] = value
-        elif name in v.UNLESS_FALSE:
-            if value == "false":
-                element.attrs[v.UNLESS_FALSE[name]] = False
+        elif name in KEYS:
+            key = KEYS[name]
+            if value != key.default and not key.keep(element, value):
+                self.odd_values.append((row, name, value))
         else:
             self._other(element, row, name, value)
 
@@ -157,7 +153,16 @@ class Context(Rows):
             self.look(row, name, value)
         elif name in naming.NAMING:
             self.keep_ids(element, v.snake(name), self.document.tokens(value))
-        elif name not in PASSED_OVER and value != v.default(name):
+        elif name not in PASSED_OVER:
+            self._said(element, row, name, value)
+
+    def _said(self, element: Element, row: int, name: str, value: str) -> None:
+        """Keep an attribute that no table names, unless it says nothing."""
+        if name in naming.FLAGS:
+            value = _WRITTEN.get(value, value)
+        if value not in naming.VALUES.get(name, (value,)):
+            self.odd_values.append((row, name, value))
+        elif value != v.default(name):
             self.keep(element, v.snake(name), value)
 
     def look(self, row: int, feature: str, value: str, is_said_elsewhere: bool = True) -> None:
@@ -304,6 +309,9 @@ class Context(Rows):
 
 _BOUNDS = ("lower", "upper")
 """Derived attributes, which Enterprise Architect writes."""
+
+_WRITTEN = {"1": "true", "0": "false"}
+"""The other ways to write an xs:boolean."""
 
 _DIVIDED = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
 """Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""

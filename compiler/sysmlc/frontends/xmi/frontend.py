@@ -17,6 +17,7 @@ from sysmlc.frontends.xmi import (
     enterprise_architect_profiles,
     links,
     lowering,
+    odd_values,
     parts,
     remembered,
     rules,
@@ -109,6 +110,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
     unit.flush()
     for context in contexts:
         dangling.report(context)
+        odd_values.report(context)
         unread.report(context)
         unread_tags.report(context)
         account.account(context, sink, coverage)

@@ -1,7 +1,7 @@
 """Tables: the features of UML, above all those that name elements, whatever becomes of them."""
 
 from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
-from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES
+from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES, WORDS
 
 SAID_ELSEWHERE = REDUNDANT | {
     "abstraction",
@@ -197,6 +197,9 @@ FLAGS = frozenset(
     }
 )
 """Features of UML 2.5.1 that are truth values."""
+
+VALUES: dict[str, tuple[str, ...]] = {**WORDS, **dict.fromkeys(FLAGS, ("true", "false"))}
+"""What attributes may say, where UML lists it."""
 
 _CONTAINED = frozenset(
     {

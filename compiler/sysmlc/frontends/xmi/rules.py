@@ -110,6 +110,17 @@ UNKNOWN_ATTRIBUTE = rule(
     wrong="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstrct='true'/>",
     right="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='true'/>",
 )
+UNKNOWN_VALUE = rule(
+    "SM126",
+    "unknown-value",
+    Severity.WARNING,
+    "'{attribute}' of '{element}'{others} is '{value}', which is none of {known}",
+    why="UML lists what the attribute may be, and this is not among it: most likely it was "
+    "misspelt by a script or by hand. What is meant is not known, so that it counts as not said.",
+    help="choose the value again in the modelling tool",
+    wrong="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='yes'/>",
+    right="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='true'/>",
+)
 UNKNOWN_TAG = rule(
     "SM125",
     "unknown-tag",

@@ -18,22 +18,42 @@ from sysmlc.sources import DEFAULT_LIMITS
 _R = TypeVar("_R")
 
 
+_FLAG: Mapping[str, AttrValue] = MappingProxyType({**dict.fromkeys(v.TRUE, True), "0": None})
+_UNLESS_FALSE: Mapping[str, AttrValue] = MappingProxyType({"false": False, "0": False, "1": None})
+
+
 class Key(NamedTuple):
     """Where the graph keeps the text of an attribute, or what ``meanings`` say of it.
 
-    ``default`` is the text that is not kept.
+    ``default`` is the text that is not kept; None is a meaning that needs no attribute.
     """
 
     name: str
     default: str
     meanings: Mapping[str, AttrValue] | None = None
 
-    def keep(self, element: Element, value: str) -> None:
-        """Give the element the attribute."""
+    def keep(self, element: Element, value: str) -> bool:
+        """Give the element the attribute; False for a value that means nothing."""
         if self.meanings is None:
             element.attrs[self.name] = value
         elif value in self.meanings:
-            element.attrs[self.name] = self.meanings[value]
+            meant = self.meanings[value]
+            if meant is not None:
+                element.attrs[self.name] = meant
+        else:
+            return False
+        return True
+
+
+KEYS: Mapping[str, Key] = MappingProxyType(
+    {
+        **{name: Key(*said) for name, said in v.TEXTS.items()},
+        "visibility": Key("visibility", "public", {w: w for w in v.WORDS["visibility"][1:]}),
+        **{name: Key(key, "false", _FLAG) for name, key in v.FLAGS.items()},
+        **{name: Key(key, "true", _UNLESS_FALSE) for name, key in v.UNLESS_FALSE.items()},
+    }
+)
+"""Attributes that the graph keeps under names of their own."""
 
 
 class Step(NamedTuple):
@@ -160,19 +180,11 @@ def _step(kind: Kind, name: str) -> Step:
     edge = v.REFERENCES.get(name)
     if edge is not None:
         return Step(name, True, True, v.SPECIAL.get((kind, name), edge))
-    if name in v.FLAGS:
-        return Step(name, key=Key(v.FLAGS[name], "false", _FLAG))
-    if name in v.TEXTS:
-        return Step(name, key=Key(*v.TEXTS[name]))
-    if name in v.UNLESS_FALSE:
-        return Step(name, key=Key(v.UNLESS_FALSE[name], "true", _UNLESS_FALSE))
+    if name in KEYS:
+        return Step(name, key=KEYS[name])
     backwards = v.REVERSED.get((kind, name))
     is_unread = name in v.REDUNDANT and name not in v.CONDITIONS and backwards is None
     return Step(name, is_unread, is_unread or backwards is not None, backwards)
-
-
-_FLAG: Mapping[str, AttrValue] = MappingProxyType(dict.fromkeys(v.TRUE, True))
-_UNLESS_FALSE: Mapping[str, AttrValue] = MappingProxyType({"false": False})
 
 
 _HANDLED = frozenset(

@@ -91,8 +91,8 @@ class Swift:
                         add_row(row)
                 elif key is None:
                     context.listed(made, row, step, edge, not is_id, is_list)
-                elif value != key.default:
-                    key.keep(made, value)
+                elif value != key.default and not key.keep(made, value):
+                    context.odd_values.append((row, step, value))
             if is_done:
                 attributes[row] = _TAKEN
             row += 1
