@@ -15,6 +15,7 @@ RULES = (
     rules.MOVED,
     rules.APPROXIMATED,
     rules.ILLEGAL,
+    rules.RESPELT_ID,
 )
 
 

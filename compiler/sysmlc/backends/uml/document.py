@@ -15,6 +15,7 @@ from sysmlc.backends.uml.rules import (
     APPROXIMATED,
     ILLEGAL,
     MOVED,
+    RESPELT_ID,
     UNSAID_ATTRIBUTE,
     UNSAID_KIND,
     Losses,
@@ -42,6 +43,8 @@ _UNNAMED = frozenset(
 """Kinds that UML gives no name; a template parameter is called as what it stands for."""
 _OF_PASSES = frozenset({Kind.UNIT, Kind.QUANTITY_KIND, Kind.VIEW})
 """Kinds of what passes add to a model, besides stubs."""
+_VALUES = ("value", "default")
+"""Attributes with values of attributes."""
 _PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_"
 _NOTE = "http://www.eclipse.org/uml2/2.0.0/UML"
 
@@ -65,6 +68,7 @@ def document(graph: Graph, sink: Sink) -> str:
     stereotypes.write()
     _profiles(book, stereotypes)
     _keep(book)
+    _note_respelt(book)
     spaces = _NAMESPACES | stereotypes.namespaces
     root.attributes = {"xmi:version": "20131001"}
     root.attributes |= {f"xmlns:{prefix}": spaces[prefix] for prefix in spaces}
@@ -74,6 +78,14 @@ def document(graph: Graph, sink: Sink) -> str:
         first = next((graph.subject(one) for one in graph.roots()), Subject())
         sink.report(ILLEGAL, first, count=replaced)
     return text
+
+
+def _note_respelt(book: Book) -> None:
+    """Note the values that name an element by an id which the saved element does not have."""
+    respelt = {id for id, written in book.ids.items() if id != written}
+    for element in book.graph if respelt else ():
+        if any(element.attrs.get(key) in respelt for key in _VALUES):
+            book.losses.note(RESPELT_ID, element)
 
 
 # -- nodes -------------------------------------------------------------------------------------

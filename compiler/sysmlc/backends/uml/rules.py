@@ -76,6 +76,20 @@ KEPT = rule(
     wrong='Document "a.aml#" "a.aml" subkind="caex"\nPackage p "Plant"\n  Facet f "Control"\n',
     right=_GATE,
 )
+RESPELT_ID = rule(
+    "SM747",
+    "uml-value-names-respelt-id",
+    Severity.WARNING,
+    "{count} values name elements by IDs that are no names of XML: the saved elements have others",
+    why="An xmi:id may not start with a digit, nor hold blanks or braces. Such an ID gets another "
+    "spelling, and a value that names it as text leads nowhere in the saved model.",
+    help="let the plant's tool give IDs that start with a letter, or follow these values in the "
+    "plant and not in the saved model",
+    wrong='Class a "A" role="block"\n  Property a.r "r" role="value" default="7x"\n'
+    'Class 7x "B" role="block"\n',
+    right='Class a "A" role="block"\n  Property a.r "r" role="value" default="x7"\n'
+    'Class x7 "B" role="block"\n',
+)
 _UNSAID = frozenset({UNSAID_KIND, UNSAID_EDGE, UNSAID_ATTRIBUTE})
 
 
