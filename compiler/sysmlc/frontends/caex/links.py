@@ -16,6 +16,7 @@ _Ends = frozenset[tuple[str, ...]]
 
 # To look a member of an enumeration up takes ten times as long as to look these up.
 _MAPPED = Verdict.MAPPED
+_CONNECTOR = Kind.CONNECTOR
 _CONNECTOR_END = Kind.CONNECTOR_END
 _END = Edge.END
 _ROLE = Edge.ROLE
@@ -106,7 +107,7 @@ class Links:
         crosses = any(end.site.root is not top for end in ends)
         if crosses and owner is not None:
             owner = self._context.graph[owner].owner
-        connector = self._context.add_at(Kind.CONNECTOR, document, row, owner)
+        connector = self._context.add_at(_CONNECTOR, document, row, owner)
         self._add_ends(connector, ends, crosses)
         self._note(top, owner, ends)
 
