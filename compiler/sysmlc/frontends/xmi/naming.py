@@ -1,7 +1,7 @@
 """Tables: the features of UML, above all those that name elements, whatever becomes of them."""
 
 from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
-from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES, WORDS
+from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES
 
 SAID_ELSEWHERE = REDUNDANT | {
     "abstraction",
@@ -197,6 +197,16 @@ FLAGS = frozenset(
     }
 )
 """Features of UML 2.5.1 that are truth values."""
+
+WORDS = {
+    "visibility": ("public", "private", "protected", "package"),
+    "concurrency": ("sequential", "guarded", "concurrent"),
+    "effect": ("create", "read", "update", "delete"),
+    "ordering": ("unordered", "ordered", "LIFO", "FIFO"),
+    "mode": ("parallel", "iterative", "stream"),
+}
+"""Attributes that are one of some words (UML 2.5.1); aggregations and directions are asked later,
+for plants have them too, and ``kind`` means something else for each metaclass."""
 
 VALUES: dict[str, tuple[str, ...]] = {**WORDS, **dict.fromkeys(FLAGS, ("true", "false"))}
 """What attributes may say, where UML lists it."""

@@ -12,6 +12,7 @@ from typing import NamedTuple, TypeVar
 from sysmlc.frontends.xmi import details, metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.document import Shape
+from sysmlc.frontends.xmi.naming import WORDS
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.sources import DEFAULT_LIMITS
 
@@ -48,7 +49,7 @@ class Key(NamedTuple):
 KEYS: Mapping[str, Key] = MappingProxyType(
     {
         **{name: Key(*said) for name, said in v.TEXTS.items()},
-        "visibility": Key("visibility", "public", {w: w for w in v.WORDS["visibility"][1:]}),
+        "visibility": Key("visibility", "public", {w: w for w in WORDS["visibility"][1:]}),
         **{name: Key(key, "false", _FLAG) for name, key in v.FLAGS.items()},
         **{name: Key(key, "true", _UNLESS_FALSE) for name, key in v.UNLESS_FALSE.items()},
     }

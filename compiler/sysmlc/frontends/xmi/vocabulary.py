@@ -245,16 +245,6 @@ TEXTS = {
 }
 """Attributes with text: the graph's name, and the value that is not written."""
 
-WORDS = {
-    "visibility": ("public", "private", "protected", "package"),
-    "concurrency": ("sequential", "guarded", "concurrent"),
-    "effect": ("create", "read", "update", "delete"),
-    "ordering": ("unordered", "ordered", "LIFO", "FIFO"),
-    "mode": ("parallel", "iterative", "stream"),
-}
-"""Attributes that are one of some words (UML 2.5.1); aggregations and directions are asked later,
-for plants have them too, and ``kind`` means something else for each metaclass."""
-
 _DEFAULTS = {
     "allowSubstitutable": "true",
     "concurrency": "sequential",
