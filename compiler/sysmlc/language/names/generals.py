@@ -16,7 +16,8 @@ class Generals(ABC):
 
     ``cuts`` counts the questions that were not answered because their answer is being looked
     for already: what was found while one was cut is not remembered, so cycles end and change no
-    other answer. ``cycles`` has elements that specialise themselves, one of each circle.
+    other answer. ``abandoned`` has references that were too deep. ``cycles`` has elements that
+    specialise themselves.
     """
 
     def __init__(
@@ -27,6 +28,7 @@ class Generals(ABC):
         self.cuts = 0
         self.cycles: list[Node] = []
         self._active: set[Reference] = set()
+        self.abandoned: set[Reference] = set()
         self._cyclic: set[Node] = set()
         self._pointed: set[Node] = set()
         self._generals: dict[Node, list[Node]] = {}
@@ -34,6 +36,15 @@ class Generals(ABC):
         self._redefining: dict[Node, list[Node]] = {}
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
+
+    def abandon(self) -> None:
+        """Give up what is being looked for, after an error in the midst of it."""
+        for reference in self._active:
+            reference.targets = []
+        self.abandoned |= self._active
+        self._active.clear()
+        self._positions.clear()
+        self._at_positions.clear()
 
     @abstractmethod
     def target(self, node: Node, relation: Relation) -> Node | None:
@@ -71,10 +82,37 @@ class Generals(ABC):
 
     def _find_cycle(self, node: Node) -> None:
         """Note when ``node`` specialises itself: those in a circle inherit all of each other."""
-        back = {one for one in self.reached(node) if node in self.reached(one)}
-        if back:
-            self.cycles.append(node)
-            self._cyclic |= back | {node}
+        reached = self.reached(node)
+        if node not in reached or node in self._cyclic:
+            return
+        specials: dict[Node, list[Node]] = {}
+        for one in reached:
+            for general in self._generals.get(one, ()):
+                specials.setdefault(general, []).append(one)
+        circle = {node}
+        waiting = [node]
+        while waiting:
+            found = [one for one in specials.get(waiting.pop(), ()) if one not in circle]
+            circle.update(found)
+            waiting += found
+        self._cyclic |= circle
+        self.cycles.append(node)
+
+    def circle(self, node: Node) -> list[Node]:
+        """The shortest way from ``node`` through its generals to itself, without ``node``."""
+        before: dict[Node, Node] = {}
+        waiting = [node]
+        for one in waiting:
+            for general in self._generals.get(one, ()):
+                if general is node:
+                    way = [one]
+                    while way[-1] is not node:
+                        way.append(before[way[-1]])
+                    return way[-2::-1]
+                if general not in before:
+                    before[general] = one
+                    waiting.append(general)
+        return []
 
     def reached(self, node: Node) -> list[Node]:
         """What ``node`` specialises, as far as it is known, the nearest first."""

@@ -22,7 +22,13 @@ class Imports(Members):
         self._imports: dict[Node, list[Node]] = {}
         self._imported: dict[tuple[Node, bool], dict[str, Hits]] = {}
         self._conditions: dict[Node, list[Node]] = {}
-        self._importing: set[tuple[Node, bool]] = set()
+        self._seen: dict[tuple[Node, bool, str], Hits] = {}
+        """What one question has passed through already: imports may go in circles."""
+
+    def abandon(self) -> None:
+        """Give up what is being looked for, after an error in the midst of it."""
+        super().abandon()
+        self._seen.clear()
 
     def imports(self, scope: Node) -> list[Node]:
         """The imports that a namespace owns."""
@@ -43,15 +49,18 @@ class Imports(Members):
         hits = memo.get(name)
         if hits is not None:
             return hits
-        if key in self._importing:
+        seen = self._seen.get((scope, inside, name))
+        if seen is not None:
             self.cuts += 1
-            return NONE
-        before, outermost = self.cuts, not self._importing
-        self._importing.add(key)
+            return seen
+        before, outermost = self.cuts, not self._seen
+        self._seen[scope, inside, name] = NONE
         hits = self._gather(scope, imports, name, inside)
-        self._importing.discard(key)
+        self._seen[scope, inside, name] = hits
         if self.cuts == before or (outermost and not self._active):
             memo[name] = hits
+        if outermost:
+            self._seen.clear()
         return hits
 
     def _gather(self, scope: Node, imports: list[Node], name: str, inside: bool) -> Hits:

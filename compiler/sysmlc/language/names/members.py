@@ -23,6 +23,11 @@ class Members(Generals):
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._inheriting: set[Node] = set()
 
+    def abandon(self) -> None:
+        """Give up what is being looked for, after an error in the midst of it."""
+        super().abandon()
+        self._inheriting.clear()
+
     @abstractmethod
     def imports(self, scope: Node) -> list[Node]:
         """The imports that a namespace owns."""

@@ -1,6 +1,7 @@
 """A model with its names resolved, and the questions that others ask about it."""
 
 import gc
+import sys
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
@@ -11,7 +12,7 @@ from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
-from sysmlc.language.names.rules import CORE, CYCLE
+from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP
 from sysmlc.language.names.unresolved import report, subject
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
@@ -26,6 +27,8 @@ _EXPRESSIONS = (
 )
 
 
+_DEPTH = 20_000
+"""Names lead to names that lead to names: how deep Python may call itself meanwhile."""
 _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
@@ -203,7 +206,10 @@ class Model:
         for document in self.documents:
             for node in document.root.walk():
                 if node.kind in _DECLARED:
-                    node.relations += self._implied_relations(node)
+                    try:
+                        node.relations += self._implied_relations(node)
+                    except RecursionError:
+                        self.lookup.abandon()
 
     def _implied_relations(self, node: Node) -> list[Relation]:
         needed = dict.fromkeys(self.needed_generals(node))
@@ -236,8 +242,9 @@ def _relation(kind: str, name: str, target: Node) -> Relation:
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
     """The model of the documents with every reference resolved; what leads nowhere is reported."""
     model = Model(documents, library)
-    collecting = gc.isenabled()
+    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
     gc.disable()
+    sys.setrecursionlimit(max(depth, _DEPTH))
     try:
         for document in model.documents:
             _resolve(document, model, sink)
@@ -246,29 +253,42 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
         if library.is_core:
             _report_core(model, sink)
     finally:
+        sys.setrecursionlimit(depth)
         if collecting:
             gc.enable()
     return model
 
 
 def _resolve(document: Document, model: Model, sink: Sink) -> None:
-    lookup = model.lookup
     for node in document.root.walk():
         for relation in node.relations:
-            if (
-                relation.reference.targets is None and lookup.target(node, relation) is None
-            ) or relation.reference.target is None:
-                report(model, document, node, relation, sink)
+            if relation.reference.target is None and not relation.implied:
+                _resolve_one(document, node, relation, model, sink)
+
+
+def _resolve_one(
+    document: Document, node: Node, relation: Relation, model: Model, sink: Sink
+) -> None:
+    if relation.reference in model.lookup.abandoned:
+        return
+    try:
+        if model.lookup.target(node, relation) is None:
+            report(model, document, node, relation, sink)
+    except RecursionError:
+        model.lookup.abandon()
+        place = subject(document, node, relation.reference.start)
+        sink.report(TOO_DEEP, place, name=str(relation.reference))
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
+    told: set[Node] = set()
     for node in model.lookup.cycles:
-        document = model.document(node)
-        if document in model.documents:
-            circle = [n for n in model.lookup.reached(node) if node in model.lookup.reached(n)]
-            names = [f"'{model.name(n)}'" for n in circle if n is not node]
-            through = f" through {' and '.join(names)}" if names else ""
+        document, circle = model.document(node), model.lookup.circle(node)
+        if document in model.documents and told.isdisjoint({node, *circle}):
+            told.update((node, *circle))
+            names = " and ".join(f"'{model.name(one)}'" for one in circle)
             place = subject(document, node, node.name_start)
+            through = f" through {names}" if names else ""
             sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
 
 

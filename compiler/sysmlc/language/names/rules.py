@@ -67,3 +67,25 @@ package Plant {
 }
 """,
 )
+TOO_DEEP = rule(
+    "SM208",
+    "names-too-deep",
+    Severity.ERROR,
+    "what '{name}' leads to is behind too many other names",
+    why="A name may lead to a name that leads to a name. Thousands of them in a row, as a program "
+    "may write them, are not followed.",
+    help="refer to the element itself",
+    wrong="""\
+alias A0 for A1;
+alias A1 for A2;
+...
+alias A7999 for A8000;
+part def A8000;
+part gate : A0;
+""",
+    right="""\
+alias A7999 for A8000;
+part def A8000;
+part gate : A7999;
+""",
+)

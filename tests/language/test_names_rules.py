@@ -1,0 +1,41 @@
+"""The examples of the rules about names: the wrong model has the finding, the right one has not."""
+
+import pytest
+from resolving import documents, library
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.names import resolve
+from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP, UNRESOLVED
+
+
+def codes(text):
+    sink = Sink()
+    resolve(documents(text), library(), sink)
+    return {found.rule.code for found in sink}
+
+
+@pytest.mark.parametrize(
+    ("rule", "code"), [(UNRESOLVED, "SM205"), (CYCLE, "SM206"), (CORE, "SM207")]
+)
+def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
+    assert rule.code == code
+    assert code in codes(rule.wrong)
+    assert code not in codes(rule.right)
+
+
+def test_names_behind_thousands_of_names_are_told():
+    aliases = [f"alias A{number} for A{number + 1};" for number in range(8000)]
+    found = codes("\n".join([*aliases, "part def A8000;", "part gate : A0;"]))
+    assert found == {"SM208", "SM205"}
+    assert TOO_DEEP.code == "SM208"
+    assert codes("\n".join([*aliases[-1:], "part def A8000;", "part gate : A7999;"])) == set()
+
+
+def test_imports_of_each_other_in_all_ways_end():
+    count = 60
+    packages = [
+        f"package P{n} {{ public import P{(7 * n + 1) % count}::*; "
+        f"public import P{(3 * n + 2) % count}::*; public import P{(5 * n + 3) % count}::*; }}"
+        for n in range(count)
+    ]
+    assert codes("\n".join([*packages, "part a : P0::X;"])) == {"SM205"}
