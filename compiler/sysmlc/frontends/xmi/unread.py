@@ -4,7 +4,7 @@ Only the shapes of rows are looked at; the rows themselves where a shape has suc
 """
 
 from collections.abc import Iterator
-from itertools import islice
+from itertools import compress, islice
 
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
@@ -59,18 +59,29 @@ def _is_known(name: str) -> bool:
 
 def _rows(context: Context, shapes: list[tuple[str, ...]]) -> Iterator[tuple[int, tuple[str, ...]]]:
     """Rows that are of UML and have such attributes, with these."""
-    document = context.document
-    end = 1 if namespaces.is_xmi(document.namespace(0)) else 0
-    skipped = frozenset(context.applications)
-    for row, number in enumerate(document.shape_numbers):
-        if row < end:
-            continue
-        if row in skipped or document.features[row] in NOTATION_FEATURES:
-            end = document.ends[row]
-            continue
-        names = shapes[number] if number >= 0 else _unknown(tuple(document.attributes[row]))
-        if names and context.verdicts[row] in _READ:
+    document, applied = context.document, frozenset(context.applications)
+    numbers = document.shape_numbers
+    # The last one is for rows whose shape no longer counts.
+    is_wanted = [*map(bool, shapes), True]
+    for row in compress(range(len(numbers)), map(is_wanted.__getitem__, numbers)):
+        names = shapes[numbers[row]] if numbers[row] >= 0 else _unknown_of(context, row)
+        is_read = bool(names) and row not in applied and context.verdicts[row] in _READ
+        if is_read and not _is_beside_the_model(context, row, applied):
             yield row, names
+
+
+def _unknown_of(context: Context, row: int) -> tuple[str, ...]:
+    return _unknown(tuple(context.document.attributes[row]))
+
+
+def _is_beside_the_model(context: Context, row: int, applied: frozenset[int]) -> bool:
+    """Whether it is the envelope of XMI, or inside notation or an application."""
+    document = context.document
+    if row == 0:
+        return namespaces.is_xmi(document.namespace(0))
+    while row > 0 and row not in applied and document.features[row] not in NOTATION_FEATURES:
+        row = document.parents[row]
+    return row > 0
 
 
 def _approximate(context: Context, row: int, names: tuple[str, ...]) -> None:
