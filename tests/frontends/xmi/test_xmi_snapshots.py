@@ -238,7 +238,7 @@ def test_library_content_gives_no_findings_and_no_outputs(tmp_path):
     inside = COMPANY.replace('type="lost"', 'isConjugated="true"')
     path = archive(tmp_path, model(), snapshot(inside), snapshot(SYSML, "b"))
     # What CAEX and SysML v2 cannot say of the model is theirs to tell.
-    names = [name for name in backend_names() if name not in ("aml", "sysml")]
+    names = [name for name in backend_names() if name not in ("aml", "sysml", "sysmlx")]
     made = compile_model(Request((path,), backends=tuple(load_backends(names))))
     assert made.diagnostics == ()
     drawn = {a.path: a.text for a in made.written() if a.path.endswith(".puml")}

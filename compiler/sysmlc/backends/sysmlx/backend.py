@@ -1,14 +1,19 @@
 """Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
 
 from collections.abc import Sequence
+from functools import cache
+from os import environ
 
 from sysmlc.backends.base import EmitOptions
+from sysmlc.cache import default
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.language.exchange import interchange_path, write
+from sysmlc.language.library import VARIABLE, Library, core, find
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Document
 from sysmlc.output import Output
+from sysmlc.sources import SourceError
 from sysmlc.values import dataclass
 
 _LIBRARY = "sysml.library.xmi"
@@ -50,7 +55,6 @@ class _Places:
 def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
     """The graph as SysML v2 text says it, with names resolved; losses are those of the text."""
     from sysmlc.backends.sysml import BACKEND as TEXT
-    from sysmlc.language.library import find
     from sysmlc.language.names import resolve
     from sysmlc.language.text import parse
 
@@ -61,7 +65,17 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
         parse(one.text, one.path.removeprefix("sysml/"), "sysml", unseen)
         for one in written.artefacts()
     ]
-    return resolve(documents, find(), unseen)
+    return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
+
+
+@cache
+def _library(asked: str) -> Library:
+    """The standard library, read once for all models of a process; the small one if it is gone."""
+    store = default()
+    try:
+        return find(asked or None, cache=store)
+    except SourceError:
+        return core(store)
 
 
 BACKEND = SysmlxBackend()
