@@ -28,7 +28,29 @@ def test_an_expression_is_written_with_its_operands():
             '<operand xmi:type="uml:LiteralInteger" value="7"/></operand>'
             '<operand xmi:type="uml:LiteralBoolean" value="true"/></specification>'
         )
-        == "and((level < 7), true)"
+        == "((level < 7) and true)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("symbol", "operands", "text"),
+    [
+        ("and", "xy", "(x and y)"),
+        ("or", "xyz", "(x or y or z)"),
+        ("implies", "xy", "(x implies y)"),
+        ("not", "x", "(not x)"),
+        ("-", "x", "-(x)"),
+        ("max", "xy", "max(x, y)"),
+        ("and", "x", "and(x)"),
+    ],
+)
+def test_words_of_logic_stand_between_their_operands(symbol, operands, text):
+    inside = "".join(
+        f'<operand xmi:type="uml:OpaqueExpression"><body>{one}</body></operand>' for one in operands
+    )
+    assert (
+        body(f'<specification xmi:type="uml:Expression" symbol="{symbol}">{inside}</specification>')
+        == text
     )
 
 

@@ -33,6 +33,8 @@ _INTERVALS = ("Interval", "TimeInterval", "DurationInterval")
 _EXPRESSIONS = ("Expression", "StringExpression")
 _NAMES = {"InstanceValue": "instance", "ElementValue": "element"}
 """Values that name an element, and the feature that leads to it; the second is MagicDraw's own."""
+_BETWEEN = frozenset({"and", "or", "xor", "implies"})
+"""Operators of the grammar of expressions that are words, and stand between their operands."""
 _NESTING = frozenset((*_OF_TIME, *_INTERVALS, *_EXPRESSIONS))
 _INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
 
@@ -235,6 +237,9 @@ def _expression(document: Document, row: int, inner: _Inner) -> str:
     symbol = document.attributes[row].get("symbol", "")
     if not symbol:
         return "".join(operands)
-    if len(operands) == 2 and not symbol[:1].isalnum():
-        return f"({operands[0]} {symbol} {operands[1]})"
+    is_between = symbol in _BETWEEN or (len(operands) == 2 and not symbol[:1].isalnum())
+    if is_between and len(operands) > 1:
+        return f"({f' {symbol} '.join(operands)})"
+    if symbol == "not" and len(operands) == 1:
+        return f"(not {operands[0]})"
     return f"{symbol}({', '.join(operands)})" if operands else symbol
