@@ -35,6 +35,9 @@ MEMORY = 14.0
 LINEAR = 1.2
 """How many times as long a megabyte of the largest file may take as one of the smallest."""
 
+_SMALL = 10.0
+"""Megabytes up to which the whole command is measured, too."""
+
 _LARGE = 4.0
 """Megabytes from which on ratios and memory say something: start-up no longer counts."""
 
@@ -45,6 +48,9 @@ def report_file(report: Report, path: Path, rounds: int) -> Row:
     ours = measure(_WORK, "ours", path, rounds)
     name = f"{path.name} ({ours.megabytes:.1f} MB)"
     report.budget(name, ours.text, ours.total, BUDGET, "ms/MB")
+    if ours.megabytes < _SMALL:
+        whole = measure(_WORK, "check", path, rounds)
+        report.line("  sysmlc check, imports included", f"{whole.total:6.0f} ms/MB")
     for work in ("lxml", "expat"):
         other = measure(_WORK, work, path, rounds)
         ratio = ours.total / other.total
