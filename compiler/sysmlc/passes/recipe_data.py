@@ -1,12 +1,13 @@
 """Data of an activity: which variables its guards, pins and parameters stand for."""
 
+import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, parameter, read
-from sysmlc.recipe.expression import Expr, Lit, Var
+from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
 from sysmlc.values import dataclass
 
@@ -23,6 +24,8 @@ class Data:
     activity: Element
     declared: frozenset[str]
     shared: frozenset[str]
+    dotted: frozenset[str] = frozenset()
+    """Names ``action.pin`` by which the activity's expressions speak of output pins."""
 
     @classmethod
     def of(cls, context: Context, activity: Element) -> "Data":
@@ -31,7 +34,8 @@ class Data:
         names = {context.label(one) for one in owned if one.kind in (Kind.PARAMETER, Kind.PROPERTY)}
         pins = Counter(context.label(pin) for pin in _outputs(context, activity))
         shared = {name for name, count in pins.items() if count > 1}
-        return cls(context, activity, frozenset(names), frozenset(shared - names))
+        spoken = _spoken(context, activity)
+        return cls(context, activity, frozenset(names), frozenset(shared - names), spoken)
 
     # -- what an action reads and writes -------------------------------------------------------
 
@@ -50,6 +54,18 @@ class Data:
         for pin in self._pins(node, "out"):
             yield self.context.label(pin), self.variable(pin)
 
+    def read(self, text: str) -> Expr:
+        """An expression of the activity, with the variables that output pins set."""
+        found = read(text)
+        if not self.dotted:
+            return found
+        names = {
+            f"{self.context.label(owner)}.{self.context.label(pin)}": self.variable(pin)
+            for pin in _outputs(self.context, self.activity)
+            if (owner := self.context.graph.owner(pin)) is not None
+        }
+        return _renamed(found, names)
+
     def variable(self, pin: Element) -> str:
         """Variable that an output pin sets."""
         for flow in query.outgoing(self.context.graph, pin):
@@ -58,9 +74,8 @@ class Data:
                 return self._parameter_name(target)
         name = self.context.label(pin)
         owner = self.context.graph.owner(pin)
-        if name in self.shared and owner is not None:
-            return f"{self.context.label(owner)}.{name}"
-        return name
+        full = name if owner is None else f"{self.context.label(owner)}.{name}"
+        return full if name in self.shared or full in self.dotted else name
 
     def source_of(self, flow: Element) -> Expr | None:
         """Value that an object flow carries: the variable of the pin or parameter it starts at."""
@@ -92,6 +107,10 @@ class Data:
             one for one in owned if one.kind is Kind.PROPERTY and is_data(self.context, one)
         ]
         found = {self.context.label(one): parameter(self.context, one) for one in attributes}
+        heads = {name.partition(".")[0] for name in self.dotted}
+        for one in query.parameters(self.context.graph, self.activity, "in"):
+            if one.name in heads and not is_data(self.context, one):
+                found[one.name] = parameter(self.context, one)
         names = self.declared
         for pin in _outputs(self.context, self.activity):
             name = self.variable(pin)
@@ -108,8 +127,10 @@ class Data:
 
     def _filled(self, pin: Element) -> Expr | None:
         value = pin.attrs.get("value")
+        if isinstance(value, str) and "value_instance" in pin.attrs:
+            return Lit(value)
         if isinstance(value, str):
-            return read(value)
+            return self.read(value)
         if isinstance(value, bool | int | float):
             return Lit(value)
         for flow in query.incoming(self.context.graph, pin):
@@ -126,6 +147,33 @@ class Data:
 
 def _first(pair: tuple[str, Expr | None]) -> str:
     return pair[0]
+
+
+def _renamed(expression: Expr, names: Mapping[str, str]) -> Expr:
+    match expression:
+        case Var(name):
+            return Var(names.get(name, name))
+        case Apply(op, args):
+            return Apply(op, tuple(_renamed(one, names) for one in args))
+        case Index(base, index):
+            return Index(_renamed(base, names), _renamed(index, names))
+        case Call(function, args):
+            return Call(function, tuple(_renamed(one, names) for one in args))
+        case _:
+            return expression
+
+
+def _spoken(context: Context, activity: Element) -> frozenset[str]:
+    """Dotted names in the values, guards and texts of an activity."""
+    texts: list[object] = []
+    for node in context.graph.owned(activity):
+        texts += [node.attrs.get("guard"), node.attrs.get("body"), node.attrs.get("default")]
+        texts += [pin.attrs.get("value") for pin in context.graph.owned(node)]
+    dotted = (_DOTTED.findall(text) for text in texts if isinstance(text, str) and "." in text)
+    return frozenset(name for found in dotted for name in found)
+
+
+_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 
 
 def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:

@@ -7,7 +7,6 @@ from itertools import pairwise
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
-from sysmlc.passes.recipe_expressions import read
 from sysmlc.passes.recipe_steps import (
     activity_flows,
     flow_ends,
@@ -140,7 +139,7 @@ def _guard(context: Context, flow: Element, source: Element, text: str, data: Da
     is_literal = bool(flow.attrs.get("guard_literal"))
     if not text or (is_literal and source.subkind != "decision"):
         return None
-    expression = read(text)
+    expression = data.read(text)
     tested = _decision_input(context, source, data)
     if not is_literal or tested is None or not isinstance(expression, Lit):
         return expression

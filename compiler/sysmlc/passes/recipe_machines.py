@@ -1,9 +1,9 @@
 """Machines, materials, and the relations of tasks and services to machines."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe_context import Context
+from sysmlc.passes.recipe_context import Context, Tags
 from sysmlc.passes.recipe_expressions import is_data, optional, value
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant
@@ -75,6 +75,29 @@ def by_partition(context: Context, node: Element) -> Iterator[Relation]:
         machine = machine_of(context, represented) or machine_of(context, partition)
         if machine is not None:
             yield Relation(partition, (machine,))
+
+
+def by_pins(context: Context, step: Element) -> Iterator[Relation]:
+    """The machines that are given to a step as arguments: it needs all of them at once."""
+    found = _machines_in(context, (pin for pin in context.graph.owned(step) if _is_in(pin)))
+    if found:
+        yield Relation(step, found)
+
+
+def by_parameters(context: Context, behavior: Element) -> Iterator[Relation]:
+    """The machines that are given to a behaviour as parameters."""
+    for machine in _machines_in(context, query.parameters(context.graph, behavior, "in")):
+        yield Relation(behavior, (machine,))
+
+
+def _is_in(pin: Element) -> bool:
+    return pin.kind is Kind.PIN and pin.attrs.get("direction") == "in" and "value" in pin.attrs
+
+
+def _machines_in(context: Context, features: Iterable[Element]) -> tuple[Element, ...]:
+    types = (query.type_of(context.graph, one) for one in features)
+    found = (one for one in types if one is not None and context.level(one) == "machine")
+    return tuple(dict.fromkeys(found))
 
 
 def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
@@ -151,16 +174,30 @@ def providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider
     return tuple(found[machine] for machine in sorted(found))
 
 
+def _call(context: Context, element: Element) -> Element | None:
+    found = context.applied(element, "OpcUaCall")
+    for one in query.applications(context.graph, element) if context.levels else ():
+        stereotype = context.graph.target(one, Edge.INSTANCE_OF)
+        if stereotype is not None and context.own_level(stereotype) == "opc ua call":
+            found = found or one
+    return found
+
+
 def opcua(context: Context, element: Element) -> OpcUa | None:
-    """The OPC UA call on an element, or None."""
-    application = context.applied(element, "OpcUaCall")
+    """The OPC UA call on an element, or on the behaviour that implements it; or None.
+
+    A stereotype that the options give the level has the node ids as ``nodeId`` and
+    ``parentNodeId``, the words of OPC UA's own address space.
+    """
+    family = [element, *context.graph.targets(element, Edge.METHOD)]
+    application = next((one for each in family if (one := _call(context, each))), None)
     if application is None:
         return None
-    tags = context.tags(element, "OpcUaCall")
+    tags = Tags(application.attrs)
     return OpcUa(
         tags.call_kind("kind") or "call",
-        tags.text("object"),
-        tags.text("method"),
+        tags.text("object") or tags.text("parentNodeId"),
+        tags.text("method") or tags.text("nodeId"),
         tags.endpoint("endpoint") or "",
         tags.text("namespaceUri"),
         optional(tags.text("doneWhen")),

@@ -9,6 +9,7 @@ from sysmlc.passes.recipe_expressions import is_data, optional, parameter
 from sysmlc.passes.recipe_machines import (
     Relation,
     by_owner,
+    by_parameters,
     by_partition,
     by_relation,
     opcua,
@@ -69,7 +70,7 @@ def _relations(context: Context, definition: Element, callers: list[Element]) ->
         found = [one for node in callers for one in by_relation(context, node)]
     if not found:
         found = [one for node in callers for one in by_partition(context, node)]
-    yield from found
+    yield from found or by_parameters(context, definition)
 
 
 def constants(context: Context, definition: Element) -> tuple[Parameter, ...]:

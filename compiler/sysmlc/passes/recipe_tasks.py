@@ -8,6 +8,7 @@ from sysmlc.passes.recipe_expressions import optional
 from sysmlc.passes.recipe_machines import (
     Relation,
     by_partition,
+    by_pins,
     by_relation,
     machine_of,
     modes,
@@ -83,6 +84,8 @@ def _relations(context: Context, recipe: Element, step: Step) -> Iterator[Relati
     own += by_partition(context, step.node)
     if not own and step.definition is not None:
         own = [*by_relation(context, step.definition)]
+    if not own:
+        own = [*by_pins(context, step.node)]
     yield from own
 
 

@@ -226,11 +226,21 @@ def _misfits(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str]]:
 def _misfit(wanted: Parameter | None, given: Parameter | None) -> str:
     if wanted is None or given is None or wanted.type is None or given.type is None:
         return ""
-    if wanted.type != given.type and (given.type, wanted.type) != ("integer", "real"):
+    if not _fits(given.type, wanted.type):
         return f"and the variable '{given.name}' have different types"
     if wanted.unit and given.unit and wanted.unit != given.unit:
         return f"is in {wanted.unit}, but '{given.name}' in {given.unit}"
     return ""
+
+
+def _fits(given: ValueType, wanted: ValueType) -> bool:
+    """Whether values of one type are values of the other.
+
+    An enumeration may be one of numbers (SysML v2, 8.3.8): its values are integers then.
+    """
+    if given == wanted or (given, wanted) == ("integer", "real"):
+        return True
+    return "integer" in (given, wanted) and any(isinstance(t, EnumType) for t in (given, wanted))
 
 
 def readable(model: Model, tables: Tables) -> Iterator[Finding]:

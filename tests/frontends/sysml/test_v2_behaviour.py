@@ -176,10 +176,10 @@ package P {
     assert reading.to("P::Door", "classifier-behavior") == ["P::Door::life"]
     region = "P::Door::life::<Region>"
     assert reading.flows(region) == [
-        "initial -> closed",
+        "start -> closed",
         "closed -> open [not locked]",
         "open -> closed",
-        "open -> ",
+        "open -> done",
     ]
     opening = f"{region}::opening"
     assert reading.to(f"{opening}::<Trigger>", "typed-by") == ["P::Open"]
@@ -202,8 +202,8 @@ package P {
 }""")
     both = "P::S::<Region>::both"
     assert reading.owned(both) == ["Region left", "Region right"]
-    assert reading.owned(f"{both}::left") == ["Transition", "State a", "Pseudostate"]
-    assert reading.owned(f"{both}::right") == ["State right", "Pseudostate", "Transition"]
+    assert reading.owned(f"{both}::left") == ["Pseudostate start", "Transition", "State a"]
+    assert reading.owned(f"{both}::right") == ["State right", "Pseudostate start", "Transition"]
 
 
 def test_calculations_are_functions_and_constraints_of_definitions_have_no_name():

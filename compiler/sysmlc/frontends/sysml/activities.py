@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, statements
 from sysmlc.frontends.sysml.definitions import flags, generalize, marked
+from sysmlc.frontends.sysml.features import give_types
 from sysmlc.frontends.sysml.kinds import BEHAVIOURS, FUNCTIONS
 from sysmlc.frontends.sysml.successions import steps
 from sysmlc.frontends.sysml.values import texts
@@ -59,9 +60,44 @@ def perform(low: "Lowering", node: Node, owner: Element) -> None:
     if typed is not None and not node.name and not nodes.body_of(node):
         low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, typed)
         return
+    if typed is not None and is_instance(node):
+        low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, typed)
+        assign_steps(low, node, owner)
+        return
     made = activity(low, node, owner)
     if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
         low.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, made)
+
+
+def assign_steps(low: "Lowering", node: Node, owner: Element) -> None:
+    """Steps that a usage binds to actions of the plant are allocated to them.
+
+    ``action :>> place references cell.place`` says who does the step of the definition.
+    """
+    for one in node.walk():
+        step = nodes.target(one, "Redefinition")
+        found = nodes.reference(one, "ReferenceSubsetting")
+        if one is not node and step is not None and found is not None:
+            made = low.add(one, Kind.DEPENDENCY, "", owner, role="allocate", subkind="abstraction")
+            low.later(lambda made=made, step=step: low.lead(Edge.CLIENT, made, _step_of(low, step)))  # type: ignore[misc]
+            low.refer(Edge.SUPPLIER, made, found)
+        elif one is not node and not nodes.is_text(one) and one.kind not in nodes.EXPRESSIONS:
+            low.repeated.add(id(one))
+
+
+def _step_of(low: "Lowering", step: Node) -> Node:
+    """The step that a redefinition leads to in the end."""
+    seen = set()
+    while low.elements.get(id(step)) is None and id(step) not in seen:
+        seen.add(id(step))
+        step = nodes.target(step, "Redefinition") or step
+    return step
+
+
+def is_instance(node: Node) -> bool:
+    """Whether a usage only says what its definition has: all members are redefinitions."""
+    inside = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
+    return bool(inside) and all(nodes.reference(one, "Redefinition") is not None for one in inside)
 
 
 def _performed(low: "Lowering", node: Node, owner: Element, target: Node | None) -> None:
@@ -119,6 +155,9 @@ def _operation(low: "Lowering", node: Node, owner: Element) -> None:
         low.refer(Edge.REDEFINES, made, found)
     for found in methods:
         low.refer(Edge.METHOD, made, found)
+    if methods and methods[0].target is not None:
+        definition = methods[0].target
+        low.last(lambda: _inherit_parameters(low, made, definition))
     if _has_steps(node):
         low.lower_all((one for one in nodes.body_of(node) if "direction" in one.facts), made)
         method = low.make(node, Kind.ACTIVITY, made.name, owner)
@@ -126,6 +165,21 @@ def _operation(low: "Lowering", node: Node, owner: Element) -> None:
         fill(low, node, method)
         return
     low.lower_all(nodes.body_of(node), made)
+
+
+def _inherit_parameters(low: "Lowering", made: Element, definition: Node) -> None:
+    """An operation that states no parameters has those of the behaviour that defines it."""
+    if any(one.kind is Kind.PARAMETER for one in low.graph.owned(made)):
+        return
+    for node in definition.members:
+        one = low.element(node)
+        if one is not None and one.kind is Kind.PARAMETER:
+            copy = low.below(made, Kind.PARAMETER, one.name)
+            low.set(copy, **{key: one.attrs[key] for key in _COPIED if key in one.attrs})
+            give_types(low, node, copy)
+
+
+_COPIED = ("direction", "multiplicity", "ordered")
 
 
 def _reception(low: "Lowering", node: Node, owner: Element) -> None:

@@ -43,6 +43,8 @@ def _order(low: "Lowering", made: Element, order: Element) -> None:
 def _join(low: "Lowering", node: Node, made: Element, *, is_turned: bool) -> None:
     found = [_node(low, made, end) for end in nodes.ends_of(node)[:2]]
     found += [None] * (2 - len(found))
+    if is_turned and _is_value(low, node, made, found):
+        return
     if is_turned and not _is_forward(found):
         found = found[::-1]
     for edge, one in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), found, strict=True):
@@ -50,6 +52,22 @@ def _join(low: "Lowering", node: Node, made: Element, *, is_turned: bool) -> Non
             low.lead(edge, made, None)
         else:
             low.graph.connect(edge, made, one)
+
+
+def _is_value(low: "Lowering", node: Node, made: Element, found: list[Element | None]) -> bool:
+    """Whether a parameter is bound to a feature that no object node stands for: its value."""
+    for number, one in enumerate(found):
+        other = found[1 - number]
+        is_feature = one is not None and one.kind in (Kind.PROPERTY, Kind.PORT)
+        if is_feature and other is not None and other.kind is Kind.ACTIVITY_PARAMETER:
+            steps = [low.element(step) for step in steps_of(nodes.ends_of(node)[number])]
+            text = ".".join(step.name for step in steps if step is not None)
+            parameter_ = low.graph.target(other, Edge.REFERENCES)
+            if parameter_ is not None:
+                low.graph.set(parameter_, default=text, default_language="")
+            low.graph.remove(made)
+            return True
+    return False
 
 
 def _is_forward(found: list[Element | None]) -> bool:

@@ -1,13 +1,16 @@
 """A compile unit: its documents are resolved together and lowered one after the other."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Sink, Verdict
+from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.usage import accepted, flowing
-from sysmlc.ir import Graph
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.language.tree import Document, Node
 
 if TYPE_CHECKING:
@@ -23,9 +26,27 @@ def lower(
     low.flowing = flowing(documents)
     for document in documents:
         low.lower_all(document.root.members, None)
+    low.last(lambda: _give_pins(low, documents))
     low.finish()
     for document in documents:
         _count(low, document, coverage)
+
+
+def _give_pins(low: Lowering, documents: Sequence[Document]) -> None:
+    """Give steps the output pins whose values other steps and guards speak of (``pick.ok``)."""
+    for document in documents:
+        for node in document.root.walk():
+            if node.kind == "FeatureChainExpression":
+                steps = [low.element(one) for one in steps_of_value(node)]
+                for step, feature in pairwise(steps):
+                    if step is not None and feature is not None and step.kind is Kind.ACTION:
+                        _give_pin(low, step, feature)
+
+
+def _give_pin(low: Lowering, step: Element, feature: Element) -> None:
+    is_out = feature.attrs.get("direction") in ("out", "return", "inout")
+    if feature.kind is Kind.PARAMETER and is_out:
+        pin_of(low, step, feature)
 
 
 def _count(low: Lowering, document: Document, coverage: Coverage) -> None:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import expressions, nodes
-from sysmlc.ir import AttrValue, Element
+from sysmlc.ir import AttrValue, Edge, Element
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -20,18 +20,28 @@ def give(low: "Lowering", element: Element, key: str, node: Node) -> None:
     if literal is not None:
         low.graph.set(element, **{key: literal})
         return
-    low.later(lambda: _refer(low, element, key, node))
+    low.last(lambda: _refer(low, element, key, node))
 
 
 def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
     target = _literal_of(node)
     known = low.element(target)
     if target is not None and target.kind == "EnumerationUsage" and known is not None:
-        low.graph.set(element, **{key: known.name, f"{key}_instance": known.id})
+        _literal(low, element, key, known)
         return
     document = low.document(node)
     written = expressions.text(node, "" if document is None else document.text)
     low.graph.set(element, **{key: written, f"{key}_language": ""})
+
+
+def _literal(low: "Lowering", element: Element, key: str, known: Element) -> None:
+    """A literal of an enumeration; for a feature of another type the value that it has."""
+    types = low.graph.targets(element, Edge.TYPED_BY)
+    value = known.attrs.get("value")
+    if value is not None and types and low.graph.owner(known) not in types:
+        low.graph.set(element, **{key: value})
+    else:
+        low.graph.set(element, **{key: known.name, f"{key}_instance": known.id})
 
 
 def _literal_of(node: Node) -> Node | None:
