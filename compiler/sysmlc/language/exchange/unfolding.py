@@ -119,9 +119,15 @@ def _empty(node: Node, todo: list[Element]) -> Element:
 
 
 def _in_order(node: Node) -> Iterator[Relation | Node]:
-    """Relations and members in the order in which the text or the file has them."""
+    """Relations and members in the order in which the text or the file has them.
+
+    The source of a transition is before its parameters, which no text has (SysML 8.2.2.18.3).
+    """
     relations = [relation for relation in node.relations if not relation.implied]
     members = list(node.members)
+    if node.kind == "TransitionUsage":
+        yield from (relation for relation in relations if relation.kind == "Membership")
+        relations = [relation for relation in relations if relation.kind != "Membership"]
     while relations and members:
         before = relations[0].reference.start <= members[0].start
         yield relations.pop(0) if before else members.pop(0)
