@@ -38,7 +38,7 @@ def test_an_expression_is_written_with_its_operands():
         ("and", "xy", "(x and y)"),
         ("or", "xyz", "(x or y or z)"),
         ("implies", "xy", "(x implies y)"),
-        ("not", "x", "(not x)"),
+        ("not", "x", "not(x)"),
         ("-", "x", "-(x)"),
         ("max", "xy", "max(x, y)"),
         ("and", "x", "and(x)"),

@@ -240,6 +240,4 @@ def _expression(document: Document, row: int, inner: _Inner) -> str:
     is_between = symbol in _BETWEEN or (len(operands) == 2 and not symbol[:1].isalnum())
     if is_between and len(operands) > 1:
         return f"({f' {symbol} '.join(operands)})"
-    if symbol == "not" and len(operands) == 1:
-        return f"(not {operands[0]})"
     return f"{symbol}({', '.join(operands)})" if operands else symbol
