@@ -1,5 +1,6 @@
 """The textual notations of KerML and SysML v2: text becomes a tree."""
 
+import gc
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,16 @@ def parse(
 
     What is wrong in it is reported; the tree has what was understood.
     """
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        return _parse(text, path, language, sink, source)
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def _parse(text: str, path: str, language: str, sink: "Sink", source: "Source | None") -> Document:
     from sysmlc.language.text import machine, nesting, tables
     from sysmlc.language.text.brackets import settle
     from sysmlc.language.text.build.namespaces import root

@@ -29,9 +29,9 @@ def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, at: int) -> 
     first one of that, and the values of its arguments; what is absent is None.
     """
     rows, defaults, types = tables.rows, tables.defaults, tokens.types
-    state = stack[-1]
+    state, kind = stack[-1], types[at]
     while True:
-        step = rows[state].get(types[at])
+        step = rows[state].get(kind)
         if step is None:
             step = defaults[state]
             if step is None:
@@ -40,15 +40,16 @@ def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, at: int) -> 
             stack += (at, at, step)
             state = step
             at += 1
-            continue
-        if step == ACCEPT:
-            return -1
-        symbol, size, getter, action = rules[~step]
-        if action is None:
-            value, begin = stack[-3], stack[-2]
+            kind = types[at]
+        elif step != ACCEPT:
+            symbol, size, getter, action = rules[~step]
+            if action is None:
+                state = stack[-1] = rows[stack[-4]][symbol]
+            else:
+                got = getter(stack)
+                value = action(tokens, at, *got)
+                del stack[-size:]
+                state = rows[stack[-1]][symbol]
+                stack += (value, got[0], state)
         else:
-            got = getter(stack)
-            value, begin = action(tokens, at, *got), got[0]
-        del stack[-size:]
-        state = rows[stack[-1]][symbol]
-        stack += (value, begin, state)
+            return -1

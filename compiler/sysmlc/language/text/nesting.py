@@ -2,6 +2,7 @@
 
 import re
 from functools import cache
+from itertools import accumulate
 
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.text.tables import Tables
@@ -17,10 +18,20 @@ def too_deep(tables: Tables, tokens: Tokens) -> int:
     words, types = tables.types.words, tokens.types
     if sum(types.count(words[symbol]) for symbol in _OPENING) <= LIMIT:
         return -1
-    steps = {words[symbol]: 1 for symbol in _OPENING} | {words[symbol]: -1 for symbol in _CLOSING}
+    steps = [0] * 256
+    for opening, closing in zip(_OPENING, _CLOSING, strict=True):
+        steps[words[opening]], steps[words[closing]] = 1, -1
+    depths = list(accumulate(map(steps.__getitem__, types)))
+    if max(depths) <= LIMIT and min(depths) >= 0:
+        return -1
+    return _first_too_deep(types, steps)
+
+
+def _first_too_deep(types: bytearray, steps: list[int]) -> int:
+    """What closes more than is open counts for nothing."""
     depth = 0
     for index, kind in enumerate(types):
-        depth = max(depth + steps.get(kind, 0), 0)
+        depth = max(depth + steps[kind], 0)
         if depth > LIMIT:
             return index
     return -1

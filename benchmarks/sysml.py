@@ -1,0 +1,135 @@
+"""CPU time of the parser and resolver of SysML v2, beside other tools in the same run.
+
+    python benchmarks/sysml.py                  a generated model of 1 MB
+    python benchmarks/sysml.py FOLDER ...       folders with .sysml and .kerml files too
+
+With SYSMLC_CORPUS set the official files are measured too. The tools beside ours are measured
+where they are installed (``pip install sysml tree-sitter-sysml``); another notation of the same
+numbers is MB/s, 1000 / (ms/MB). Exit code 1 when a budget is missed.
+"""
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+
+import measuring
+from measuring import Report
+
+_WORK = Path(__file__).with_name("sysml_work.py")
+_PEERS = ("tree-sitter", "toolkit")
+_OFFICIAL = ("sysml.library", "training", "examples")
+
+PARSE = 1000.0
+"""Milliseconds of CPU time for each megabyte, from text to tree."""
+
+RESOLVE = 3333.0
+"""Milliseconds for each megabyte, from text to a tree whose names lead to elements."""
+
+SMALL = 0.35
+"""Seconds of CPU time of a whole process that checks a small file without imports."""
+
+_CELL = """\
+    part def Cell{n} :> Machine {{
+        doc /* One cell of the line, with what it does and how it tells. */
+        attribute speed : Real = {n}.5 * 2 + offset;
+        attribute offset : Real default 0.0;
+        port command : Command {{ in item order : Order; out item done : Done; }}
+        part arm[1..2] : Robot {{ :>> load = (3, 4, 5); }}
+        action serve {{
+            in item tray : Tray;
+            first start;
+            then accept order : Order via command;
+            then action mill : Mill {{ in part = serve.tray; }}
+            then decide check;
+            if speed > 3 and offset <= speed then mill;
+            else done;
+        }}
+        state def Modes {{
+            entry; then idle;
+            state idle;
+            transition first idle accept Start if speed > 0 do serve then busy;
+            state busy;
+        }}
+        connect arm.tool to command;
+    }}
+"""
+_HEAD = """\
+package Line {
+    attribute def Real; item def Order; item def Done; item def Tray; attribute def Start;
+    port def Command { in item order : Order; out item done : Done; }
+    part def Machine; action def Mill { in part; }
+    part def Robot { attribute load : Real [*]; port tool; }
+"""
+
+
+def generate(folder: Path, megabytes: float) -> None:
+    """Write a model of about this size: a line of cells."""
+    number = round(megabytes * measuring.MEGABYTE / len(_CELL))
+    cells = "".join(_CELL.format(n=n) for n in range(number))
+    (folder / "line.sysml").write_text(f"{_HEAD}{cells}}}\n", "utf-8")
+
+
+def small(folder: Path, rounds: int) -> float:
+    """CPU seconds of ``sysmlc check`` of a small file, start-up included."""
+    path = folder / "small.sysml"
+    path.write_text("package P { part def Cell { part arm : Robot; } part def Robot; }", "utf-8")
+    command = [str(Path(sysconfig.get_path("scripts")) / "sysmlc"), "check", str(path)]
+    return min(_cpu(command) for _ in range(rounds))
+
+
+def _cpu(command: list[str]) -> float:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=False, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def measure(report: Report, name: str, folder: Path, rounds: int, *, linked: bool) -> None:
+    """The lines of one folder; ``linked`` where all its names can be found."""
+    rows = {
+        work: measuring.measure(_WORK, work, folder, rounds)
+        for work in ("scan", "parse", *(["resolve"] if linked else []))
+    }
+    report.line(f"{name}: scan", rows["scan"].text)
+    for work, limit in (("parse", PARSE), ("resolve", RESOLVE)):
+        if work in rows:
+            text, total = rows[work].text, rows[work].total
+            report.budget(f"{name}: {work}", text, total, limit, "ms/MB")
+    for peer in _PEERS:
+        try:
+            report.line(f"{name}: {peer}", measuring.measure(_WORK, peer, folder, rounds).text)
+        except subprocess.CalledProcessError:
+            report.line(f"{name}: {peer}", "not installed, or it stopped")
+
+
+def main() -> int:
+    """Print the measurements; 1 when a budget is missed."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("folders", nargs="*", type=Path)
+    options.add_argument("--rounds", type=int, default=3)
+    given = options.parse_args()
+    report = Report()
+    report.calibration()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        generate(folder, 1.0)
+        measure(report, "generated", folder, given.rounds, linked=True)
+        seconds = small(folder, given.rounds)
+        report.budget("sysmlc check SMALL.sysml", f"{seconds:6.3f} s", seconds, SMALL, "s")
+    for path in (*_official(), *given.folders):
+        measure(report, path.name, path, given.rounds, linked=path.name in _OFFICIAL[1:])
+    return 0 if report.is_good else 1
+
+
+def _official() -> list[Path]:
+    corpus = os.environ.get("SYSMLC_CORPUS", "")
+    return [Path(corpus) / "sysml2" / "omg-release" / name for name in _OFFICIAL] if corpus else []
+
+
+if __name__ == "__main__":
+    sys.exit(main())
