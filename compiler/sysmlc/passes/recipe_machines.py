@@ -174,6 +174,10 @@ def providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider
     return tuple(found[machine] for machine in sorted(found))
 
 
+_OF_SPACE = ("parentNodeId", "nodeId")
+"""Tags of other stereotypes for OPC UA calls: the object and its method."""
+
+
 def _call(context: Context, element: Element) -> Element | None:
     found = context.applied(element, "OpcUaCall")
     for one in query.applications(context.graph, element) if context.levels else ():
@@ -196,8 +200,8 @@ def opcua(context: Context, element: Element) -> OpcUa | None:
     tags = Tags(application.attrs)
     return OpcUa(
         tags.call_kind("kind") or "call",
-        tags.text("object") or tags.text("parentNodeId"),
-        tags.text("method") or tags.text("nodeId"),
+        tags.text("object") or tags.text(_OF_SPACE[0]),
+        tags.text("method") or tags.text(_OF_SPACE[1]),
         tags.endpoint("endpoint") or "",
         tags.text("namespaceUri"),
         optional(tags.text("doneWhen")),

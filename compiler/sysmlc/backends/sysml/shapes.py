@@ -131,19 +131,20 @@ def _port(graph: Graph, element: Element) -> Shape:
 
 
 def _control(graph: Graph, element: Element) -> Shape | None:
-    """Control nodes; a final node is a member only where it ends other flows than its own."""
+    """Control nodes; a final node is a member where it ends other flows, or is one of several."""
     if element.subkind == "initial":
         return Shape("start", is_named=False)
     keyword = _CONTROLS.get(element.subkind)
-    if keyword is None and element.subkind == "final" and _has_fork(graph, element):
+    if keyword is None and element.subkind == "final" and _is_apart(graph, element):
         return Shape("action")
     return Shape(keyword) if keyword else None
 
 
-def _has_fork(graph: Graph, element: Element) -> bool:
+def _is_apart(graph: Graph, element: Element) -> bool:
     owner = graph.owner(element)
     beside = [] if owner is None else graph.owned(owner)
-    return any(one.kind is Kind.CONTROL and one.subkind == "fork" for one in beside)
+    found = [one.subkind for one in beside if one.kind is Kind.CONTROL]
+    return "fork" in found or found.count("final") > 1
 
 
 def _pseudostate(_graph: Graph, element: Element) -> Shape | None:
