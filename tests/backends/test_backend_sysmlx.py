@@ -7,6 +7,7 @@ import pytest
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.sysmlx import BACKEND
 from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
@@ -127,3 +128,14 @@ def test_the_ice_laboratory_is_valid_for_the_metamodel(corpus, tmp_path):
         file.write_text(text, "utf-8")
         (root,) = resources.get_resource(URI(str(file))).contents
         assert sum(1 for _ in root.eAllContents()) == text.count("xmi:id=") - 1
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize(
+    "name", ["ArrowheadProfile_v5.0.profile.uml", "SmartCityDSL-2.uml", "TankBarrelExample.uml"]
+)
+def test_models_of_other_languages_are_said_without_a_broken_reference(name, corpus):
+    made = compile_model(Request((corpus / "xmi/papyrus" / name,)))
+    files, codes = emitted(made.graph)
+    assert "SM758" not in codes
+    assert len(list(again(files)[0].root.walk())) > 100

@@ -228,8 +228,8 @@ def association(book: Book, entry: Entry) -> list[Line]:
         if own is None or own.parent is entry:
             continue
         types, _ = typing(book, entry, end)
-        keyword = own.shape.keyword if own.shape.keyword != "ref" else ""
         count = declarations.multiplicity(book, entry, end)
+        keyword = own.shape.keyword if count or own.shape.keyword != "ref" else ""
         head = " ".join(word for word in ("end", count.strip(), keyword, quoted(own.name)) if word)
         ends.append(Line(head + (f" : {', '.join(types)}" if types else "")))
     head = definition_head(book, entry).text()
@@ -243,6 +243,8 @@ def association_end(book: Book, entry: Entry) -> list[Line]:
     head = feature_head(book, entry)
     count, head.multiplicity = head.multiplicity, ""
     head.prefixes = ["end", *([count.strip()] if count else [])]
+    if count and not head.keyword:
+        head.keyword = "ref"
     return [Line(head.text(), contents(book, entry))]
 
 

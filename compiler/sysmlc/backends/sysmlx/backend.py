@@ -53,7 +53,10 @@ class _Places:
 
 
 def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
-    """The graph as SysML v2 text says it, with names resolved; losses are those of the text."""
+    """The graph as SysML v2 text says it, with names resolved; losses are those of the text.
+
+    Raises ValueError when that text has syntax errors, which is a fault of ours.
+    """
     from sysmlc.backends.sysml import BACKEND as TEXT
     from sysmlc.language.names import resolve
     from sysmlc.language.text import parse
@@ -65,6 +68,9 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
         parse(one.text, one.path.removeprefix("sysml/"), "sysml", unseen)
         for one in written.artefacts()
     ]
+    if unseen.has_errors():
+        first = next(iter(unseen))
+        raise ValueError(f"the text that +sysml makes cannot be read: {first.message}")
     return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
 
 
