@@ -28,6 +28,7 @@ def read(
     cache: "Cache | None" = None,
 ) -> None:
     """Add the files to the graph. Raises SourceError for what exceeds the limits."""
+    from sysmlc.language.checks import check
     from sysmlc.language.names import Model, resolve
 
     models = [source for source in sources if not is_description(source)]
@@ -50,6 +51,7 @@ def read(
         return
     ours += _missing(own, ours, cache)
     model = resolve([*own, *ours], found, sink)
+    check(model, sink)
     graph.store(Model, [*graph.derived(Model), model])
     lower(own, model, graph, sink, coverage)
 

@@ -1,0 +1,15 @@
+"""Checks of a resolved model: constraints of the specification that say what is well formed."""
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.names import Model
+
+
+def check(model: Model, sink: Sink) -> None:
+    """Report what in the documents of the model breaks a constraint of the specification."""
+    from sysmlc.language.checks import access, single, typing
+
+    for document in model.documents:
+        for node in document.root.walk():
+            typing.check(model, document, node, sink)
+            single.check(model, document, node, sink)
+            access.check(model, document, node, sink)

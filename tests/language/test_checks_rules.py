@@ -1,0 +1,89 @@
+"""Constraints about the types of usages, members of which there is one, accessible features."""
+
+import pytest
+from resolving import documents, library
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.checks import check, rules
+from sysmlc.language.names import resolve
+
+
+def found(text):
+    sink = Sink()
+    check(resolve(documents(text), library(), Sink()), sink)
+    return [one.message for one in sink]
+
+
+def codes(text):
+    sink = Sink()
+    check(resolve(documents(text), library(), Sink()), sink)
+    return {one.rule.code for one in sink}
+
+
+@pytest.mark.parametrize(
+    ("rule", "code"),
+    [
+        (rules.TYPED_BY, "SM221"),
+        (rules.ONE_TYPE, "SM222"),
+        (rules.ONLY_ONE, "SM223"),
+        (rules.SUBJECT_FIRST, "SM224"),
+        (rules.NOT_ACCESSIBLE, "SM225"),
+    ],
+)
+def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
+    assert rule.code == code
+    assert codes(rule.wrong) == {code}
+    assert codes(rule.right) == set()
+
+
+def test_a_usage_is_no_type_and_a_subset_brings_its_types():
+    assert found("""
+        part def Gate;
+        part gate : Gate;
+        attribute speed;
+        part a : gate;
+        part b :> speed;
+        ref c : gate;
+        part d :> gate;
+    """) == [
+        "part 'a' must be typed by occurrence, item or part definitions, and 'gate' is a part",
+        "part 'b' must be typed by occurrence, item or part definitions, and 'DataValue' is "
+        "a data type",
+        "reference 'c' must be typed by definitions, and 'gate' is a part",
+    ]
+
+
+def test_a_more_special_type_beside_a_general_one_is_one_type():
+    assert found("""
+        requirement def Safe;
+        requirement def Safer :> Safe;
+        requirement one : Safe, Safer;
+        requirement def Other;
+        requirement two : Safe, Other;
+    """) == ["requirement 'two' must be typed by one definition, and has 'Safe' and 'Other'"]
+
+
+def test_each_role_of_a_state_and_a_case_is_there_once():
+    assert found("""
+        state def Running { entry action a; do action b; exit action c; exit action d; }
+        case def Study { subject a; subject b; objective c; objective d; return x; return y; }
+    """) == [
+        "'Running' may have one exit action only",
+        "'Study' may have one subject only",
+        "'Study' may have one objective only",
+        "'Study' may have one result only",
+    ]
+
+
+def test_features_of_generals_and_of_packages_are_accessible():
+    assert (
+        found("""
+        part def Machine { port plug; }
+        part def Mill :> Machine { port other; connect plug to other; bind Machine::plug = other; }
+        attribute speed;
+        part mill : Mill { attribute s = speed; connect plug to Machine::plug; }
+        enum def Colour { red; }
+        attribute c = Colour::red;
+    """)
+        == []
+    )
