@@ -169,7 +169,7 @@ def read(path: Path) -> Case:
     """One test model with its expectations."""
     text = path.read_text(encoding="utf-8")
     setup, end, _ = text.partition("END_SETUP")
-    plain = _without_expectations(text)
+    plain = model_text(text)
 
     def place(match: re.Match[str], name: str) -> tuple[int, str, int]:
         line = text.count("\n", 0, match.start()) + 1
@@ -197,8 +197,8 @@ def read(path: Path) -> Case:
     )
 
 
-def _without_expectations(text: str) -> str:
-    """The text with its comments blanked, so that names are found in the model only."""
+def model_text(text: str) -> str:
+    """The text with its comments blanked: what is left is the model, at the same places."""
     return re.sub(
         r"//\*.*?\*/|/\*.*?\*/|//[^\n]*",
         lambda m: re.sub(r"[^\n]", " ", m[0]),
