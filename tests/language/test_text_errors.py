@@ -202,6 +202,11 @@ def test_nothing_is_no_error(text):
     assert understood(text) == []
 
 
+def test_a_file_in_another_encoding_is_one_message():
+    text = "package P { part x; }".encode("utf-16").decode("utf-8", "replace")
+    assert said(text) == ["1:1 SM194 the file is not written in UTF-8"]
+
+
 @pytest.mark.parametrize("text", ["\0", "\ufffd\ufffd", "'", '"', "/*", "}", "{", ";", "§" * 99])
 def test_what_is_no_text_at_all_is_told(text):
     assert said(text)

@@ -158,6 +158,7 @@ _FAULTS = {
     "comment": ("this comment", "put */ where it ends"),
     "quote": ("this name in quotes", "put ' where it ends, in the same line"),
     "string": ("this text in quotes", 'put " where it ends'),
+    "encoding": ("the file is not written in UTF-8", "save it in UTF-8, and it is read"),
     "number": ("{} is too large a number", "write it with an exponent below 308"),
     "character": (
         "{} belongs to no name, symbol or text",
@@ -167,7 +168,7 @@ _FAULTS = {
 
 
 def _shown(fault: Fault) -> str:
-    char = fault.text
+    char = fault.text or " "
     if char == "\ufffd":
         return "what is not UTF-8 here"
     return f"'{_short(char)}'" if char.isprintable() else f"the character U+{ord(char[0]):04X}"

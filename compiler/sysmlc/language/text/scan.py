@@ -20,6 +20,8 @@ _TOKEN = re.compile(
     rf"{_SKIPPED}(?:({_WORD}|{_SYMBOLS})|({_NUMBER})|({_BODY})|({_QUOTED})|({_STRING})|(.)|\Z)"
 )
 _BAD = 6
+_HEAD = 64
+"""Characters in which a file of another encoding, UTF-16 or a binary one, has a zero."""
 _REST = re.compile(r"[\w ]*")
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
@@ -28,7 +30,7 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
 @dataclass(frozen=True, slots=True)
 class Fault:
     """What cannot be read: a ``comment``, ``quote`` or ``string`` that is never closed, a
-    ``character`` of no token, a ``number`` that is too large.
+    ``character`` of no token, a ``number`` that is too large, the ``encoding`` of all.
     """
 
     what: str
@@ -99,9 +101,12 @@ class Types:
 
 
 def scan(text: str, types: Types) -> Tokens:
-    """All tokens of ``text``; never fails."""
+    """All tokens of ``text``; never fails. Of what was no text in UTF-8 it has none."""
     tokens = Tokens(text, bytearray(), [], [], [], [], [], [])
     position = 0
+    if "\0" in text[:_HEAD]:
+        tokens.faults.append(Fault("encoding", 0, ""))
+        position = len(text)
     while position >= 0:
         position = _scan(tokens, types, position)
     if not text.isascii():
