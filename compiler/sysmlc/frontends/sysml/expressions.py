@@ -38,10 +38,17 @@ class UnsaidError(ValueError):
 
 
 def text(node: Node, source: str = "") -> str:
-    """The expression in our grammar, else as ``source``, the text of the document, has it."""
+    """The expression in our grammar, else as ``source``, the text of the document, has it.
+
+    A document of interchange has no text: its expression is put into the notation of KerML.
+    """
     found = read(node)
     if found is not None:
         return print_expression(found)
+    if not source:
+        from sysmlc.language.notation import expression
+
+        return expression(node)
     return " ".join(source[node.start : node.end].split()) if 0 <= node.start < node.end else ""
 
 
