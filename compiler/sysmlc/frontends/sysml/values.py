@@ -76,14 +76,22 @@ def _operation(node: Node) -> AttrValue:
 
 
 def _sequence(args: list[Node]) -> AttrValue:
+    """The values of ``(a, b, c)``, which nests to the right as deep as it is long."""
     found: list[AttrValue] = []
-    for one in args:
-        value = constant(one)
-        if value is None:
+    while len(args) == 2:
+        left, right = args
+        if not _add(constant(left), found):
             return None
-        is_inner = one.facts.get("operator") == ","
-        found += value if is_inner and isinstance(value, tuple) else [value]
-    return tuple(found)
+        args = expressions.arguments(right) if right.facts.get("operator") == "," else [right]
+    return tuple(found) if all(_add(constant(one), found) for one in args) else None
+
+
+def _add(value: AttrValue, found: list[AttrValue]) -> bool:
+    """Take a value, or the values of a sequence within; False when there is none."""
+    if value is None:
+        return False
+    found += value if isinstance(value, tuple) else [value]
+    return True
 
 
 _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
