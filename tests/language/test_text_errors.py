@@ -70,7 +70,10 @@ def test_sm191_a_missing_bracket_is_put_in():
 
 def test_sm192_a_keyword_is_taken_as_the_name_that_it_was_meant_for():
     tree, messages = parsed("part def Cell { port in : Input; attribute end = 3; }")
-    assert [message.split()[0] for message in messages] == ["1:22", "1:44"]
+    assert messages == [
+        "1:22 SM192 'in' is a keyword of SysML and stands where a name is expected",
+        "1:44 SM192 'end' is a keyword of SysML and stands where a name is expected",
+    ]
     assert "  FeatureMembership PortUsage in FeatureTyping->Input" in tree
     assert understood("port 'in' : Input;") == [
         "OwningMembership PortUsage in FeatureTyping->Input"
@@ -130,6 +133,19 @@ def test_a_word_that_nearly_is_a_keyword_is_asked_about():
     assert advised("attribut x : T;") == ["'attribut' is no keyword: did you mean 'attribute'?"]
 
 
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("attribute a = 3 kg;", "units stand in brackets: 3 [kg]"),
+        ("enum def E { a, b; }", "members end with ';', they are not separated by commas"),
+        ("part def A extends B;", "what is more special says ':>' or 'specializes'"),
+        ("attribute a = if b then c else d;", "question mark: if a ? b else c"),
+    ],
+)
+def test_common_slips_get_the_words_that_are_right(text, advice):
+    assert advice in advised(text)[0]
+
+
 def test_sm195_members_stand_only_where_they_mean_something():
     assert said("part p { entry; return x; x + 1 }") == [
         "1:10 SM195 an 'entry', 'do' or 'exit' action stands in 'p', where none may stand",
@@ -187,6 +203,13 @@ def test_a_long_sequence_is_not_deep():
 
 def test_sm199_each_usage_has_its_own_words():
     assert [line.split()[1] for line in said("part a connect b to c; connect b to c;")] == ["SM199"]
+
+
+def test_sm199_parallel_goes_with_states():
+    assert said("state s parallel { } state def T parallel { }") == []
+    assert said("part p parallel { }") == [
+        "1:1 SM199 'parallel' goes with states, not with this declaration"
+    ]
 
 
 def test_errors_of_one_line_do_not_flood():

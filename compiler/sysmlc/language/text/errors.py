@@ -21,6 +21,9 @@ _COMMENT = (
 _HINTS = {
     "import": "an import stands in a body: private import A::*;",
     ":=": "':=' gives an initial value, '=' binds for good, 'default' may be overridden",
+    ",": "members end with ';', they are not separated by commas",
+    "extends": "what is more special says ':>' or 'specializes'",
+    "then": "an expression asks with a question mark: if a ? b else c",
 }
 
 
@@ -73,7 +76,7 @@ class Errors:
         """A token does not fit."""
         said = expectation(expected, self.beginnings)
         found = self._found(at)
-        advice = _HINTS.get(self._tokens[at]) or self._about_word(at - 1)
+        advice = self._about_unit(at) or _HINTS.get(self._tokens[at]) or self._about_word(at - 1)
         start = self._tokens.starts[at]
         self.report(rules.SYNTAX, start, found=found, expected=said, advice=advice)
 
@@ -101,6 +104,12 @@ class Errors:
         advice = f"put {words} there" if words != "';'" else self._about_word(before)
         advice = advice or "put ';' there, or a body in braces"
         self.report(rules.MISSING, max(end - 1, 0), missing=words, before=said, advice=advice)
+
+    def _about_unit(self, at: int) -> str:
+        """A name behind a number is meant as its unit."""
+        unit, number = self._tokens[at], self._tokens[at - 1] if at else ""
+        is_unit = number[:1].isdigit() and unit[:1].isalpha()
+        return f"units stand in brackets: {number} [{unit}]" if is_unit else ""
 
     def _about_word(self, at: int) -> str:
         """Where a member starts with a word that no keyword is: the keyword that may be meant."""

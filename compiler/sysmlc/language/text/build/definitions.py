@@ -3,7 +3,7 @@
 from sysmlc.language.text.build.features import Part, give, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
-from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.scan import Remark, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 _STEMS = {
@@ -84,7 +84,7 @@ def _defined(
     node = call(made(kind, OWNING, tokens, begin, at), names, tokens)
     node.relations += [Relation("Subclassification", name) for name in general or ()]
     if isinstance(body, Parallel):
-        node.facts["isParallel"] = True
+        _make_parallel(node, tokens)
     if kind == "EnumerationDefinition":
         tokens.special.append(node)
     return own(node, body)
@@ -118,6 +118,14 @@ def _word(tokens: Tokens, keyword: Keyword) -> str:
 
 class Parallel(list[Node]):
     """The members of a body that begins with `parallel`."""
+
+
+def _make_parallel(node: Node, tokens: Tokens) -> None:
+    node.facts["isParallel"] = True
+    if "State" not in node.kind:
+        text = "'parallel' goes with states, not with this declaration"
+        remark = Remark("combination", node.start, text, "take 'parallel' away")
+        tokens.remarks.append(remark)
 
 
 def _parallel(_tokens: Tokens, _at: int, _begin: int, body: list[Node]) -> Parallel:
@@ -171,7 +179,7 @@ def whole(node: Node, tokens: Tokens, at: int, body: list[Node]) -> Node:
     """The node with its body, after which it ends."""
     node.end = tokens.ends[at - 1]
     if isinstance(body, Parallel):
-        node.facts["isParallel"] = True
+        _make_parallel(node, tokens)
     return own(node, body) if body else node
 
 
