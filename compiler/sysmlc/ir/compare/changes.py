@@ -120,9 +120,14 @@ def _is_unsaid(found: "_Differing") -> bool:
 def _is_renamed_with(pairs: Pairs, old: Element, new: Element) -> bool:
     """Whether the name is that of an InternalElement, which is told of its part or instance."""
     if is_own_class(old) and is_own_class(new):
-        return any(one.id in pairs.old_of for one in holders(pairs.new, new))
+        return any(_is_renamed(pairs, one) for one in holders(pairs.new, new))
     part = _part_of(pairs, new)
-    return part is not None and pairs.old_of[part.id].name != part.name
+    return part is not None and _is_renamed(pairs, part)
+
+
+def _is_renamed(pairs: Pairs, new: Element) -> bool:
+    old = pairs.old_of.get(new.id)
+    return old is not None and old.name != new.name
 
 
 def _is_part_retyped(pairs: Pairs, new: Element) -> bool:
