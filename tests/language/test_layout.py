@@ -275,6 +275,21 @@ def test_files_of_the_corpus_stay_what_they_are(corpus):
 
 
 @pytest.mark.corpus
+def test_models_of_the_pilot_stay_what_they_are(corpus):
+    done = 0
+    for path in sorted((corpus / "sysml2/pilot-xpect").rglob("*.xt")):
+        text, sink = path.read_bytes().decode("utf-8", "replace"), Sink()
+        language = "kerml" if ".kerml" in path.name else "sysml"
+        before = parse(text, "m", language, sink)
+        if not sink.has_errors():
+            made = layout(text, language)
+            assert layout(made, language) == made, path
+            assert shape(parse(made, "m", language, sink)) == shape(before), path
+            done += 1
+    assert done > 400
+
+
+@pytest.mark.corpus
 def test_lines_of_the_corpus_fit(corpus):
     """Only names, texts, comments and notes are longer than a line."""
     paths = sorted((corpus / "sysml2/ice-lab").rglob("*.sysml"))
