@@ -90,6 +90,7 @@ def context_of(
     known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
     found = [one for one in known if one.name and _is_value(one)]
     named = {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
+    named |= _of_arguments(graph, [one for one in found if one.kind is Kind.PARAMETER])
     names = sorted(named, key=lambda name: (named[name].ordinal, name))
     variables = unique(names, "value", "event", "none")
     features = {
@@ -97,6 +98,18 @@ def context_of(
         for name, variable in zip(names, variables, strict=True)
     }
     return Context(classifier.name, features, _literals(graph))
+
+
+def _of_arguments(graph: Graph, parameters: list[Element]) -> dict[str, Element]:
+    """Values of the objects that a behaviour is given, by dotted names (``machine.busy``)."""
+    found = {}
+    for parameter in parameters:
+        type_ = query.type_of(graph, parameter)
+        if type_ is not None and type_.kind in (Kind.CLASS, Kind.COMPONENT):
+            for one in (*query.features(graph, type_), *_inherited(graph, type_)):
+                if one.kind is Kind.PROPERTY and one.role == "value":
+                    found[f"{parameter.name}.{one.name}"] = one
+    return found
 
 
 def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:

@@ -57,3 +57,12 @@ def test_what_does_not_fit_is_told(tmp_path, said, expected):
 def test_archives_that_are_given_together_are_found(tmp_path):
     user = pack(tmp_path / "plant.kpar", usage=["https://example.org/1.0/Robots.kpar"])
     assert compiled(user, pack(tmp_path / "robots.kpar"))[1] == []
+
+
+def test_archives_of_the_library_are_examined(tmp_path):
+    (tmp_path / "m.sysml").write_text("package M { private import Robots::*; part r : Robot; }")
+    for name, value in (("good", SUM), ("bad", "00")):
+        library = pack(tmp_path / f"{name}.kpar", value)
+        made = compile_model(Request((tmp_path / "m.sysml",), library=str(library)))
+        codes = [one.rule.code for one in made.diagnostics]
+        assert ("SM168" in codes) == (name == "bad")

@@ -119,8 +119,11 @@ def _flow(low: "Lowering", node: Node, made: Element) -> None:
     for edge, path in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=False):
         if path:
             low.graph.connect(edge, made, path[-1])
-        else:
-            low.lead(edge, made, None)
+    if len(ends) < 2 or not all(ends):
+        low.graph.remove(made)
+        low.elements.pop(id(node), None)
+        low.unsupported(node)
+        return
     owner = low.graph.owner(made)
     if owner is None or len(ends) < 2:
         return

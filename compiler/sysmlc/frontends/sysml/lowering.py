@@ -221,7 +221,20 @@ class Lowering:
         if edge is Edge.SPECIALIZES and not self._waits:
             self._waits = True
             self._generals.clear()
-        self.graph.refer(Pending(edge, source.id, stubs.href_of(name), kind, name))
+        href = stubs.href_of(name)
+        if name in stubs.SCALARS:
+            self.graph.refer(Pending(edge, source.id, href, kind, name))
+        else:
+            self.graph.refer(Pending(edge, source.id, self._stub(href, kind, name), kind, name))
+
+    def _stub(self, href: str, kind: Kind, name: str) -> str:
+        """Id of the element that stands for one of the standard library."""
+        found = derived_id(href, "stub")
+        if found not in self.graph:
+            attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": href}
+            attrs["qualified_name"] = name
+            self.graph.add(Element(found, kind, name.rpartition("::")[2], attrs=attrs))
+        return found
 
     def _outside(self, edge: Edge, source: Element, target: Node) -> None:
         name = nodes.path_of(target)

@@ -1,11 +1,13 @@
 """Project archives among the inputs: what they say of themselves is held against what they are."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.sysml.detect import is_description
-from sysmlc.language.exchange import project, used
-from sysmlc.sources import Source
+from sysmlc.language.exchange import open_archive, project, used
+from sysmlc.sources import DEFAULT_LIMITS, Source
+from sysmlc.sources.whole import read_whole
 
 _SUFFIX = ".kpar"
 
@@ -27,3 +29,15 @@ def examine(sources: Sequence[Source], sink: Sink, *, has_library: bool) -> None
     ]
     for one in found:
         used(one, found, sink, has_standard=has_library)
+
+
+def examine_library(path: Path, sink: Sink) -> None:
+    """Report files of a library's archives that are not as the archives say.
+
+    ``path`` is an archive or a folder of some. Raises SourceError for one that cannot be opened.
+    """
+    archives = [path] if path.is_file() else sorted(path.glob(f"*{_SUFFIX}"))
+    for archive in archives:
+        if archive.suffix.lower() == _SUFFIX:
+            data = read_whole(archive, archive.name, DEFAULT_LIMITS)
+            open_archive(Source(archive.name, data), sink)

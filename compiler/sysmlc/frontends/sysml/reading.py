@@ -1,6 +1,7 @@
 """From the files of a unit to its documents, resolved with the libraries that they refer to."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sysmlc import resources
@@ -105,7 +106,12 @@ def _library(path: str, cache: "Cache | None", sink: Sink) -> "Library":
     from sysmlc.language.library import core, find
 
     try:
-        return find(path or None, cache=cache)
+        found = find(path or None, cache=cache)
+        if path:
+            from sysmlc.frontends.sysml.projects import examine_library
+
+            examine_library(Path(path), sink)
+        return found
     except SourceError as problem:
         sink.report(NO_LIBRARY, Subject(path), path=path, problem=problem.message)
         return core(cache)
