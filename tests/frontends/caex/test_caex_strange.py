@@ -3,6 +3,8 @@
 import pytest
 from reading_caex import CAEX_2, Read, aml, classes, plant, types
 
+from sysmlc.frontends.caex import strange
+
 ELEMENT = '<InternalElement Name="i" ID="1">%s</InternalElement>'
 
 
@@ -56,6 +58,12 @@ def test_an_attribute_of_another_language_and_one_that_is_at_home_are_nothing_to
     assert Read(inside(free)).findings == []
 
 
+def test_an_unknown_attribute_beside_a_namespace_is_told():
+    body = inside("").replace('ID="1"', 'ID="1" xmlns="" colour="red"')
+    for reading in in_both_ways(body):
+        assert [finding[:5] for finding in reading.findings] == ["SM633"]
+
+
 TEXTS = [
     ("oops", "'Plant::i' holds the text 'oops'; CAEX has none at 'InternalElement'"),
     (
@@ -95,6 +103,16 @@ def test_text_where_caex_has_none_is_told(body, told):
 def test_text_that_is_at_home_is_nothing_to_tell(body):
     for reading in in_both_ways(inside(body)):
         assert reading.findings == []
+
+
+def test_text_below_what_any_xml_may_stand_in_costs_no_second_look(monkeypatch):
+    looks = []
+    monkeypatch.setattr(strange, "parse", lambda source, _: looks.append(source.name))
+    header = "<WriterHeader><WriterName>us</WriterName><Constraint>c</Constraint></WriterHeader>"
+    for reading in in_both_ways(inside(f"<AdditionalInformation>{header}</AdditionalInformation>")):
+        assert (reading.findings, looks) == ([], [])
+    Read(inside("oops"))
+    assert looks == ["plant.aml"]
 
 
 def test_text_in_the_file_itself_is_told_at_the_file():

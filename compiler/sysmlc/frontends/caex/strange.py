@@ -1,6 +1,7 @@
 """XML that CAEX does not know: attributes of elements, and text between elements."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import compress
 
 from sysmlc.diagnostics import Severity, Verdict, rule
 from sysmlc.frontends.caex.context import Context, path_of
@@ -48,12 +49,11 @@ def report(context: Context, sources: Sequence[Source]) -> None:
 
 
 def _attributes(context: Context, document: Document) -> None:
-    shapes = document.shapes or _shapes(document)
-    strange = {shape for shape in shapes if any(True for _ in _unknown(shape))}
+    unknown = _unknown_by_shape(document.shapes or _shapes(document))
     found: dict[tuple[str, str], list[int]] = {}
-    for row, values in enumerate(document.attributes) if strange else ():
+    for row in _rows(document, unknown) if unknown else ():
         tag = document.tags[row]
-        for name in _unknown((tag, tuple(values))):
+        for name in unknown[tag, tuple(document.attributes[row])]:
             if not _is_free(document, row):
                 found.setdefault((tag, name), []).append(row)
     for (tag, name), rows in found.items():
@@ -66,7 +66,26 @@ def _attributes(context: Context, document: Document) -> None:
 
 
 def _shapes(document: Document) -> set[_Shape]:
-    return set(zip(document.tags, map(tuple, document.attributes), strict=True))
+    return set(_shape_of_each_row(document))
+
+
+def _shape_of_each_row(document: Document) -> Iterator[_Shape]:
+    return zip(document.tags, map(tuple, document.attributes), strict=True)
+
+
+def _rows(document: Document, shapes: Collection[_Shape]) -> Iterator[int]:
+    """The rows that have one of the shapes."""
+    are_such = map(shapes.__contains__, _shape_of_each_row(document))
+    return compress(range(len(document.tags)), are_such)
+
+
+def _unknown_by_shape(shapes: Iterable[_Shape]) -> dict[_Shape, list[str]]:
+    """Unknown attributes of each shape that has some; its rows do not keep namespaces."""
+    found = {}
+    for tag, names in shapes:
+        kept = tuple(name for name in names if name != "xmlns")
+        found[tag, kept] = list(_unknown((tag, kept)))
+    return {shape: names for shape, names in found.items() if names}
 
 
 def _unknown(shape: _Shape) -> Iterator[str]:
@@ -108,10 +127,7 @@ def _more(count: int) -> str:
 
 
 def _texts(context: Context, document: Document, source: Source) -> None:
-    heard = any(
-        text.strip() and document.tags[row] not in TEXTS for row, text in document.texts[""].items()
-    )
-    if not (heard or document.has_stray):
+    if not (document.has_stray or _has_stray_of_rows(document)):
         return
     rows = {ordinal: row for row, ordinal in enumerate(document.ordinals)}
     found: dict[str, list[tuple[int, str]]] = {}
@@ -123,6 +139,17 @@ def _texts(context: Context, document: Document, source: Source) -> None:
         node = document.node(rows[ordinal])
         facts = {"element": _name(node, document), "tag": tag, "text": text, "more": more}
         context.report(STRAY_TEXT, document, node, **facts)
+
+
+def _has_stray_of_rows(document: Document) -> bool:
+    """Whether a row has text of its own and is neither free nor an element that holds text."""
+    own, tags = document.texts[""].items(), document.tags
+    heard = (row for row, text in own if tags[row] in _SILENT and text.strip())
+    return any(not _is_free(document, row) for row in heard)
+
+
+_SILENT = frozenset(ATTRIBUTES) - TEXTS
+"""Elements that hold no text; in what CAEX does not know any may stand."""
 
 
 def _stray(source: Source) -> list[tuple[str, int, str]]:
