@@ -12,7 +12,7 @@ from sysmlc.language.text.build import ACTIONS
 from sysmlc.language.text.generate import tables as generate
 
 LANGUAGES = ("kerml", "sysml")
-CONFLICTS = {"kerml": 11, "sysml": 4}
+CONFLICTS = {"kerml": 13, "sysml": 4}
 """Places where shifting is right: dangling else, a list of parts of a declaration, and such."""
 
 

@@ -337,3 +337,12 @@ def test_kerml_has_types_features_and_relationships_of_its_own():
         "    EndFeatureMembership Feature ReferenceSubsetting->b",
         "OwningMembership Specialization z specific->A general->B",
     ]
+
+
+def test_bindings_of_kerml_have_names_types_or_neither():
+    text = "feature f { binding a = b; binding x of a = b; binding : B of a = b; }"
+    assert [line for line in inner(text, "kerml") if "Binding" in line] == [
+        "FeatureMembership BindingConnector",
+        "FeatureMembership BindingConnector x",
+        "FeatureMembership BindingConnector FeatureTyping->B",
+    ]

@@ -137,6 +137,12 @@ def _declared_many_ends(
     return whole(apply(node, Tail(ends=[first, *rest]), tokens), tokens, at, body)
 
 
+def _bound_nameless(
+    _tokens: Tokens, _at: int, _begin: int, parts: list[Part], more: list[Part] | None = None
+) -> tuple[None, list[Part]]:
+    return None, [*parts, *(more or ())]
+
+
 def _bound_name(
     tokens: Tokens, _at: int, _begin: int, name: int, parts: list[Part]
 ) -> tuple[Names, list[Part]]:
@@ -152,7 +158,7 @@ def _binding(
     at: int,
     begin: int,
     sufficient: int | None,
-    name: tuple[Names, list[Part]] | None,
+    name: tuple[Names | None, list[Part]] | None,
     ends: list[End] | None,
     body: list[Node],
 ) -> Node:
@@ -314,6 +320,7 @@ ACTIONS = {
     "declared_many_ends": _declared_many_ends,
     "bound_name": _bound_name,
     "bound_name_of": _bound_name_of,
+    "bound_nameless": _bound_nameless,
     "binding": _binding,
     "namespace": _namespace,
     "first_between": _first_between,
