@@ -7,9 +7,11 @@ from sysmlc.language.text.build import (
     actions,
     connections,
     definitions,
+    ends,
     expressions,
     features,
     kerml,
+    kernel_members,
     lists,
     names,
     namespaces,
@@ -21,8 +23,8 @@ from sysmlc.language.text.build import (
 )
 from sysmlc.language.text.machine import Action
 
-_COMMON = (lists, names, namespaces, features, operators, expressions)
-_SYSML = (definitions, usages, connections, actions, references, transitions)
+_COMMON = (lists, names, namespaces, features, operators, expressions, ends, connections)
+_SYSML = (definitions, usages, actions, references, transitions)
 
 
 def _actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
@@ -30,6 +32,6 @@ def _actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
 
 
 ACTIONS: Mapping[str, Mapping[str, Action]] = {
-    "kerml": _actions((*_COMMON, connections, relationships, kerml)),
+    "kerml": _actions((*_COMMON, relationships, kerml, kernel_members)),
     "sysml": _actions(_COMMON + _SYSML),
 }

@@ -1,28 +1,15 @@
-"""Connections, interfaces, bindings, successions, flows, their ends (SysML 8.2.2.13 to 16)."""
+"""Connections, interfaces, bindings, successions, flows (SysML 8.2.2.13 to 8.2.2.16)."""
 
-from collections.abc import Callable
 from dataclasses import field
-from typing import NamedTuple
 
 from sysmlc.language.text.build.definitions import USAGES, Keyword, whole
+from sysmlc.language.text.build.ends import End, maker
 from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
 from sysmlc.language.text.build.names import Names, call
-from sysmlc.language.text.build.owning import FEATURE, OWNING, made
+from sysmlc.language.text.build.owning import FEATURE, made
 from sysmlc.language.text.scan import Remark, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 from sysmlc.values import dataclass
-
-_END = "EndFeatureMembership"
-
-
-class End(NamedTuple):
-    """One end as written: its multiplicity, its name, what it refers to, its tokens."""
-
-    bounds: Node | None
-    name: str | None
-    reference: Reference
-    begin: int
-    at: int
 
 
 @dataclass(slots=True)
@@ -47,9 +34,7 @@ def apply(node: Node, tail: Tail, tokens: Tokens) -> Node:
     node.relations += tail.relations
     for member in tail.members:
         node.own(member)
-    make = _ENDS.get(node.kind, end_feature)
-    if make is _flow_end and "isAbstract" in node.facts:
-        make = _message_end
+    make = maker(node)
     for end in tail.ends:
         node.own(make(end, tokens))
     return node
@@ -84,85 +69,6 @@ def _remark(node: Node, tail: Tail, tokens: Tokens) -> None:
     keyword = _OWNERS[tail.word].split(" and ")[0].removesuffix("s")
     advice = f"declare it as {keyword}, or make two declarations of it"
     tokens.remarks.append(Remark("combination", node.start, text, advice))
-
-
-def end_feature(end: End, tokens: Tokens) -> Node:
-    """The end of a connector (8.2.2.13.1)."""
-    return _connector_end("ReferenceUsage", end, tokens)
-
-
-def _interface_end(end: End, tokens: Tokens) -> Node:
-    return _connector_end("PortUsage", end, tokens)
-
-
-def _connector_end(kind: str, end: End, tokens: Tokens) -> Node:
-    node = made(kind, _END, tokens, end.begin, end.at)
-    node.name = end.name
-    if end.bounds is not None:
-        cross = node.own(made("Feature", OWNING, tokens, end.begin, end.at))
-        cross.own(multiplicity(end.bounds, tokens, end.begin, end.at))
-    node.relations.append(Relation("ReferenceSubsetting", end.reference))
-    return node
-
-
-def _flow_end(end: End, tokens: Tokens) -> Node:
-    """The end of a flow: what has the feature, and the feature (8.2.2.16)."""
-    node = made("FlowEnd", _END, tokens, end.begin, end.at)
-    chain, start, stop = end.reference.chain, end.reference.start, end.reference.end
-    if len(chain) > 1:
-        node.relations.append(
-            Relation("ReferenceSubsetting", Reference(chain[:-1], start, tokens.starts[end.at - 1]))
-        )
-        start = tokens.starts[end.at - 1]
-    feature = node.own(made("ReferenceUsage", FEATURE, tokens, end.begin, end.at))
-    feature.relations.append(Relation("Redefinition", Reference(chain[-1:], start, stop)))
-    return node
-
-
-def _message_end(end: End, tokens: Tokens) -> Node:
-    node = made("EventOccurrenceUsage", "ParameterMembership", tokens, end.begin, end.at)
-    node.relations.append(Relation("ReferenceSubsetting", end.reference))
-    return node
-
-
-def _kernel_end(end: End, tokens: Tokens) -> Node:
-    return _connector_end("Feature", end, tokens)
-
-
-def _kernel_flow_end(end: End, tokens: Tokens) -> Node:
-    node = _flow_end(end, tokens)
-    node.members[0].kind = "Feature"
-    return node
-
-
-_ENDS: dict[str, Callable[[End, Tokens], Node]] = {
-    "Connector": _kernel_end,
-    "BindingConnector": _kernel_end,
-    "Succession": _kernel_end,
-    "Flow": _kernel_flow_end,
-    "SuccessionFlow": _kernel_flow_end,
-    "InterfaceUsage": _interface_end,
-    "FlowUsage": _flow_end,
-    "SuccessionFlowUsage": _flow_end,
-}
-
-
-def _end(tokens: Tokens, at: int, begin: int, bounds: Node | None, reference: Reference) -> End:
-    return End(bounds, None, reference, begin, at)
-
-
-def _named_end(
-    tokens: Tokens, at: int, begin: int, bounds: Node | None, name: int, reference: Reference
-) -> End:
-    return End(bounds, tokens.name(name), reference, begin, at)
-
-
-def _binary(_tokens: Tokens, _at: int, _begin: int, first: End, second: End) -> list[End]:
-    return [first, second]
-
-
-def _nary(_tokens: Tokens, _at: int, _begin: int, first: End, rest: list[End]) -> list[End]:
-    return [first, *rest]
 
 
 def _connect(_tokens: Tokens, _at: int, _begin: int, ends: list[End]) -> Tail:
@@ -303,10 +209,6 @@ def _usage_named_end(
 
 
 ACTIONS = {
-    "end": _end,
-    "named_end": _named_end,
-    "binary": _binary,
-    "nary": _nary,
     "connect": _connect,
     "allocate": _allocate,
     "bind": _bind,

@@ -1,8 +1,9 @@
 """Transitions: source, trigger, guard, effect, target (SysML 8.2.2.17.8, 8.2.2.18.3)."""
 
 from sysmlc.language.text.build.actions import parameter
-from sysmlc.language.text.build.connections import End, Tail, apply, end_feature
+from sysmlc.language.text.build.connections import Tail, apply
 from sysmlc.language.text.build.definitions import whole
+from sysmlc.language.text.build.ends import End, end_feature
 from sysmlc.language.text.build.features import Part, give, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from sysmlc.language.text.build.connections import End, end_feature
 from sysmlc.language.text.build.definitions import lead, loose, whole
+from sysmlc.language.text.build.ends import End, end_feature
 from sysmlc.language.text.build.features import Part, multiplicity, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.namespaces import visible
