@@ -95,6 +95,7 @@ def test_sm193_the_innermost_open_brace_is_told_once():
 def test_sm193_comments_and_quotes_that_never_close():
     assert said("part a; /* b") == ["1:9 SM193 this comment is never closed"]
     assert said("part 'a b : C;\npart d;") == ["1:6 SM193 this name in quotes is never closed"]
+    assert parsed("part 'abc;")[0] == ["OwningMembership PartUsage abc"]
     assert said('attribute a = "b;') == ["1:15 SM193 this text in quotes is never closed"]
 
 

@@ -164,7 +164,8 @@ def _check_names(tokens: Tokens, types: Types) -> None:
 
 def unquoted(written: str) -> str:
     """What stands between the quotes, escapes undone (KerML 8.2.2.3, Table 4)."""
-    inner = written[1:-1]
+    is_closed = len(written) > 1 and written[-1] == written[0]
+    inner = written[1:-1] if is_closed else written[1:]
     return _ESCAPE.sub(_escaped, inner) if "\\" in inner else inner
 
 
