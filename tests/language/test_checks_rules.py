@@ -4,7 +4,7 @@ import pytest
 from resolving import documents, library
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import check, rules
+from sysmlc.language.checks import check, member_rules, reference_rules, rules
 from sysmlc.language.names import resolve
 
 
@@ -28,6 +28,20 @@ def codes(text):
         (rules.ONLY_ONE, "SM223"),
         (rules.SUBJECT_FIRST, "SM224"),
         (rules.NOT_ACCESSIBLE, "SM225"),
+        (reference_rules.OTHER_KIND, "SM236"),
+        (reference_rules.PART_OF_PORT, "SM237"),
+        (reference_rules.OTHER_DIRECTION, "SM238"),
+        (reference_rules.INDIVIDUAL, "SM239"),
+        (member_rules.VARIANT_ELSEWHERE, "SM226"),
+        (member_rules.NO_VARIANT, "SM227"),
+        (member_rules.VARIATION_OF_VARIATION, "SM228"),
+        (member_rules.VERIFY_ELSEWHERE, "SM229"),
+        (member_rules.PARALLEL, "SM230"),
+        (member_rules.PORTION_ELSEWHERE, "SM231"),
+        (member_rules.END_NO_PORT, "SM232"),
+        (member_rules.TOO_MANY_ENDS, "SM233"),
+        (member_rules.ABSTRACT_METADATA, "SM234"),
+        (member_rules.ENUMERATION_AND_MORE, "SM235"),
     ],
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):

@@ -1,0 +1,125 @@
+"""How types are made of others: unions, chains, conjugates, references, multiplicities."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.tree import Node
+
+ALONE = error(
+    "SM254",
+    "one-operand",
+    "'{name}' is {made} '{general}' alone",
+    "It takes two to make something of several (KerML 1.0, validateTypeUnioningTypesNotSelf, "
+    "validateFeatureChainingFeatureNotOne and alike).",
+    "name a second one, or specialise '{general}'",
+    "classifier Gate;\nclassifier Barrier unions Gate;\n",
+    "classifier Gate;\nclassifier Fence;\nclassifier Barrier unions Gate, Fence;\n",
+)
+ITSELF = error(
+    "SM255",
+    "operand-itself",
+    "'{name}' is {made} itself",
+    "What something is made of cannot be the thing itself (KerML 1.0, "
+    "validateTypeUnioningTypesNotSelf, validateFeatureChainingFeaturesNotSelf and alike).",
+    "take '{name}' out of its own definition",
+    "classifier Gate;\nclassifier Barrier unions Gate, Barrier;\n",
+    "classifier Gate;\nclassifier Fence;\nclassifier Barrier unions Gate, Fence;\n",
+)
+SECOND_REFERENCE = error(
+    "SM256",
+    "several-references",
+    "'{name}' references '{general}' too",
+    "A reference stands for one feature (KerML 1.0, validateFeatureOwnedReferenceSubsetting).",
+    "keep one 'references', and write 'subsets' for the others",
+    "feature one;\nfeature other;\nfeature both references one references other;\n",
+    "feature one;\nfeature other;\nfeature both references one subsets other;\n",
+)
+SECOND_MULTIPLICITY = error(
+    "SM257",
+    "several-multiplicities",
+    "'{name}' has a second multiplicity",
+    "How many there are is said once (KerML 1.0, validateTypeOwnedMultiplicity).",
+    "keep one of them",
+    "classifier Gate {\n    multiplicity subsets Base::zeroOrOne;\n"
+    "    multiplicity subsets Base::zeroToMany;\n}\n",
+    "classifier Gate {\n    multiplicity subsets Base::zeroOrOne;\n}\n",
+)
+CONJUGATED = error(
+    "SM258",
+    "conjugate-specialises",
+    "'{name}' is the conjugate of another type, and specialises '{general}' too",
+    "A conjugate has all that its original has and nothing else (KerML 1.0, "
+    "validateSpecializationSpecificNotConjugated).",
+    "let a type that specialises both have what is needed",
+    "classifier Plug;\nclassifier Other;\n"
+    "classifier Socket conjugates Plug;\nsubtype Socket specializes Other;\n",
+    "classifier Plug;\nclassifier Other;\n"
+    "classifier Socket conjugates Plug;\nsubtype Plug specializes Other;\n",
+)
+
+_MADE = {
+    "Unioning": "the union of",
+    "Intersecting": "the intersection of",
+    "Differencing": "the difference of",
+    "FeatureChaining": "a chain of",
+}
+_CONJUGATION = frozenset({"Conjugation"})
+_REFERENCE = frozenset({"ReferenceSubsetting"})
+_MULTIPLICITIES = kinds_of("Multiplicity")
+_SPECIFIC = frozenset({"specific", "subclassifier", "subsettingFeature", "redefiningFeature"})
+_GENERAL = frozenset({"general", "superclassifier", "subsettedFeature", "redefinedFeature"})
+
+
+def check_operands(model: Model, node: Node) -> Iterator[Found]:
+    """Report a type that is made of one other only, or of itself."""
+    for kind, made in _MADE.items():
+        operands = list(written(node, frozenset({kind})))
+        for relation, target in operands:
+            name, general = name_of(model, node), name_of(model, target)
+            facts = {"name": name, "made": made, "general": general}
+            if target is node:
+                yield Found(ITSELF, relation.reference.start, facts)
+            elif sum(r.kind == kind for r in node.relations) == 1:
+                yield Found(ALONE, relation.reference.start, facts)
+
+
+def check_reference(model: Model, node: Node) -> Iterator[Found]:
+    """Report the references of a feature after its first."""
+    for relation, target in list(written(node, _REFERENCE))[1:]:
+        facts = {"name": name_of(model, node), "general": name_of(model, target)}
+        yield Found(SECOND_REFERENCE, relation.reference.start, facts)
+
+
+def check_multiplicity(model: Model, node: Node) -> Iterator[Found]:
+    """Report the multiplicities of a type after its first."""
+    for member in [m for m in node.members if m.kind in _MULTIPLICITIES][1:]:
+        yield Found(SECOND_MULTIPLICITY, member.start, {"name": name_of(model, node)})
+
+
+def check_conjugate(model: Model, node: Node) -> Iterator[Found]:
+    """Report what a conjugated type specialises."""
+    if any(True for _ in written(node, _CONJUGATION)):
+        for relation, target in written(node, kinds_of("Specialization")):
+            facts = {"name": name_of(model, node), "general": name_of(model, target)}
+            yield Found(CONJUGATED, relation.reference.start, facts)
+
+
+def check_apart(model: Model, node: Node) -> Iterator[Found]:
+    """Report a specialisation that stands for itself and is one of a conjugated type."""
+    for relation, special in written(node, _SPECIFIC):
+        if any(True for _ in written(special, _CONJUGATION)):
+            for _, general in written(node, _GENERAL):
+                facts = {"name": name_of(model, special), "general": name_of(model, general)}
+                yield Found(CONJUGATED, relation.reference.start, facts)
+
+
+CHECKS = (
+    (TYPES, check_operands),
+    (FEATURES, check_reference),
+    (TYPES, check_multiplicity),
+    (TYPES, check_conjugate),
+    (kinds_of("Specialization"), check_apart),
+)

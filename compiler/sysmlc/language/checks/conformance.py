@@ -1,0 +1,115 @@
+"""What subsets or redefines a feature keeps what the feature promises (KerML 8.3.3.3)."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
+from sysmlc.language.composition import USAGES, is_end
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.generals import GENERAL
+from sysmlc.language.names.implied import owning_type
+from sysmlc.language.tree import Node
+
+NONUNIQUE = error(
+    "SM250",
+    "nonunique-subset",
+    "'{name}' may have a value twice, and '{general}' may not",
+    "The values of a feature are among those of what it subsets or redefines, and those are "
+    "different from each other (KerML 1.0, validateSubsettingUniquenessConformance).",
+    "leave 'nonunique' out, or write it for '{general}' too",
+    "part def Axle {\n    part wheels[4];\n    part left[2] nonunique :> wheels;\n}\n",
+    "part def Axle {\n    part wheels[4] nonunique;\n    part left[2] nonunique :> wheels;\n}\n",
+)
+NOT_CONSTANT = error(
+    "SM251",
+    "variable-subset",
+    "'{name}' may change, and '{general}' is constant",
+    "What is among the values of a constant feature cannot change either (KerML 1.0, "
+    "validateSubsettingConstantConformance).",
+    "write 'const' for 'var'",
+    "class Gate {\n    const feature height;\n    var feature opening subsets height;\n}\n",
+    "class Gate {\n    const feature height;\n    const feature opening subsets height;\n}\n",
+)
+NO_END = error(
+    "SM252",
+    "redefined-end",
+    "'{name}' is no end, and '{general}', which it redefines, is one",
+    "An end stays an end where it is redefined (KerML 1.0, validateRedefinitionEndConformance).",
+    "write 'end' before it",
+    "assoc Link {\n    end feature source;\n    end feature target;\n}\n"
+    "assoc Wire specializes Link {\n    feature redefines source;\n}\n",
+    "assoc Link {\n    end feature source;\n    end feature target;\n}\n"
+    "assoc Wire specializes Link {\n    end feature redefines source;\n}\n",
+)
+
+_SUBSETTINGS = kinds_of("Subsetting")
+_TURNING = frozenset({"Conjugation", "ConjugatedPortTyping"})
+_TURNED = {"in": "out", "out": "in"}
+_PLAIN = FEATURES - USAGES
+
+
+def check(model: Model, node: Node) -> Iterator[Found]:
+    """Report a feature that breaks what a feature promises that it subsets or redefines."""
+    for relation, target in written(node, _SUBSETTINGS):
+        rules = (
+            (NONUNIQUE, node.facts.get("isUnique") is False and _is_unique(target)),
+            (NOT_CONSTANT, _may_change(node) and target.facts.get("isConstant") is True),
+            (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
+        )
+        for rule, is_broken in rules:
+            if is_broken:
+                facts = {"name": name_of(model, node), "general": name_of(model, target)}
+                yield Found(rule, relation.reference.start, facts)
+
+
+def _is_unique(feature: Node) -> bool:
+    return feature.facts.get("isUnique") is not False
+
+
+def _may_change(feature: Node) -> bool:
+    return feature.facts.get("isVariable") is True and not feature.facts.get("isConstant")
+
+
+def check_direction(model: Model, node: Node) -> Iterator[Found]:
+    """Report a feature with another direction than what it redefines has where it is."""
+    scope = owning_type(node)
+    if scope is None:
+        return
+    own = node.facts.get("direction")
+    for relation in node.relations:
+        target = relation.reference.target
+        if relation.kind == "Redefinition" and target is not None:
+            wanted = direction(model, scope, target)
+            if wanted in _TURNED and own != wanted or wanted == "inout" and own is None:
+                start = node.start if relation.implied else relation.reference.start
+                facts = {"name": name_of(model, target), "owner": name_of(model, target.owner)}
+                yield Found(OTHER_DIRECTION, start, facts)
+
+
+def direction(model: Model, scope: Node, feature: Node) -> str:
+    """The direction of a feature as ``scope`` sees it: conjugation turns it around.
+
+    Empty where it has none and where ``scope`` does not inherit it (KerML 8.3.3.1.10,
+    directionOf).
+    """
+    said = feature.facts.get("direction")
+    if said is None:
+        return ""
+    waiting = [(scope, False)]
+    seen = set(waiting)
+    for at, is_turned in waiting:
+        if at is feature.owner:
+            return _TURNED.get(str(said), str(said)) if is_turned else str(said)
+        for relation in at.relations:
+            general = model.target(at, relation) if relation.kind in GENERAL else None
+            if general is not None:
+                step = (general, is_turned ^ (relation.kind in _TURNING))
+                if step not in seen:
+                    seen.add(step)
+                    waiting.append(step)
+    return ""
+
+
+CHECKS = ((FEATURES, check), (_PLAIN, check_direction))

@@ -1,0 +1,43 @@
+"""What a check finds, and how a rule about the tree is made."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.language.names import Model
+from sysmlc.language.tree import Node, Relation
+
+
+class Found(NamedTuple):
+    """A rule that is broken, the offset of the text that breaks it, the facts of its phrase."""
+
+    rule: Rule
+    start: int
+    facts: dict[str, str]
+
+
+Check = Callable[[Model, Node], Iterable[Found]]
+"""What is broken by one node; a check is called for the metaclasses that it is entered for."""
+
+
+def error(
+    code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str
+) -> Rule:
+    """A rule whose examples are models in the textual notation."""
+    return rule(code, name, Severity.ERROR, phrase, why=why, help=help, wrong=wrong, right=right)
+
+
+def written(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:
+    """The relations of some kinds that the text says, with what they lead to."""
+    for relation in node.relations:
+        if relation.kind in kinds and not relation.implied:
+            target = relation.reference.target
+            if target is not None:
+                yield relation, target
+
+
+def name_of(model: Model, node: Node | None) -> str:
+    """The name of an element, else its kind in words; empty for none."""
+    if node is None:
+        return ""
+    return model.name(node) or node.kind

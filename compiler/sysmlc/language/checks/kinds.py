@@ -1,0 +1,64 @@
+"""Definitions specialise definitions that can have the same instances (KerML 8.3.4)."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.advice import kind_of
+from sysmlc.language.tree import Node
+
+OTHER_KIND = error(
+    "SM259",
+    "specialises-other-kind",
+    "'{name}', {kind}, cannot specialise '{general}', {found}",
+    "Values are no occurrences, things are no behaviours, and only links are links: no instance "
+    "could be both (KerML 1.0, validateDataTypeSpecialization, validateClassSpecialization, "
+    "validateStructureSpecialization, validateBehaviorSpecialization).",
+    "specialise {wanted}, or have a feature of that type",
+    "attribute def Speed;\npart def Drive :> Speed;\n",
+    "attribute def Speed;\npart def Drive { attribute speed : Speed; }\n",
+)
+
+_DATA = kinds_of("DataType")
+_CLASSES = kinds_of("Class")
+_LINKS = kinds_of("Association")
+_STRUCTURES = kinds_of("Structure")
+_BEHAVIORS = kinds_of("Behavior")
+_SUBCLASSIFICATION = frozenset({"Subclassification"})
+
+
+class Apart(NamedTuple):
+    """Metaclasses that cannot specialise others, and what they can."""
+
+    kinds: frozenset[str]
+    others: frozenset[str]
+    wanted: str
+
+
+_APART = (
+    Apart(_DATA, _CLASSES | _LINKS, "an attribute definition or data type"),
+    Apart(_CLASSES - _LINKS, _DATA | _LINKS, "an item, part, port, action or another class"),
+    Apart(_CLASSES & _LINKS, _DATA, "an item, part, connection or another class"),
+    Apart(_STRUCTURES, _BEHAVIORS, "an item, part, port or another structure"),
+    Apart(_BEHAVIORS, _STRUCTURES, "an action or another behaviour"),
+)
+
+
+def check(model: Model, node: Node) -> Iterator[Found]:
+    """Report generals of which no instance can be one of ``node``."""
+    for relation, target in written(node, _SUBCLASSIFICATION):
+        for apart in _APART:
+            if node.kind in apart.kinds and target.kind in apart.others:
+                facts = {
+                    "name": name_of(model, node),
+                    "kind": kind_of(node),
+                    "general": name_of(model, target),
+                    "found": kind_of(target),
+                    "wanted": apart.wanted,
+                }
+                yield Found(OTHER_KIND, relation.reference.start, facts)
+
+
+CHECKS = ((_DATA | _CLASSES, check),)

@@ -1,0 +1,85 @@
+"""What usages may reference, redefine and specialise."""
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.checks import member_rules, reference_rules
+from sysmlc.language.composition import is_composite
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.advice import kind_of
+from sysmlc.language.names.unresolved import subject
+from sysmlc.language.tree import Document, Node, Relation
+
+_REFERENCED = {
+    "IncludeUseCaseUsage": (kinds_of("UseCaseUsage"), "a use case"),
+    "ExhibitStateUsage": (kinds_of("StateUsage"), "a state"),
+    "PerformActionUsage": (kinds_of("Step"), "an action"),
+    "EventOccurrenceUsage": (kinds_of("OccurrenceUsage") | kinds_of("Step"), "an occurrence"),
+}
+_USAGES = kinds_of("Usage")
+_PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
+_DIRECTED = ("in", "out")
+
+
+def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
+    """Report references to what has another kind, direction or place than they need."""
+    if node.kind not in _USAGES:
+        return
+    for relation in node.relations:
+        target = relation.reference.target
+        if target is not None and not relation.implied:
+            _relation(model, document, node, relation, target, sink)
+    _itself(model, document, node, sink)
+
+
+def _relation(
+    model: Model, document: Document, node: Node, relation: Relation, target: Node, sink: Sink
+) -> None:
+    place = subject(document, node, relation.reference.start)
+    name = str(relation.reference)
+    if relation.kind == "ReferenceSubsetting" and node.kind in _REFERENCED:
+        kinds, words = _REFERENCED[node.kind]
+        if target.kind in _USAGES and target.kind not in kinds:
+            found = kind_of(target)
+            sink.report(reference_rules.OTHER_KIND, place, name=name, found=found, wanted=words)
+    if relation.kind == "Redefinition" and _turns(model, node, target):
+        owner = model.name(target.owner) if target.owner else ""
+        sink.report(reference_rules.OTHER_DIRECTION, place, name=name, owner=owner)
+    if node.facts.get("isVariation") and target.facts.get("isVariation"):
+        sink.report(
+            member_rules.VARIATION_OF_VARIATION,
+            place,
+            name=model.name(node) or node.kind,
+            owner="",
+        )
+
+
+def _turns(model: Model, node: Node, target: Node) -> bool:
+    """Whether a redefining feature has another direction than the one that it redefines."""
+    theirs, ours = target.facts.get("direction"), node.facts.get("direction")
+    return theirs in _DIRECTED and ours not in (None, theirs) and not _is_conjugated(model, node)
+
+
+def _is_conjugated(model: Model, node: Node) -> bool:
+    """Whether the owner, or what it specialises, turns directions around."""
+    supers = model.supers(node.owner) if node.owner is not None else ()
+    return any(r.kind == "ConjugatedPortTyping" for one in supers for r in one.relations)
+
+
+def _itself(model: Model, document: Document, node: Node, sink: Sink) -> None:
+    owner = node.owner
+    place = subject(document, node, node.start)
+    name = model.name(node) or node.kind
+    if _is_in_port(owner) and node.kind != "PortUsage" and is_composite(node):
+        sink.report(reference_rules.PART_OF_PORT, place, name=name, owner=_name(model, owner))
+    if node.facts.get("isIndividual") and any(r.kind == "FeatureTyping" for r in node.relations):
+        types = [one for one in model.types(node) if one.facts.get("isIndividual")]
+        if len(types) != 1:
+            sink.report(reference_rules.INDIVIDUAL, place, name=name, count=len(types))
+
+
+def _is_in_port(owner: Node | None) -> bool:
+    return owner is not None and owner.kind in _PORT_OWNERS
+
+
+def _name(model: Model, node: Node | None) -> str:
+    return (model.name(node) or node.kind) if node is not None else ""
