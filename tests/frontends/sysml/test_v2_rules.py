@@ -1,4 +1,4 @@
-"""What the front end for SysML v2 reports, and what it does not."""
+"""What the front end for SysML v2 reports (SM480 to SM484), and what it does not."""
 
 import pytest
 from reading_v2 import read
@@ -8,11 +8,13 @@ from sysmlc.frontends.sysml import FRONTEND, rules
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
 
+CODES = ("SM480", "SM481", "SM482")
 RULES = (rules.UNSUPPORTED, rules.APPROXIMATED, rules.NOT_IN_GRAPH)
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
 def test_the_wrong_model_has_the_finding_and_the_right_one_has_not(rule):
+    assert rule.code in CODES
     assert rule.code in read(rule.wrong).codes()
     assert rule.code not in read(rule.right).codes()
 

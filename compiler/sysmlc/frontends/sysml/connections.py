@@ -153,10 +153,13 @@ def _paths(low: "Lowering", connector_: Element) -> set[tuple[str, ...]]:
 
 def flow_definition(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A flow between classifiers (UML 2.5.1 clause 20.1)."""
+    if sum(map(_is_end, node.members)) < 2:
+        low.unsupported(node)
+        return
     made = low.add(node, Kind.ITEM_FLOW, nodes.name_of(node), owner, role="item flow")
     edges = iter((Edge.FLOW_SOURCE, Edge.FLOW_TARGET))
     for one in node.members:
-        if one.membership == "EndFeatureMembership" or one.facts.get("isEnd"):
+        if _is_end(one):
             edge = next(edges, None)
             type_ = nodes.reference(one, "FeatureTyping")
             if edge is not None and type_ is not None:

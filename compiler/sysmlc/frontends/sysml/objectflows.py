@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.connections import steps_of
 from sysmlc.frontends.sysml.definitions import visibility
-from sysmlc.frontends.sysml.parameters import node_of, pin_of
+from sysmlc.frontends.sysml.parameters import node_of, own_parameter, pin_of
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
@@ -54,6 +54,14 @@ def _join(low: "Lowering", node: Node, made: Element, *, is_turned: bool) -> Non
             low.graph.connect(edge, made, one)
 
 
+def _of_activity(low: "Lowering", made: Element, parameter_: Element) -> Element:
+    """The node for a parameter of the activity that owns the flow; it may be inherited."""
+    for above in low.graph.ancestors(made):
+        if above.kind is Kind.ACTIVITY:
+            return node_of(low, own_parameter(low, parameter_, above))
+    return node_of(low, parameter_)
+
+
 def _is_value(low: "Lowering", node: Node, made: Element, found: list[Element | None]) -> bool:
     """Whether a parameter is bound to a feature that no object node stands for: its value."""
     for number, one in enumerate(found):
@@ -98,7 +106,11 @@ def _node(low: "Lowering", made: Element, end: Node) -> Element | None:
         return last
     if last.kind is Kind.PARAMETER:
         is_step = before is not None and before.kind in (Kind.ACTION, Kind.STRUCTURED)
-        return pin_of(low, before, last) if is_step and before is not None else node_of(low, last)
+        return (
+            pin_of(low, before, last)
+            if is_step and before is not None
+            else _of_activity(low, made, last)
+        )
     step = next((one for one in path if one is not None and one.kind is Kind.ACTION), None)
     if step is not None:
         return pin_of(low, step, last)

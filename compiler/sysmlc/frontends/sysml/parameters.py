@@ -93,6 +93,22 @@ def _given(low: "Lowering", action: Element, value: Node) -> None:
 _REFERENCE = "FeatureReferenceExpression"
 
 
+def own_parameter(low: "Lowering", parameter_: Element, activity: Element) -> Element:
+    """The parameter as one of the activity: an inherited one is repeated when a flow needs it."""
+    if low.graph.owner(parameter_) is activity:
+        return parameter_
+    for one in low.graph.owned(activity):
+        if one.kind is Kind.PARAMETER and one.name == parameter_.name:
+            return one
+    made = low.below(activity, Kind.PARAMETER, parameter_.name)
+    low.set(made, direction=parameter_.attrs.get("direction"))
+    low.set(made, multiplicity=parameter_.attrs.get("multiplicity"))
+    low.graph.connect(Edge.REDEFINES, made, parameter_)
+    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
+        low.graph.connect(Edge.TYPED_BY, made, type_)
+    return made
+
+
 def node_of(low: "Lowering", parameter_: Element) -> Element:
     """The node of an activity that stands for its parameter; it is made when a flow needs it."""
     for one in low.graph.sources(parameter_, Edge.REFERENCES):
