@@ -43,7 +43,7 @@ def _is_accessible(model: Model, node: Node, feature: Node) -> bool:
         return True
     around = node.owner
     while around is not None:
-        if around is owner or (around.kind in TYPES and owner in model.supers(around)):
+        if around is owner or (around.kind in TYPES and owner in model.supers_of(around)):
             return True
         around = around.owner
     return False

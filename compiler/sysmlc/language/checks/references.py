@@ -17,6 +17,7 @@ _REFERENCED = {
 }
 _USAGES = kinds_of("Usage")
 _PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
+_CHECKED = frozenset({"ReferenceSubsetting", "Redefinition", "Subsetting", "FeatureTyping"})
 _DIRECTED = ("in", "out")
 
 
@@ -34,6 +35,8 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
 def _relation(
     model: Model, document: Document, node: Node, relation: Relation, target: Node, sink: Sink
 ) -> None:
+    if relation.kind not in _CHECKED:
+        return
     place = subject(document, node, relation.reference.start)
     name = str(relation.reference)
     if relation.kind == "ReferenceSubsetting" and node.kind in _REFERENCED:
@@ -66,14 +69,14 @@ def _is_conjugated(model: Model, node: Node) -> bool:
 
 
 def _itself(model: Model, document: Document, node: Node, sink: Sink) -> None:
-    owner = node.owner
-    place = subject(document, node, node.start)
-    name = model.name(node) or node.kind
+    owner, name = node.owner, node.name or node.kind
     if _is_in_port(owner) and node.kind != "PortUsage" and is_composite(node):
+        place = subject(document, node, node.start)
         sink.report(reference_rules.PART_OF_PORT, place, name=name, owner=_name(model, owner))
     if node.facts.get("isIndividual") and any(r.kind == "FeatureTyping" for r in node.relations):
         types = [one for one in model.types(node) if one.facts.get("isIndividual")]
         if len(types) != 1:
+            place = subject(document, node, node.start)
             sink.report(reference_rules.INDIVIDUAL, place, name=name, count=len(types))
 
 

@@ -83,6 +83,8 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     if wanted is None or not _says_types(node):
         return
     types = _types(model, node)
+    if all(one.kind in wanted.kinds for one in types) and not (wanted.single and len(types) > 1):
+        return
     place = subject(document, node, node.start)
     name = model.name(node)
     what = f"{kind_of(node).partition(' ')[2]} '{name}'" if name else kind_of(node)

@@ -98,7 +98,7 @@ class Model:
     def specializes(self, node: Node, general: Node | str) -> bool:
         """Whether ``node`` is ``general`` or specialises it, in any number of steps."""
         wanted = self.find(general) if isinstance(general, str) else general
-        return wanted is not None and (node is wanted or wanted in self.supers(node))
+        return wanted is not None and wanted in self.supers_of(node)
 
     def types(self, node: Node) -> list[Node]:
         """The types of a feature: its own, else those of what it subsets and redefines."""
@@ -111,7 +111,7 @@ class Model:
                 elif general not in seen:
                     seen.add(general)
                     waiting.append(general)
-        return [t for t in found if not any(t is not o and t in self.supers(o) for o in found)]
+        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
 
     def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
         """Members of a namespace: own, inherited that nothing redefines, imported ones."""
@@ -190,11 +190,12 @@ class Model:
         return [
             one
             for one in possible
-            if not any(one in self._supers_of(g) for g in written)
-            and not any(other is not one and one in self._supers_of(other) for other in possible)
+            if not any(one in self.supers_of(g) for g in written)
+            and not any(other is not one and one in self.supers_of(other) for other in possible)
         ]
 
-    def _supers_of(self, node: Node) -> dict[Node, None]:
+    def supers_of(self, node: Node) -> dict[Node, None]:
+        """Like ``supers``, to look one up in."""
         self.supers(node)
         return self._supers[node]
 
