@@ -116,6 +116,18 @@ def test_types_and_metadata_in_expressions():
     ]
 
 
+def test_a_type_ends_its_operation_for_what_follows():
+    assert value("1 + x as T < 2") == [
+        "FeatureValue (=) OperatorExpression operator=<",
+        "  ParameterMembership OperatorExpression operator=as",
+        "    ParameterMembership OperatorExpression operator=+",
+        "      ParameterMembership LiteralInteger value=1",
+        "      ParameterMembership FeatureReferenceExpression Membership->x",
+        "    ReturnParameterMembership Feature FeatureTyping->T",
+        "  ParameterMembership LiteralInteger value=2",
+    ]
+
+
 def test_a_sequence_nests_to_the_right():
     assert value("(1, null, (true))") == [
         "FeatureValue (=) OperatorExpression operator=,",

@@ -31,32 +31,33 @@ _METADATA = {"@@", "meta"}
 
 
 def grouped(tokens: Tokens, parts: list[Part]) -> Node:
-    """The expression of operands and operators in turn, operators as numbers of tokens."""
-    operands = [part for part in parts[::2] if not isinstance(part, int)]
-    operators = [tokens[part] for part in parts[1::2] if isinstance(part, int)]
-    left: list[Operand] = [operands[0]]
+    """The expression of operands and operators in turn, operators as numbers of tokens.
+
+    A type ends what its operator makes: what follows takes the whole as its left side.
+    """
+    operands = [part for part in parts[1:] if not isinstance(part, int)]
+    operators = [tokens[part] for part in parts if isinstance(part, int)]
+    done: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
     pending: list[str] = []
-    for operator, operand in zip(operators, operands[1:], strict=True):
+    for operator, operand in zip(operators, operands, strict=True):
         while pending and _before(_PRECEDENCE[pending[-1]], _PRECEDENCE[operator]):
-            _reduce(left, pending.pop())
-        pending.append(operator)
-        left.append(operand)
+            _reduce(done, pending.pop())
+        if isinstance(operand, Reference):
+            done.append(operation(operator, done.pop(), operand))
+        else:
+            pending.append(operator)
+            done.append(operand)
     while pending:
-        _reduce(left, pending.pop())
-    return _node(left[0])
-
-
-def _node(operand: Operand) -> Node:
-    assert isinstance(operand, Node)
-    return operand
+        _reduce(done, pending.pop())
+    return done[0]
 
 
 def _before(left: int, right: int) -> bool:
     return left > right or (left == right and left != _RIGHT)
 
 
-def _reduce(operands: list[Operand], operator: str) -> None:
-    right, left = operands.pop(), _node(operands.pop())
+def _reduce(operands: list[Node], operator: str) -> None:
+    right, left = operands.pop(), operands.pop()
     operands.append(operation(operator, left, right))
 
 
