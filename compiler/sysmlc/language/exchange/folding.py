@@ -1,53 +1,12 @@
 """Folding: what the relationships of a file become in the tree (docs/sysml-v2-tree.md)."""
 
 from sysmlc.language.composition import USAGES, is_composite
+from sysmlc.language.exchange.arguments import argument, fold_arguments
 from sysmlc.language.exchange.frames import Frame, complete
 from sysmlc.language.exchange.references import References
+from sysmlc.language.exchange.relations import ENDS, NAMING, RELATIONS
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.tree import Node, Relation
-
-RELATIONS = {
-    "Specialization": "general",
-    "Subclassification": "superclassifier",
-    "FeatureTyping": "type",
-    "ConjugatedPortTyping": "conjugatedPortDefinition",
-    "Subsetting": "subsettedFeature",
-    "Redefinition": "redefinedFeature",
-    "ReferenceSubsetting": "referencedFeature",
-    "CrossSubsetting": "crossedFeature",
-    "Conjugation": "originalType",
-    "Disjoining": "disjoiningType",
-    "Unioning": "unioningType",
-    "Intersecting": "intersectingType",
-    "Differencing": "differencingType",
-    "FeatureChaining": "chainingFeature",
-    "FeatureInverting": "invertingFeature",
-    "TypeFeaturing": "featuringType",
-    "Annotation": "annotatedElement",
-}
-"""Relationships that an element owns towards others, and the feature that says to which."""
-
-ENDS = {
-    "Dependency": ("client", "supplier"),
-    "Specialization": ("specific", "general"),
-    "Subclassification": ("subclassifier", "superclassifier"),
-    "FeatureTyping": ("typedFeature", "type"),
-    "Subsetting": ("subsettingFeature", "subsettedFeature"),
-    "Redefinition": ("redefiningFeature", "redefinedFeature"),
-    "Conjugation": ("conjugatedType", "originalType"),
-    "Disjoining": ("typeDisjoined", "disjoiningType"),
-    "FeatureInverting": ("featureInverted", "invertingFeature"),
-    "TypeFeaturing": ("featureOfType", "featuringType"),
-}
-"""Relationships that stand for themselves, and their ends in the order of the text."""
-
-NAMING = (
-    kinds_of("InstantiationExpression")
-    | kinds_of("FeatureReferenceExpression")
-    | kinds_of("MetadataAccessExpression")
-    | {"AssignmentActionUsage", "TransitionUsage"}
-)
-"""Elements whose memberships name what they refer to."""
 
 _WITH_RESULT = NAMING - {"ConstructorExpression"}
 """Expressions whose empty result is in no text; that of a constructor has the arguments."""
@@ -65,7 +24,7 @@ _WITH_ROLE = (
     | kinds_of("TransitionFeatureMembership")
     | {"RequirementConstraintMembership"}
 )
-_CONDITIONAL = {"if", "and", "or", "implies", "??"}
+
 _DROPPED_RELATIONS = {"PortConjugation"}
 
 
@@ -117,9 +76,9 @@ class Folding:
         if membership in _PARAMETERS:
             node.facts.pop("direction", None)
         if owner.kind == "ConstructorExpression":
-            _fold_arguments(node)
+            fold_arguments(node)
         elif owner.kind in _INSTANTIATIONS:
-            node = _argument(node, owner)
+            node = argument(node, owner.node)
         node.membership = membership if node is inner.node else "ParameterMembership"
         if not node.role:
             node.role = _role(frame)
@@ -223,46 +182,6 @@ def _reaches(owner: Node) -> bool:
     """Whether an empty feature of ``owner`` only leads to the target of a chain or a step."""
     nameless = not (owner.name or owner.relations)
     return owner.kind == "TransitionUsage" or (owner.kind in _BARE and nameless)
-
-
-def _fold_arguments(result: Node) -> None:
-    """Let the result of a constructor own what its parameters carry (KerML 8.2.5.8.3)."""
-    for index, node in enumerate(result.members):
-        if node.membership == "ParameterMembership" and node.kind == "Feature":
-            value = _carried(node)
-            if value is not node:
-                value.membership, value.role, value.owner = node.membership, "", result
-                result.members[index] = value
-
-
-def _argument(node: Node, owner: Frame) -> Node:
-    """The expression that a parameter of an expression only carries, else the parameter."""
-    value = _carried(node)
-    if value is node:
-        return node
-    inner = value.members[0] if len(value.members) == 1 and not value.relations else None
-    is_reference = value.kind == "FeatureReferenceExpression" and inner is not None
-    if inner is not None and is_reference and _is_late(owner.node):
-        value = inner
-        value.role = "expression"
-    else:
-        value.role = ""
-    return value
-
-
-def _carried(node: Node) -> Node:
-    """The value of a parameter that has nothing but a value, else the parameter."""
-    carries = node.kind == "Feature" and not (node.name or node.relations)
-    if not carries or [one.membership for one in node.members] != ["FeatureValue"]:
-        return node
-    return node.members[0]
-
-
-def _is_late(owner: Node) -> bool:
-    """Whether the next argument is only evaluated when others say so (KerML 1.0, 8.2.5.8.1)."""
-    if owner.kind == "TriggerInvocationExpression":
-        return owner.facts.get("kind", "when") == "when"
-    return owner.facts.get("operator") in _CONDITIONAL and bool(owner.members)
 
 
 def _role(frame: Frame) -> str:

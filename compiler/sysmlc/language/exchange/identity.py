@@ -7,8 +7,9 @@ the namespace of its package, whose UUID is that of its IRI.
 import re
 from uuid import NAMESPACE_URL, UUID, uuid5
 
+from sysmlc.language.exchange.elements import Element, walk
 from sysmlc.language.exchange.naming import effective
-from sysmlc.language.exchange.unfolding import Element, unfold, walk
+from sysmlc.language.exchange.unfolding import unfold
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Document, Node
 

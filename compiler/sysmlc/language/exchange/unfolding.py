@@ -3,78 +3,19 @@
 from collections.abc import Iterator
 
 from sysmlc.language.composition import USAGES, is_composite, is_end
+from sysmlc.language.exchange.elements import Element, Link
 from sysmlc.language.exchange.features import stated
-from sysmlc.language.exchange.folding import ENDS, NAMING, RELATIONS
+from sysmlc.language.exchange.implicit import add_implicit, argument, late
+from sysmlc.language.exchange.relations import ENDS, OWN_ENDS, RELATIONS
 from sysmlc.language.metaclasses import is_a, kinds_of
 from sysmlc.language.tree import Fact, Node, Reference, Relation
-
-OWN_ENDS = {
-    "Specialization": "specific",
-    "Subclassification": "subclassifier",
-    "FeatureTyping": "typedFeature",
-    "ConjugatedPortTyping": "typedFeature",
-    "Subsetting": "subsettingFeature",
-    "Redefinition": "redefiningFeature",
-    "Conjugation": "conjugatedType",
-    "Disjoining": "typeDisjoined",
-    "FeatureInverting": "featureInverted",
-    "TypeFeaturing": "featureOfType",
-}
-"""The feature by which an owned relationship names its owner, where the owner does not say it."""
 
 _INSTANTIATIONS = kinds_of("InstantiationExpression")
 _EXPRESSIONS = kinds_of("Expression")
 _PARAMETERS = kinds_of("ParameterMembership")
 _IMPORTS = {"MembershipImport": "importedMembership", "NamespaceImport": "importedNamespace"}
-_END = "EndFeatureMembership"
-_RESULTLESS = {"ConstructorExpression", "AssignmentActionUsage", "TransitionUsage"}
 _KINDS = kinds_of("StateSubactionMembership") | kinds_of("TransitionFeatureMembership")
 _REQUIREMENTS = kinds_of("RequirementConstraintMembership")
-
-
-class Element:
-    """An element of an interchange file: its metaclass, what it says, what it owns.
-
-    ``node`` is what it comes from, for a membership its member; what the tree leaves out has
-    none. ``targets`` are the references by feature: the name of one, an element of the same
-    file, or a link of a reference of the tree.
-    """
-
-    __slots__ = ("attributes", "id", "kind", "node", "owned", "targets")
-
-    def __init__(self, kind: str, node: Node | None = None) -> None:
-        self.kind = kind
-        self.node = node
-        self.attributes: dict[str, Fact] = {}
-        self.targets: list[tuple[str, Element | Link]] = []
-        self.owned: list[Element] = []
-        self.id = ""
-
-    def own(self, element: "Element") -> "Element":
-        """Take the element as the last of what is owned; it is returned."""
-        self.owned.append(element)
-        return element
-
-
-class Link:
-    """One link of a reference of the tree, as the target of a feature."""
-
-    __slots__ = ("index", "reference")
-
-    def __init__(self, reference: Reference, index: int = -1) -> None:
-        self.reference = reference
-        self.index = index % len(reference.chain) if reference.chain else 0
-
-    @property
-    def node(self) -> Node | None:
-        """The element that the link leads to, if it was found."""
-        targets = self.reference.targets
-        return targets[self.index] if targets and self.index < len(targets) else None
-
-    @property
-    def text(self) -> str:
-        """How the reference names it."""
-        return "::".join(self.reference.chain[self.index]) if self.reference.chain else ""
 
 
 def unfold(node: Node) -> Element:
@@ -84,15 +25,6 @@ def unfold(node: Node) -> Element:
     while todo:
         _fill(todo.pop(), todo)
     return root
-
-
-def walk(root: Element) -> Iterator[tuple[Element, Element | None]]:
-    """The element and all below it, owners first, each with what owns it."""
-    stack: list[tuple[Element, Element | None]] = [(root, None)]
-    while stack:
-        element, owner = stack.pop()
-        yield element, owner
-        stack.extend((owned, element) for owned in reversed(element.owned))
 
 
 def _fill(element: Element, todo: list[Element]) -> None:
@@ -109,7 +41,7 @@ def _fill(element: Element, todo: list[Element]) -> None:
                 element.own(_relationship(item, element))
             else:
                 _own(element, item, todo)
-    _add_implicit(element, node)
+    add_implicit(element, node)
 
 
 def _empty(node: Node, todo: list[Element]) -> Element:
@@ -270,7 +202,7 @@ def _membership(owner: Element, node: Node, todo: list[Element]) -> Element:
         made.targets.append(("annotatedElement", owner))
     inner = _empty(node, todo)
     if _is_argument(node):
-        inner = _argument(_late(inner) if node.role == "expression" else inner)
+        inner = argument(late(inner) if node.role == "expression" else inner)
     made.own(inner)
     return made
 
@@ -296,48 +228,3 @@ def _role(node: Node) -> dict[str, Fact]:
     if node.membership in _KINDS or (node.membership in _REQUIREMENTS and node.role):
         return {"kind": node.role}
     return {"kind": "requirement"} if node.membership in _REQUIREMENTS else {}
-
-
-def _argument(value: Element) -> Element:
-    """The parameter that carries an argument (KerML 1.0, 8.2.5.8.1)."""
-    parameter = Element("Feature")
-    parameter.attributes["direction"] = "in"
-    parameter.own(Element("FeatureValue")).own(value)
-    return parameter
-
-
-def _late(value: Element) -> Element:
-    """The reference to an expression that is only evaluated when others say so."""
-    made = Element("FeatureReferenceExpression")
-    made.own(Element("FeatureMembership")).own(value)
-    made.own(_result())
-    return made
-
-
-# -- what the tree leaves out ----------------------------------------------------------------
-
-
-def _add_implicit(element: Element, node: Node) -> None:
-    if node.kind in NAMING and node.kind not in _RESULTLESS:
-        if not any(one.membership == "ReturnParameterMembership" for one in node.members):
-            element.own(_result())
-    elif node.kind == "PortDefinition":
-        element.own(Element("OwningMembership")).own(_conjugate(element))
-    elif node.kind == "SuccessionAsUsage" and [one.membership for one in node.members] == [_END]:
-        element.own(Element(_END)).own(Element("ReferenceUsage")).attributes["isEnd"] = True
-    elif node.facts.get("isIndividual") and is_a(node.kind, "OccurrenceDefinition"):
-        element.own(Element("OwningMembership")).own(Element("Multiplicity"))
-
-
-def _result() -> Element:
-    made = Element("ReturnParameterMembership")
-    made.own(Element("Feature")).attributes["direction"] = "out"
-    return made
-
-
-def _conjugate(definition: Element) -> Element:
-    """The conjugated port definition that every port definition has (SysML 2.0, 8.2.2.12)."""
-    made = Element("ConjugatedPortDefinition")
-    conjugation = made.own(Element("PortConjugation"))
-    conjugation.targets += [("conjugatedType", made), ("originalPortDefinition", definition)]
-    return made

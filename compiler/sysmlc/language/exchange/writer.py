@@ -6,9 +6,10 @@ from urllib.parse import quote
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
+from sysmlc.language.exchange.elements import Element, Link, walk
 from sysmlc.language.exchange.identity import conjugated, identify
 from sysmlc.language.exchange.naming import shown
-from sysmlc.language.exchange.unfolding import Element, Link, unfold, walk
+from sysmlc.language.exchange.unfolding import unfold
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
 from sysmlc.language.tree import Document, Node
 

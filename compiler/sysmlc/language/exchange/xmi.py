@@ -3,8 +3,8 @@
 import re
 from collections.abc import Callable, Iterable, Iterator
 
+from sysmlc.language.exchange.elements import Element
 from sysmlc.language.exchange.features import stated
-from sysmlc.language.exchange.unfolding import Element
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Fact
 

@@ -123,7 +123,7 @@ class Spacing:
         return in_brackets and token.text in _ARITHMETIC
 
     def _rank(self, before: Token, token: Token, space: str) -> int | None:
-        """How well a line may be broken before the token."""
+        """How well a line may be broken before the token; None where it may not."""
         depth = len(self._open) * _DEEPER
         if token.text == "->":
             return depth + _ARROW
@@ -131,13 +131,15 @@ class Spacing:
             return depth + _PARENTHESIS
         if not space or token.text == "{":
             return None
-        if before.text == ",":
-            return depth + _COMMA
+        return depth + (_COMMA if before.text == "," else self._goodness(token))
+
+    def _goodness(self, token: Token) -> int:
+        """How well a line may be broken before a token that has a space before it."""
         if token.text in ("=", ":="):
-            return depth + _PARENTHESIS
+            return _PARENTHESIS
         if token.text in _CLAUSES:
-            return depth + (_FREE if not self._has_value or not self._open else _OPERATION)
-        return depth + (_OPERATION if token.text in _OPERATORS else _SPACE)
+            return _OPERATION if self._has_value and self._open else _FREE
+        return _OPERATION if token.text in _OPERATORS else _SPACE
 
 
 _WORDS = (Sort.KEYWORD, Sort.NAME, Sort.LITERAL)
