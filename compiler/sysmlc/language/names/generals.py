@@ -166,7 +166,7 @@ class Generals(ABC):
         known = self._positions.get(feature)
         if known is None:
             if not positions.counts(feature):
-                return []
+                return self._positions.setdefault(feature, [])
             before = self.cuts
             self._positions[feature] = []
             known = positions.redefined(feature, self) or self._by_role(feature)

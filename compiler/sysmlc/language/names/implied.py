@@ -103,8 +103,9 @@ def _defaults(kind: str) -> tuple[str, ...]:
 
 
 @cache
-def _places(kind: str) -> tuple[tuple[frozenset[str], str, bool], ...]:
-    return tuple((p.owners, p.base, p.composite) for p in PLACES if kind in p.kinds)
+def _places(kind: str, owner: str) -> tuple[tuple[str, bool], ...]:
+    """The bases of a usage in an owner of that kind, and whether it must be a part for them."""
+    return tuple((p.base, p.composite) for p in PLACES if kind in p.kinds and owner in p.owners)
 
 
 def _placed(node: Node) -> list[str]:
@@ -116,11 +117,6 @@ def _placed(node: Node) -> list[str]:
     if node.membership == "ActorMembership":
         inside = "Cases::Case" if owner.kind in _CASES else "Requirements::RequirementCheck"
         return [*found, f"{inside}::actors"]
-    composite: bool | None = None
-    for owners, base, needs_composite in _places(node.kind):
-        if owner.kind in owners:
-            if needs_composite and composite is None:
-                composite = is_part(node)
-            if not needs_composite or composite:
-                found.append(base)
-    return found
+    places = _places(node.kind, owner.kind)
+    part = bool(places) and any(needs for _, needs in places) and is_part(node)
+    return [*found, *(base for base, needs in places if part or not needs)]

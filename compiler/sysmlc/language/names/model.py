@@ -46,7 +46,9 @@ class Model:
                 for name in {member.name, member.short} - {None}:
                     self._named.setdefault(str(name), []).append(member)
         self._found: dict[str, Node | None] = {}
-        self._implied: dict[Node, list[Node]] = {}
+        self._implied: dict[Node, list[tuple[str, Node]]] = {}
+        self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
+        self._names: dict[Node, tuple[str, ...]] = {}
         self._supers: dict[Node, dict[Node, None]] = {}
 
     def _roots(self, name: str) -> Hits:
@@ -161,13 +163,7 @@ class Model:
 
     def implied_generals(self, node: Node) -> list[Node]:
         """All that ``node`` may implicitly specialise, needed or not."""
-        known = self._implied.get(node)
-        if known is None:
-            before = self.lookup.cuts
-            known = list(dict.fromkeys(one for _, one in self._candidates(node)))
-            if self.lookup.cuts == before:
-                self._implied[node] = known
-        return known
+        return list(dict.fromkeys([one for _, one in self._candidates(node)]))
 
     def _by_role(self, node: Node) -> list[Node]:
         name = implied.by_role(node) if node.membership in REDEFINED_BY_MEMBERSHIP else None
@@ -176,22 +172,36 @@ class Model:
 
     def _candidates(self, node: Node) -> list[tuple[str, Node]]:
         """Kind of relation and target of all that ``node`` may implicitly specialise."""
+        known = self._implied.get(node)
+        if known is not None:
+            return known
         if node.kind not in TYPES:
             return []
-        named = ((kind, self.find(name)) for kind, name in implied.candidates(node))
-        found = [(kind, one) for kind, one in named if one is not None and one is not node]
-        return [*_accepted(node), *semantic.bases(node, self.lookup), *found]
+        before = self.lookup.cuts
+        named = [(kind, self.find(name)) for kind, name in implied.candidates(node)]
+        known = [(kind, one) for kind, one in named if one is not None and one is not node]
+        known = [*_accepted(node), *semantic.bases(node, self.lookup), *known]
+        if self.lookup.cuts == before:
+            self._implied[node] = known
+        return known
 
     def needed_generals(self, node: Node) -> list[Node]:
         """What ``node`` implicitly specialises and no other general of it does already."""
-        redefined = self.lookup.by_position(node)
-        possible = [*redefined, *self.implied_generals(node)]
-        written = self.lookup.generals(node)
+        possible = (*self.lookup.by_position(node), *self.implied_generals(node))
+        key = possible, tuple(self.lookup.generals(node))
+        known = self._needed.get(key)
+        if known is None:
+            known = self._needed[key] = self._not_given(*key)
+        return known
+
+    def _not_given(self, possible: tuple[Node, ...], written: tuple[Node, ...]) -> list[Node]:
+        given = [self.supers_of(one) for one in written]
+        supers = [(one, self.supers_of(one)) for one in possible]
         return [
             one
             for one in possible
-            if not any(one in self.supers_of(g) for g in written)
-            and not any(other is not one and one in self.supers_of(other) for other in possible)
+            if not any(one in those for those in given)
+            and not any(other is not one and one in those for other, those in supers)
         ]
 
     def supers_of(self, node: Node) -> dict[Node, None]:
@@ -215,14 +225,22 @@ class Model:
     def _implied_relations(self, node: Node) -> list[Relation]:
         needed = dict.fromkeys(self.needed_generals(node))
         redefined = self.lookup.by_position(node)
-        made = [_relation("Redefinition", self.qualified_name(one), one) for one in redefined]
+        made = [self._relation("Redefinition", one) for one in redefined]
         for one in redefined:
             needed.pop(one, None)
         for kind, target in self._candidates(node):
             if target in needed:
                 del needed[target]
-                made.append(_relation(kind, self.qualified_name(target), target))
+                made.append(self._relation(kind, target))
         return made
+
+    def _relation(self, kind: str, target: Node) -> Relation:
+        names = self._names.get(target)
+        if names is None:
+            names = self._names[target] = tuple(self.qualified_name(target).split("::"))
+        reference = Reference((names,))
+        reference.targets = [target]
+        return Relation(kind, reference, implied=True)
 
 
 def _accepted(node: Node) -> list[tuple[str, Node]]:
@@ -232,12 +250,6 @@ def _accepted(node: Node) -> list[tuple[str, Node]]:
         return []
     payload, accepted = payload_of(owner)
     return [("Subsetting", accepted)] if node is payload and accepted is not None else []
-
-
-def _relation(kind: str, name: str, target: Node) -> Relation:
-    reference = Reference((tuple(name.split("::")),))
-    reference.targets = [target]
-    return Relation(kind, reference, implied=True)
 
 
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
