@@ -1,6 +1,9 @@
 """Values that nest as deep as they are long."""
 
+import pytest
 from reading_v2 import read
+
+from sysmlc.ir import Kind
 
 
 def test_a_sequence_of_thousands_is_read_in_order():
@@ -9,3 +12,35 @@ def test_a_sequence_of_thousands_is_read_in_order():
     (element,) = (one for one in reading.graph if one.name == "x")
     values = [value for value in element.attrs.values() if isinstance(value, tuple)]
     assert values == [(1, 2) * 2_000 + (3,)]
+
+
+@pytest.mark.parametrize(
+    ("opening", "inner", "levels"),
+    [
+        ("part arm { ", "part tool;", 195),
+        ("action move { if true { ", "action pick;", 95),
+        ("attribute size = 3 { doc /* x */ ", "attribute width;", 195),
+    ],
+)
+def test_bodies_in_bodies_are_read_as_deep_as_the_notation_allows(opening, inner, levels):
+    closing = "}" * opening.count("{")
+    reading = read(f"package P {{ {opening * levels}{inner}{closing * levels} }}")
+    assert reading.codes() == []
+    name = inner.split()[-1].rstrip(";")
+    assert [one.name for one in reading.graph if one.name == name] == [name]
+
+
+def test_a_condition_may_have_a_thousand_others_after_it():
+    choice = "if true { action pick; } else " * 1_000
+    reading = read(f"package P {{ action move {{ {choice} {{ action place; }} }} }}")
+    assert reading.codes() == []
+    names = [one.name for one in reading.graph if one.kind is Kind.ACTION]
+    assert len(names) == 1_001
+    assert names[-1] == "place"
+
+
+def test_a_chain_of_thousands_of_features_is_kept_as_it_is_written():
+    chain = f"arm{'.arm' * 3_000}"
+    reading = read(f"package P {{ part def A {{ part arm : A; attribute x = {chain}; }} }}")
+    (element,) = (one for one in reading.graph if one.name == "x")
+    assert chain in element.attrs.values()

@@ -1,9 +1,5 @@
 """The whole text: the plan, then every member, then what was not said."""
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from sysmlc.backends.sysml import (
     actions,
     annotations,
@@ -31,6 +27,7 @@ from sysmlc.backends.sysml.printing import Line, printed
 from sysmlc.backends.sysml.profiles import define
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.words import quoted
+from sysmlc.depth import room_for
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 
@@ -63,22 +60,8 @@ def _written(
     caex = frozenset(one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
     book = Book(graph, plan, losses, WRITERS, public=public, caex=caex)
     relations.prepare(book)
-    with _room_for(plan.depth):
+    with room_for(plan.depth):
         return book, [line for top in plan.tops for line in book.member(top)]
-
-
-@contextmanager
-def _room_for(depth: int) -> Iterator[None]:
-    """Let writers call one another as deep as members are nested; each level takes some calls."""
-    limit = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(limit, _CALLS * depth + limit))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(limit)
-
-
-_CALLS = 20
 
 
 def _added(book: Book, entry: Entry) -> list[Line]:

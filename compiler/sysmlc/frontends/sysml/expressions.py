@@ -43,13 +43,22 @@ def text(node: Node, source: str = "") -> str:
     A document of interchange has no text: its expression is put into the notation of KerML.
     """
     found = read(node)
-    if found is not None:
-        return print_expression(found)
+    written = None if found is None else _printed(found)
+    if written is not None:
+        return written
     if not source:
         from sysmlc.language.notation import expression
 
         return expression(node)
     return " ".join(source[node.start : node.end].split()) if 0 <= node.start < node.end else ""
+
+
+def _printed(expression: Expression) -> str | None:
+    """The expression as text; None when it is nested deeper than one can be printed."""
+    try:
+        return print_expression(expression)
+    except RecursionError:
+        return None
 
 
 def read(node: Node) -> Expression | None:

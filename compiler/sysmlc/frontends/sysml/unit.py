@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from sysmlc.depth import room_for
 from sysmlc.diagnostics import Coverage, Sink, Verdict
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
@@ -25,11 +26,20 @@ def lower(
     low.accepted = accepted(documents)
     low.flowing = flowing(documents)
     for document in documents:
-        low.lower_all(document.root.members, None)
+        with room_for(_depth(document.root)):
+            low.lower_all(document.root.members, None)
     low.last(lambda: _give_pins(low, documents))
     low.finish()
     for document in documents:
         _count(low, document, coverage)
+
+
+def _depth(root: Node) -> int:
+    """How many members are within one another."""
+    depth, level = 0, [root]
+    while level:
+        depth, level = depth + 1, [member for node in level for member in node.members]
+    return depth
 
 
 def _give_pins(low: Lowering, documents: Sequence[Document]) -> None:
