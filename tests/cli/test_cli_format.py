@@ -98,6 +98,40 @@ def test_a_link_stays_a_link_and_rights_stay(tmp_path):
     assert (link.is_symlink(), real.read_text(), real.stat().st_mode & 0o777) == (True, NEAT, 0o600)
 
 
+def test_a_folder_without_models_is_told(tmp_path):
+    made = run(tmp_path, "--check")
+    message = f"sysmlc: {tmp_path.as_posix()} holds no .sysml or .kerml file\n"
+    assert (made.exit_code, made.stderr) == (2, message)
+
+
+def test_suffixes_of_files_in_folders_may_be_capitals(tmp_path):
+    (tmp_path / "PLANT.SYSML").write_text(UGLY)
+    assert run(tmp_path).stderr == "1 of 1 files laid out anew\n"
+
+
+def test_a_file_that_nobody_may_write_is_left_alone(tmp_path):
+    file = tmp_path / "plant.sysml"
+    file.write_text(UGLY)
+    file.chmod(0o444)
+    made = run(file)
+    assert (made.exit_code, made.stderr) == (2, f"sysmlc: {file.as_posix()} is read-only\n")
+    assert file.read_text() == UGLY
+
+
+def test_a_disk_without_space_is_no_fault_of_ours(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    file = tmp_path / "plant.sysml"
+    file.write_text(UGLY)
+    monkeypatch.setattr("sysmlc.output._write_all", full)
+    made = run(file)
+    message = f"sysmlc: {file.as_posix()} cannot be written: No space left on device\n"
+    assert (made.exit_code, made.stderr) == (2, message)
+    assert [one.name for one in tmp_path.iterdir()] == ["plant.sysml"]
+    assert file.read_text() == UGLY
+
+
 def test_the_example_of_the_documentation_is_what_comes_out():
     page = (ROOT / "docs/format-sysml-v2.md").read_text(encoding="utf-8")
     before, after = (part.partition("```")[0] for part in page.split("```sysml\n")[1:])

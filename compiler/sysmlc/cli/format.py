@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics.render import Finding
 
 _LANGUAGES = ("sysml", "kerml")
+_WRITABLE = 0o222
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,7 @@ def command(
 
     Tokens, comments and notes stay as they are; only white space changes. Files with syntax
     errors are left alone. Exit code 0 when all is well, 1 for syntax errors and, with --check or
-    --diff, for files that would change, 2 when a file cannot be read.
+    --diff, for files that would change, 2 when a file cannot be read or written.
     """
     texts = [_read(path, language) for path in _expanded(files)]
     _show([finding for text in texts for finding in text.findings])
@@ -86,9 +87,16 @@ def command(
 def _expanded(files: tuple[Path, ...]) -> Iterator[Path]:
     for path in files:
         if str(path) != "-" and path.is_dir():
-            yield from sorted(one for one in path.rglob("*.*") if one.suffix[1:] in _LANGUAGES)
+            yield from _of_folder(path)
         else:
             yield path
+
+
+def _of_folder(folder: Path) -> list[Path]:
+    from sysmlc.cli.session import fail
+
+    found = sorted(one for one in folder.rglob("*.*") if one.suffix[1:].lower() in _LANGUAGES)
+    return found or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
 
 
 def _read(path: Path, language: str | None) -> _Text:
@@ -146,17 +154,27 @@ def _diff(text: _Text) -> Iterator[str]:
 
 
 def _write(texts: list[_Text]) -> None:
-    from sysmlc.output import write
-
     for text in texts:
         if text.path is None:
             sys.stdout.buffer.write((text.after or text.before).encode())
         elif text.is_changed and text.after is not None:
-            target = text.path.resolve()
-            mode = target.stat().st_mode
-            write(target, text.after.encode())
-            target.chmod(mode)
+            _replace(text.path.resolve(), text.name, text.after)
     files = [text for text in texts if text.path is not None]
     changed = sum(text.is_changed for text in files)
     if files:
         click.echo(f"{changed} of {len(files)} files laid out anew", err=True)
+
+
+def _replace(target: Path, name: str, content: str) -> None:
+    """Write a file anew, with the rights that it has: nobody may write means not we either."""
+    from sysmlc.cli.session import fail
+    from sysmlc.output import write
+
+    try:
+        mode = target.stat().st_mode
+        if not mode & _WRITABLE:
+            fail(f"{name} is read-only")
+        write(target, content.encode())
+        target.chmod(mode)
+    except OSError as problem:
+        fail(f"{name} cannot be written: {problem.strerror or problem}")
