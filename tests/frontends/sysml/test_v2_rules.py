@@ -1,4 +1,4 @@
-"""What the front end for SysML v2 reports (SM480 to SM484), and what it does not."""
+"""What the front end for SysML v2 reports (SM480 to SM482, SM484), and what it does not."""
 
 import pytest
 from reading_v2 import read
@@ -29,10 +29,13 @@ def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
     assert reading.totals() == {"elements": 5, "mapped": 2, "unsupported": 3}
 
 
-def test_sm483_a_damaged_interchange_file_is_told_and_left_out():
+DAMAGED = b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>'
+
+
+def test_a_damaged_interchange_file_is_told_and_left_out():
     sink, graph = Sink(), Graph()
-    FRONTEND.read([Source("a.sysmlx", rules.UNREADABLE.wrong.encode())], graph, sink, Coverage())
-    assert [one.rule.code for one in sink if one.is_error]
+    FRONTEND.read([Source("a.sysmlx", DAMAGED)], graph, sink, Coverage())
+    assert [one.rule.code for one in sink if one.is_error] == ["SM750"]
     assert len(graph) == 0
 
 

@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sysmlc import resources
-from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
+from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
 from sysmlc.frontends.sysml.libraries import FILES
-from sysmlc.frontends.sysml.rules import NO_LIBRARY, UNREADABLE
+from sysmlc.frontends.sysml.rules import NO_LIBRARY
 from sysmlc.frontends.sysml.unit import lower
 from sysmlc.ir import Graph
 from sysmlc.language.tree import Document
-from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.sources import Source, SourceError
 
 if TYPE_CHECKING:
     from sysmlc.cache import Cache
@@ -33,7 +33,7 @@ def read(
     from sysmlc.language.names import Model, resolve
 
     models = [source for source in sources if not is_description(source)]
-    documents = [one for source in models if (one := _document(source, sink, cache)) is not None]
+    documents = [_document(source, sink, cache) for source in models]
     found = _library(library, cache, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
@@ -57,19 +57,8 @@ def read(
     lower(own, model, graph, sink, coverage)
 
 
-def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document | None:
-    """The tree of one file; a damaged one is reported."""
-    try:
-        return _read(source, sink, cache)
-    except SourceError as problem:
-        if problem.fault is Fault.LIMIT:
-            raise
-        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-        sink.report(UNREADABLE, subject, file=source.name, problem=problem.message)
-        return None
-
-
-def _read(source: Source, sink: Sink, cache: "Cache | None") -> Document:
+def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document:
+    """The tree of one file; what is wrong in it is reported by its reader."""
     if is_xml(source):
         from sysmlc.language.exchange import read as read_exchange
 

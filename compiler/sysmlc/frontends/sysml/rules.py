@@ -32,15 +32,6 @@ NOT_IN_GRAPH = rule(
     right="package P {\n    part def Wall;\n    part def Gate;\n"
     "    dependency from Gate to Wall;\n}\n",
 )
-UNREADABLE = rule(
-    "SM483",
-    "v2-unreadable",
-    Severity.ERROR,
-    "'{file}' cannot be read: {problem}",
-    why="A file that is damaged is left out whole, so that no half of it gives wrong outputs.",
-    wrong='<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>',
-    right="package P {\n    part def Gate;\n}\n",
-)
 NO_LIBRARY = rule(
     "SM484",
     "v2-no-library",
