@@ -6,7 +6,7 @@ from sysmlc.language.names import Model
 
 def check(model: Model, sink: Sink) -> None:
     """Report what in the documents of the model breaks a constraint of the specification."""
-    from sysmlc.language.checks import access, members, references, single, typing
+    from sysmlc.language.checks import access, families, members, references, single, typing
 
     for document in model.documents:
         for node in document.root.walk():
@@ -15,3 +15,4 @@ def check(model: Model, sink: Sink) -> None:
             members.check(model, document, node, sink)
             references.check(model, document, node, sink)
             access.check(model, document, node, sink)
+            families.check(model, document, node, sink)

@@ -6,7 +6,7 @@ from sysmlc.language.checks.found import Found, error, name_of, written
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.contents import FEATURES, TYPES
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Relation
 
 ALONE = error(
     "SM254",
@@ -81,9 +81,17 @@ def check_operands(model: Model, node: Node) -> Iterator[Found]:
             name, general = name_of(model, node), name_of(model, target)
             facts = {"name": name, "made": made, "general": general}
             if target is node:
-                yield Found(ITSELF, relation.reference.start, facts)
+                yield Found(ITSELF, _place(relation), facts)
             elif sum(r.kind == kind for r in node.relations) == 1:
                 yield Found(ALONE, relation.reference.start, facts)
+
+
+def _place(relation: Relation) -> int:
+    """Where the name stands; links of a chain have all the place of the chain, the last its end."""
+    reference = relation.reference
+    if relation.kind == "FeatureChaining" and reference.start >= 0:
+        return reference.end - len(reference.chain[-1][-1])
+    return reference.start
 
 
 def check_reference(model: Model, node: Node) -> Iterator[Found]:

@@ -75,14 +75,14 @@ def _may_change(feature: Node) -> bool:
 def check_direction(model: Model, node: Node) -> Iterator[Found]:
     """Report a feature with another direction than what it redefines has where it is."""
     scope = owning_type(node)
-    if scope is None:
+    if scope is None or scope.kind == "FlowEnd":
         return
-    own = node.facts.get("direction")
+    own = _said(node)
     for relation in node.relations:
         target = relation.reference.target
         if relation.kind == "Redefinition" and target is not None:
             wanted = direction(model, scope, target)
-            if wanted in _TURNED and own != wanted or wanted == "inout" and own is None:
+            if (wanted in _TURNED and own != wanted) or (wanted == "inout" and own is None):
                 start = node.start if relation.implied else relation.reference.start
                 facts = {"name": name_of(model, target), "owner": name_of(model, target.owner)}
                 yield Found(OTHER_DIRECTION, start, facts)
@@ -94,14 +94,14 @@ def direction(model: Model, scope: Node, feature: Node) -> str:
     Empty where it has none and where ``scope`` does not inherit it (KerML 8.3.3.1.10,
     directionOf).
     """
-    said = feature.facts.get("direction")
+    said = _said(feature)
     if said is None:
         return ""
     waiting = [(scope, False)]
     seen = set(waiting)
     for at, is_turned in waiting:
         if at is feature.owner:
-            return _TURNED.get(str(said), str(said)) if is_turned else str(said)
+            return _TURNED.get(said, said) if is_turned else said
         for relation in at.relations:
             general = model.target(at, relation) if relation.kind in GENERAL else None
             if general is not None:
@@ -110,6 +110,13 @@ def direction(model: Model, scope: Node, feature: Node) -> str:
                     seen.add(step)
                     waiting.append(step)
     return ""
+
+
+def _said(feature: Node) -> str | None:
+    """The direction that the text says; a result goes out."""
+    said = feature.facts.get("direction")
+    is_result = feature.membership == "ReturnParameterMembership"
+    return str(said) if said is not None else "out" if is_result else None
 
 
 CHECKS = ((FEATURES, check), (_PLAIN, check_direction))

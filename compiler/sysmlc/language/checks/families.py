@@ -2,13 +2,20 @@
 
 from collections.abc import Iterable
 
-from sysmlc.language.checks import combining, conformance, kinds
+from sysmlc.diagnostics import Sink
+from sysmlc.language.checks import bounds, combining, conformance, evaluable, kinds, metadata
 from sysmlc.language.checks.found import Check
+from sysmlc.language.names import Model
+from sysmlc.language.names.unresolved import subject
+from sysmlc.language.tree import Document, Node
 
 _FAMILIES: tuple[Iterable[tuple[frozenset[str], Check]], ...] = (
     conformance.CHECKS,
     combining.CHECKS,
     kinds.CHECKS,
+    bounds.CHECKS,
+    evaluable.CHECKS,
+    metadata.CHECKS,
 )
 
 
@@ -23,3 +30,11 @@ def _by_kind() -> dict[str, tuple[Check, ...]]:
 
 BY_KIND = _by_kind()
 """The checks of each metaclass, in the order of the families."""
+
+
+def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
+    """Report what the checks of the metaclass of ``node`` find."""
+    for one in BY_KIND.get(node.kind, ()):
+        for found in one(model, node):
+            place = subject(document, node, found.start)
+            sink.report(found.rule, place, notes=(), help="", **found.facts)

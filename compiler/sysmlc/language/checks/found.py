@@ -20,9 +20,7 @@ Check = Callable[[Model, Node], Iterable[Found]]
 """What is broken by one node; a check is called for the metaclasses that it is entered for."""
 
 
-def error(
-    code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str
-) -> Rule:
+def error(code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str) -> Rule:
     """A rule whose examples are models in the textual notation."""
     return rule(code, name, Severity.ERROR, phrase, why=why, help=help, wrong=wrong, right=right)
 

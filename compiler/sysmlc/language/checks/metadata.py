@@ -1,0 +1,103 @@
+"""Metadata says what its definition has, about what its definition is for (KerML 8.3.4.12)."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
+from sysmlc.language.metaclasses import ALL_GENERALS, is_a, kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.advice import kind_of
+from sysmlc.language.tree import Node
+
+OTHER_ELEMENT = error(
+    "SM263",
+    "metadata-of-other-element",
+    "metadata '{name}' is not for {found}",
+    "The feature 'annotatedElement' of its definition says what elements it is for (KerML 1.0, "
+    "validateMetadataFeatureAnnotatedElement).",
+    "annotate {wanted}",
+    "metadata def Safe { ref :>> annotatedElement : SysML::PortUsage; }\npart gate { @Safe; }\n",
+    "metadata def Safe { ref :>> annotatedElement : SysML::PartUsage; }\npart gate { @Safe; }\n",
+)
+OTHER_FEATURE = error(
+    "SM264",
+    "metadata-body",
+    "'{name}' is no feature of the metadata '{owner}'",
+    "In metadata the features of its definition get their values, and nothing else (KerML 1.0, "
+    "validateMetadataFeatureBody).",
+    "name a feature of the definition of '{owner}', or add one there",
+    "attribute level;\nmetadata def Safe;\npart gate { @Safe { level = 3; } }\n",
+    "metadata def Safe { attribute level; }\npart gate { @Safe { level = 3; } }\n",
+)
+
+_METADATA = kinds_of("MetadataFeature")
+_FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
+
+
+def check_type(model: Model, node: Node) -> Iterator[Found]:
+    """Report metadata of a type that is abstract; usages have a check of their own."""
+    types = model.lookup.generals(node)
+    if any(one.facts.get("isAbstract") for one in types) and node.kind == "MetadataFeature":
+        facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
+        yield Found(ABSTRACT_METADATA, node.start, facts)
+
+
+def check_annotated(model: Model, node: Node) -> Iterator[Found]:
+    """Report metadata about elements that its definition is not for."""
+    allowed = _allowed(model, node)
+    for element in _annotated(node):
+        if allowed and not any(is_a(element.kind, one) for one in allowed):
+            name = name_of(model, next(iter(model.lookup.generals(node)), node))
+            facts = {"name": name, "found": kind_of(element), "wanted": _words(allowed)}
+            yield Found(OTHER_ELEMENT, node.start, facts)
+
+
+def _words(kinds: list[str]) -> str:
+    return " or ".join(kind_of(Node(kind)) for kind in kinds)
+
+
+def _annotated(node: Node) -> list[Node]:
+    about = [r.reference.target for r in node.relations if r.kind == "Annotation"]
+    if about:
+        return [one for one in about if one is not None]
+    return [node.owner] if node.owner is not None else []
+
+
+def _allowed(model: Model, node: Node) -> list[str]:
+    """Metaclasses that ``annotatedElement`` is redefined or subset to be; empty for any."""
+    base = model.find("Metaobjects::Metaobject::annotatedElement")
+    if base is None:
+        return []
+    found: dict[str, None] = {}
+    for general in model.supers(node):
+        for member in general.members:
+            if member is not base and base in model.lookup.reached(member):
+                found.update(dict.fromkeys(one.name for one in model.types(member) if one.name))
+    return [one for one in found if one in ALL_GENERALS]
+
+
+def check_body(model: Model, node: Node) -> Iterator[Found]:
+    """Report what in the body of metadata is no feature of its definition."""
+    for owner in node.walk():
+        if owner.membership == "FeatureValue":
+            continue
+        for member in owner.members:
+            if _is_strange(model, owner, member):
+                facts = {"name": name_of(model, member), "owner": name_of(model, owner)}
+                yield Found(OTHER_FEATURE, member.start, facts)
+
+
+def _is_strange(model: Model, owner: Node, member: Node) -> bool:
+    """Whether a feature in a body redefines nothing of what its owner specialises."""
+    if member.membership not in _FEATURE_MEMBERSHIPS:
+        return False
+    redefined = [r.reference.target for r in member.relations if r.kind == "Redefinition"]
+    supers = model.supers(owner)
+    return bool(redefined) and not any(t is None or t.owner in supers for t in redefined)
+
+
+CHECKS = (
+    (_METADATA, check_type),
+    (_METADATA, check_annotated),
+    (_METADATA, check_body),
+)
