@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 
+from sysmlc.language.places import mark
 from sysmlc.language.tree import Document, Node
 
 
@@ -40,5 +41,4 @@ def _table(document: Document) -> tuple[list[int], list[int], int]:
                 sum_ += len(char.encode("utf-8", "replace")) - 1
                 positions.append(number)
                 extra.append(sum_)
-    data = b"" if document.source is None else document.source.data
-    return positions, extra, 3 if data.startswith(b"\xef\xbb\xbf") else 0
+    return positions, extra, mark(document)

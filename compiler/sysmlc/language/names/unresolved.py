@@ -3,21 +3,21 @@
 import re
 from typing import TYPE_CHECKING
 
-from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.language.names import contexts
 from sysmlc.language.names.advice import advice
 from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import UNRESOLVED
+from sysmlc.language.places import place
+from sysmlc.language.tree import Document, Node, Reference, Relation
 
 if TYPE_CHECKING:
     from sysmlc.language.names.model import Model
-from sysmlc.language.tree import Document, Node, Reference, Relation
 
-_LINK = re.compile(
-    r"(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+)(?:\s*::\s*(?:'(?:[^'\\\\]|\\\\.)*'|[\w$~]+))*"
-)
+_NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"
+_LINK = re.compile(rf"{_NAME}(?:\s*::\s*{_NAME})*")
 """A qualified name, one link of a chain."""
 
 
@@ -77,11 +77,6 @@ def _place(document: Document, reference: Reference, index: int) -> int:
     return links[index].start() if index < len(links) else reference.start
 
 
-def subject(document: Document, node: Node, offset: int) -> Subject:
-    """The element and the place of a name in it."""
-    place = Place(document.path, offset=_bytes(document, offset))
-    return Subject(node.name or "", place=place)
-
-
-def _bytes(document: Document, offset: int) -> int:
-    return len(document.text[:offset].encode()) if offset >= 0 else -1
+def subject(document: Document, node: Node, start: int) -> Subject:
+    """The element, and the place of a name in it or, where that is not known, its own."""
+    return Subject(node.name or "", place=place(document, start if start >= 0 else node.start))
