@@ -29,6 +29,26 @@ def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
     assert reading.totals() == {"elements": 5, "mapped": 2, "unsupported": 3}
 
 
+def test_sm481_what_a_usage_is_beyond_a_feature_is_told():
+    portions = "snapshot start; timeslice shift; individual part one : Cell;"
+    variants = "variation part tool { variant part gripper; }"
+    found = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
+    assert [one.message for one in found.sink] == [
+        "a snapshot is read as a plain feature (1 in the unit)",
+        "a timeslice is read as a plain feature (1 in the unit)",
+        "a variation is read as a plain feature (1 in the unit)",
+        "a variant is read as a plain feature (1 in the unit)",
+    ]
+
+
+def test_aliases_of_states_are_in_the_graph_wherever_they_stand():
+    plain = "state def A { entry; then a; state a; alias b for a; alias <c> for a; }"
+    beside = "state def B parallel { state r { state s; alias d for s; } alias e for r; }"
+    reading = read(f"package P {{ {plain} {beside} }}")
+    assert [one.name for one in reading.graph if one.kind == "Alias"] == list("bcde")
+    assert "unsupported" not in reading.totals()
+
+
 DAMAGED = b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>'
 
 

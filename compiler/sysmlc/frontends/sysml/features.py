@@ -21,9 +21,22 @@ def property_(low: "Lowering", node: Node, owner: Element) -> Element:
     """A feature of a classifier; one with members of its own is typed by a class made for it."""
     kind, subkind = marked(node, Kind.PROPERTY)
     made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **_attrs(node, owner))
+    more = _more_than_feature(node)
+    if more:
+        low.approximated(node, more, "a plain feature")
     describe(low, node, made)
     _aggregate(node, made)
     return made
+
+
+def _more_than_feature(node: Node) -> str:
+    """What a usage is beyond a feature, for which the graph has no words; empty for most."""
+    if node.facts.get("isVariation"):
+        return "a variation"
+    if node.membership == "VariantMembership":
+        return "a variant"
+    portion = node.facts.get("portionKind")
+    return f"a {portion}" if portion else ""
 
 
 def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:

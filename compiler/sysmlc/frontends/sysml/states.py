@@ -80,7 +80,11 @@ def _is_sub(node: Node) -> bool:
 
 
 def _is_of_region(node: Node) -> bool:
-    return node.kind in _STATES or node.kind in _FLOWS
+    return node.kind in _STATES or (node.kind in _FLOWS and not _is_alias(node))
+
+
+def _is_alias(node: Node) -> bool:
+    return node.kind == "Membership" and bool(node.name or node.short)
 
 
 def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
@@ -200,7 +204,7 @@ def _vertices(low: "Lowering", node: Node, region: Element) -> None:
             previous = one
         elif _is_sub(one) and one.role == "entry":
             previous = one
-        elif one.kind == "Membership" and not one.name:
+        elif one.kind == "Membership" and not _is_alias(one):
             previous = nodes.reference(one, "Membership")
         elif one.kind == "TransitionUsage":
             transition(low, one, region, previous)
