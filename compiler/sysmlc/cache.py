@@ -5,6 +5,8 @@ Nothing in it is needed: an entry that is missing, damaged or cannot be written 
 
 import os
 import zlib
+from _thread import get_ident
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,6 +19,11 @@ _LIMIT = 512 * 2**20
 _SUFFIX = ".entry"
 _SUM = 4
 """Bytes of the check sum before an entry."""
+
+_TALLY = "tally"
+"""File with a byte for each ``limit / 8192`` bytes that were put since the last look at sizes."""
+_ROUND = 128
+"""So many bytes of it, and entries are looked through: at 1/64 of the limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,28 +49,46 @@ class Cache:
 
     def put(self, key: str, data: bytes) -> None:
         """Keep an entry; in one step, so that no other process sees half of it."""
-        from tempfile import mkstemp
-
         path = self._path(key)
+        temporary = f"{path}.{os.getpid()}.{get_ident()}"
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = mkstemp(dir=path.parent)
-            with os.fdopen(handle, "wb") as stream:
+            with open(temporary, "wb", opener=_private) as stream:
                 stream.write(_check_sum(data) + data)
-            Path(temporary).replace(path)
-            self._prune()
+            os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
+            self._count(len(data))
+
+    def _count(self, size: int) -> None:
+        """Look through the entries, which takes its time, once after many were put."""
+        with (self.folder / _TALLY).open("ab") as tally:
+            tally.write(b"." * (1 + size * 64 * _ROUND // self.limit))
+            if tally.tell() >= _ROUND:
+                tally.truncate(0)
+                self._prune()
 
     def _path(self, key: str) -> Path:
         return self.folder / key[:2] / f"{key}{_SUFFIX}"
 
     def _prune(self) -> None:
-        entries = [(path, path.stat()) for path in self.folder.glob(f"*/*{_SUFFIX}")]
-        size = sum(stat.st_size for _, stat in entries)
-        for path, stat in sorted(entries, key=lambda entry: entry[1].st_mtime_ns):
+        entries = sorted(self._entries())
+        size = sum(entry[1] for entry in entries)
+        for _, of_entry, path in entries:
             if size <= self.limit:
                 return
-            path.unlink(missing_ok=True)
-            size -= stat.st_size
+            Path(path).unlink(missing_ok=True)
+            size -= of_entry
+
+    def _entries(self) -> Iterator[tuple[int, int, str]]:
+        """When each entry was used last, its size, its path."""
+        for folder in os.scandir(self.folder):
+            for entry in os.scandir(folder) if folder.is_dir() else ():
+                if entry.name.endswith(_SUFFIX):
+                    stat = entry.stat()
+                    yield stat.st_mtime_ns, stat.st_size, entry.path
+
+
+def _private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 def _check_sum(data: bytes) -> bytes:

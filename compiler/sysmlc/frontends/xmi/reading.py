@@ -1,0 +1,109 @@
+"""From the files of a unit to its elements: what the front end does when there is UML in XMI."""
+
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from sysmlc.cache import Cache
+from sysmlc.diagnostics import Coverage, Place, Sink, Subject
+from sysmlc.frontends.xmi import (
+    account,
+    applications,
+    behaviour,
+    comments,
+    dangling,
+    enterprise_architect,
+    enterprise_architect_profiles,
+    lowering,
+    odd_values,
+    parts,
+    remembered,
+    rules,
+    snapshot_parts,
+    snapshot_use,
+    unread,
+    unread_tags,
+)
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.snapshot import is_snapshot
+from sysmlc.frontends.xmi.unit import Unit
+from sysmlc.ir import Graph
+from sysmlc.sources import Fault, Source, SourceError
+
+
+def read(
+    sources: Sequence[Source],
+    graph: Graph,
+    sink: Sink,
+    coverage: Coverage,
+    cache: Cache | None = None,
+) -> None:
+    """Read the files into the graph; references are left for the pass ``resolve``.
+
+    A damaged file is reported and left out. Raises SourceError for what exceeds the
+    limits. The graph does not depend on the order of the files.
+    """
+    ordered = sorted(sources, key=lambda source: source.name)
+    models = [source for source in ordered if not is_snapshot(source)]
+    beside = [source for source in ordered if is_snapshot(source)]
+    with _no_collection():
+        found = [_read(source, sink, cache) for source in models]
+        documents = [document for document in found if document is not None]
+        unit = Unit(documents, graph)
+        contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
+        models, inside = snapshot_parts.split(models)
+        if beside or inside:
+            snapshots = snapshot_use.read([*beside, *inside], sink)
+            snapshot_use.add(unit, contexts, models, snapshots)
+            snapshot_use.account(snapshots, beside, unit, coverage)
+        _finish(unit, contexts, sink, coverage)
+
+
+def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:
+    for context in contexts:
+        parts.join(context)
+    for context in contexts:
+        applications.note_namespaces(context)
+        enterprise_architect_profiles.localise(context)
+        comments.restore(context)
+        context.finish()
+    for context in contexts:
+        applications.lower(context)
+        enterprise_architect.finish(context)
+        behaviour.finish(context)
+    unit.flush()
+    for context in contexts:
+        dangling.report(context)
+        odd_values.report(context)
+        unread.report(context)
+        unread_tags.report(context)
+        account.account(context, sink, coverage)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
+
+    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
+    over a large graph again and again costs more than many passes.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.freeze()
+            gc.enable()
+
+
+def _read(source: Source, sink: Sink, cache: Cache | None) -> Document | None:
+    try:
+        return remembered.read(source, cache)
+    except SourceError as problem:
+        if problem.fault is Fault.LIMIT:
+            raise
+        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+        sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
+        return None
