@@ -2,9 +2,11 @@
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
+from functools import partial
 
 from sysmlc.ir.compare.alike import by_likeness, by_move
 from sysmlc.ir.compare.change import Change, What
+from sysmlc.ir.compare.colours import Palette
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import BETWEEN, Fact
 from sysmlc.ir.compare.only import only, owner_of, ref_of
@@ -47,8 +49,10 @@ def paired(old: Side, new: Side, *, has_ids: bool = True) -> Pairs:
     if has_ids:
         by_id(pairs)
     by_name(pairs)
+    palette = Palette(pairs)
+    around = (partial(by_surroundings, palette), partial(by_choice, palette))
     for _ in range(_MOST):
-        if not any(_finds(pairs, step) for step in _STEPS):
+        if not any(_finds(pairs, step) for step in (*around, by_likeness, by_move)):
             break
         by_name(pairs)
     return pairs
@@ -56,7 +60,6 @@ def paired(old: Side, new: Side, *, has_ids: bool = True) -> Pairs:
 
 _MOST = 100
 """Rounds after which the rest is different: one more for each level of elements without names."""
-_STEPS = (by_surroundings, by_choice, by_likeness, by_move)
 
 
 def _finds(pairs: Pairs, step: Callable[[Pairs], None]) -> bool:

@@ -5,10 +5,10 @@ round the colours of their neighbours are mixed in.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from sysmlc.ir.compare.facts import facts
-from sysmlc.ir.compare.pairs import Pairs, Token, fact_token
-from sysmlc.ir.compare.side import Side
+from sysmlc.ir.compare.pairs import Pairs
+from sysmlc.ir.compare.sayings import Numbers, Sayings
 from sysmlc.ir.element import Element
 
 _ROUNDS = 12
@@ -18,41 +18,30 @@ Group = tuple[list[Element], list[Element]]
 """Unpaired elements of one owner, of the old and of the new model."""
 
 
+class _Surroundings(NamedTuple):
+    """What leads from an element and to it, and how."""
+
+    leftovers: list[tuple[str, Element]]
+    rest: int
+    """The colour of all that is no leftover: it stays in all rounds."""
+
+
 class Refinement:
     """The colours of the leftovers of one side.
 
-    What lies below a leftover belongs to it: a flow from its pin is a flow from itself.
+    What lies below a leftover belongs to it: a flow from its pin is a flow from itself. ``mixed``
+    gives new colours; what is said gives the first ones, which are not negative.
     """
 
-    def __init__(
-        self, pairs: Pairs, side: Side, elements: list[Element], numbers: dict[Token, int]
-    ) -> None:
-        self._to_token = pairs.old_token if side is pairs.old else pairs.new_token
-        self._side = side
-        self._numbers = numbers
+    def __init__(self, sayings: Sayings, elements: list[Element], mixed: Numbers) -> None:
+        self._sayings = sayings
+        self._side = sayings.side
+        self._mixed = mixed
         self._elements = elements
-        self._part_of = {part.id: one for one in elements for part in side.below(one)}
-        self.colours: Colours = {one.id: self._said(one) for one in elements}
-
-    def _said(self, element: Element) -> int:
-        """A number for what the element and all below it say; depth does no harm."""
-        below = list(self._side.below(element))
-        numbers: dict[str, int] = {}
-        for one in reversed(below):
-            said = (self._number(fact_token(f, self._blind)) for f in facts(self._side, one))
-            inside = sorted(numbers[child.id] for child in self._side.children(one))
-            whole = (one.kind, one.name, tuple(sorted(said)), tuple(inside))
-            numbers[one.id] = self._number(whole)
-        return numbers[element.id]
-
-    def _blind(self, element: Element) -> Token:
-        """A token that is the same for all of a kind and name while partners are unknown."""
-        if element.id in self._side.hidden:
-            owner = self._side.visible(element)
-            return ("of", owner and self._blind(owner), element.kind, element.name)
-        found = self._to_token(element)
-        is_known = isinstance(found, tuple) and found[0] in ("new", "outside")
-        return found if is_known else ("?", element.kind, element.name)
+        self._part_of = {part.id: one for one in elements for part in self._side.below(one)}
+        self._surroundings: dict[str, _Surroundings] = {}
+        sayings.update()
+        self.colours: Colours = {one.id: sayings.whole(one) for one in elements}
 
     def count(self) -> int:
         """How many colours there are."""
@@ -60,41 +49,62 @@ class Refinement:
 
     def mix(self) -> None:
         """One more round."""
-        self.colours = {
-            one.id: self._number((self.colours[one.id], *self._mixed(one)))
-            for one in self._elements
-        }
-
-    def _mixed(self, element: Element) -> list[tuple[str, int]]:
-        return sorted((how, self._colour(one)) for how, one in self.around(element))
-
-    def _colour(self, element: Element) -> int:
-        known = self.colours.get(element.id)
-        return self._number(self._blind(element)) if known is None else known
+        now, made = self.colours, self._mixed
+        self.colours = {}
+        for one in self._elements:
+            around = self._around(one)
+            near = sorted([(how, now[other.id]) for how, other in around.leftovers])
+            self.colours[one.id] = -1 - made[now[one.id], around.rest, *near]
 
     def around(self, element: Element) -> list[tuple[str, Element]]:
         """What leads from the element and to it, and how; leftovers for what lies in them."""
-        found = []
+        return self._around(element).leftovers
+
+    def _around(self, element: Element) -> _Surroundings:
+        known = self._surroundings.get(element.id)
+        if known is None:
+            known = self._surroundings[element.id] = self._look_around(element)
+        return known
+
+    def _look_around(self, element: Element) -> _Surroundings:
+        part_of, named = self._part_of, self._sayings.named
+        near, far = [], []
+        for how, one in self._ties(element):
+            leftover = part_of.get(one.id)
+            if leftover is None:
+                far.append((how, named(one)))
+            else:
+                near.append((how, leftover))
+        return _Surroundings(near, self._mixed[tuple(sorted(far))])
+
+    def _ties(self, element: Element) -> list[tuple[str, Element]]:
+        found: list[tuple[str, Element]] = []
         for part in self._side.below(element):
             out = self._side.out.get(part.id, {})
             found += [(f"{part.name} {edge} >", one) for edge, to in out.items() for one in to]
             into = self._side.into.get(part.id, ())
             found += [(f"{part.name} < {edge}", one) for edge, one in into]
-        return [(how, self._part_of.get(one.id, one)) for how, one in found]
+        return found
 
-    def _number(self, value: Token) -> int:
-        return self._numbers.setdefault(value, len(self._numbers))
+
+class Palette:
+    """What gives the first colours, for as long as pairs are looked for."""
+
+    def __init__(self, pairs: Pairs) -> None:
+        numbers = Numbers()
+        self.old = Sayings(pairs, pairs.old, numbers)
+        self.new = Sayings(pairs, pairs.new, numbers)
 
 
 class Refined:
     """The colours of both sides after each round, the last round first."""
 
-    def __init__(self, pairs: Pairs, groups: Sequence[Group]) -> None:
-        numbers: dict[Token, int] = {}
+    def __init__(self, palette: Palette, groups: Sequence[Group]) -> None:
+        mixed = Numbers()
         left = [one for olds, _ in groups for one in olds]
         right = [one for _, news in groups for one in news]
-        self.old = Refinement(pairs, pairs.old, left, numbers)
-        self.new = Refinement(pairs, pairs.new, right, numbers)
+        self.old = Refinement(palette.old, left, mixed)
+        self.new = Refinement(palette.new, right, mixed)
         self.rounds = [(self.old.colours, self.new.colours)]
         self._refine()
         self.rounds.reverse()

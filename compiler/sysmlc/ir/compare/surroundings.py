@@ -2,30 +2,30 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.ir.compare.colours import Colours, Group, Refined
+from sysmlc.ir.compare.colours import Colours, Group, Palette, Refined
 from sysmlc.ir.compare.pairs import Pairs
 from sysmlc.ir.element import Element
 
 _Classes = Iterator[tuple[list[Element], list[Element]]]
 
 
-def by_surroundings(pairs: Pairs) -> None:
+def by_surroundings(palette: Palette, pairs: Pairs) -> None:
     """Pair what is the only one on each side, below one owner, that says what it says."""
     groups = list(pairs.leftovers())
-    for one, other in Refined(pairs, groups).rounds if groups else ():
+    for one, other in Refined(palette, groups).rounds if groups else ():
         for group in groups:
             for olds, news in list(_classes(pairs, group, one, other)):
                 if len(olds) == len(news) == 1:
                     pairs.put(olds[0], news[0])
 
 
-def by_choice(pairs: Pairs) -> None:
+def by_choice(palette: Palette, pairs: Pairs) -> None:
     """Where several say the same, any may be chosen; what surrounds it follows the choice.
 
     Only the most telling colours are used that find anything: what they leave is looked at anew.
     """
     groups = list(pairs.leftovers())
-    refined = Refined(pairs, groups)
+    refined = Refined(palette, groups)
     for group in groups:
         for one, other in refined.rounds:
             found = list(_classes(pairs, group, one, other))
