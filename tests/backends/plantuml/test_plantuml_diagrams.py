@@ -90,3 +90,26 @@ def test_a_redefined_feature_without_a_name_is_told_by_its_type_or_what_it_redef
 
 def test_a_view_with_nothing_in_it_is_not_written():
     assert texts(Graph()) == {}
+
+
+def test_what_is_inside_a_port_is_an_end_of_a_connector():
+    graph = parse_text("""\
+Class port "FuelPort" role="interface block"
+  Property port.flow "fuelFlow" role="flow property" direction="out"
+Class pump "Pump" role="block"
+  Port pump.p "out" role="proxy port"
+    -> typed-by port
+Class tank "Tank" role="block"
+  Property tank.pump "pump" role="part" aggregation="composite"
+    -> typed-by pump
+  Property tank.level "level" role="value"
+  Connector b role="binding connector"
+    -> end b.1 b.2
+    ConnectorEnd b.1
+      -> path tank.pump pump.p
+      -> role port.flow
+    ConnectorEnd b.2
+      -> role tank.level
+""")
+    written = texts(graph)["Tank.ibd.puml"]
+    assert '"out.fuelFlow"' in written

@@ -127,16 +127,19 @@ def is_parametric(graph: Graph, connector: Element) -> bool:
 
 
 def path_of(graph: Graph, end: Element) -> Path | None:
-    """Where a connector end is, seen from the connector's owner; None when nothing is there."""
+    """Where a connector end is, seen from the connector's owner; None when nothing is there.
+
+    What is inside a port (a flow property of its type) is drawn as that port's inner one.
+    """
     role = graph.target(end, Edge.ROLE)
     if role is None:
         return None
     steps = graph.targets(end, Edge.PATH)
     parts = tuple(step.id for step in steps if not _is_port(step))
     ports = tuple(step.id for step in steps if _is_port(step))
-    if _is_port(role):
+    if ports or _is_port(role):
         return Path(parts, ports, role.id)
-    return Path((*parts, role.id), ports)
+    return Path((*parts, role.id))
 
 
 def _is_port(item: Element) -> bool:
