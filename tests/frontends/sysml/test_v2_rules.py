@@ -41,6 +41,26 @@ def test_sm481_what_a_usage_is_beyond_a_feature_is_told():
     ]
 
 
+@pytest.mark.parametrize(
+    ("member", "what"),
+    [
+        ("constraint safe { attribute x; 1 == 2 }", "a constraint"),
+        ("satisfy R { attribute x; }", "a satisfaction"),
+        ("flow from a.x to b.x { attribute x; }", "a flow"),
+        ("allocate a to b { attribute x; }", "an allocation"),
+        ("enum def E { enum e { attribute x; } }", "an enumerated value"),
+        ("action stop { terminate { attribute x; } }", "a terminate action"),
+    ],
+)
+def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, what):
+    around = "requirement def R; part def M { attribute x; } part a : M; part b : M;"
+    found = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
+    told = [one.message for one in found if one.rule.code == "SM481"]
+    assert told == [f"a member of {what} is read as nothing (1 in the unit)"]
+    nearly = member.replace("attribute x;", "doc /* x */")
+    assert "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").codes()
+
+
 def test_aliases_of_states_are_in_the_graph_wherever_they_stand():
     plain = "state def A { entry; then a; state a; alias b for a; alias <c> for a; }"
     beside = "state def B parallel { state r { state s; alias d for s; } alias e for r; }"

@@ -6,7 +6,6 @@ from sysmlc.frontends.sysml import annotations, nodes, statements, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.events import trigger
-from sysmlc.frontends.sysml.parameters import pin
 from sysmlc.frontends.sysml.successions import steps
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -210,10 +209,5 @@ def terminate(low: "Lowering", node: Node, owner: Element) -> Element:
         low.approximated(node, "a terminate action for something else", "an opaque action")
         return _start(low, node, owner, "destroy")
     made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, subkind="final")
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a terminate action")
     return made
-
-
-def pin_or_feature(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A parameter of a step."""
-    return pin(low, node, owner)

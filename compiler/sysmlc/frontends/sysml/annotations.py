@@ -1,6 +1,6 @@
 """Comments, documentation and metadata: what annotates an element."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
@@ -13,6 +13,26 @@ if TYPE_CHECKING:
 
 _STAND_INS = "Stereotypes"
 """The package of what the back end writes for stereotypes whose profile is not there."""
+
+
+_OWNED = frozenset({"OwningMembership", "FeatureMembership"})
+
+
+def texts(
+    low: "Lowering", node: Node, made: Element, what: str, read: Collection[Node] = ()
+) -> None:
+    """Lower what annotates an element that has no members in the graph; other ones are told.
+
+    ``what`` is what the element is, in words; ``read`` are members that are read elsewhere.
+    """
+    for one in nodes.body_of(node):
+        if nodes.is_text(one):
+            low.lower(one, made)
+        elif one.membership in _OWNED and one not in read and one.kind not in _EVENTS:
+            low.approximated(one, f"a member of {what}", "nothing")
+
+
+_EVENTS = nodes.EXPRESSIONS | {"EventOccurrenceUsage"}
 
 
 def documentation(low: "Lowering", node: Node, owner: Element | None) -> None:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import define, visibility
 from sysmlc.frontends.sysml.features import property_
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS
@@ -101,7 +101,7 @@ def item_flow(low: "Lowering", node: Node, owner: Element | None) -> Element:
     for payload in payloads(node):
         for type_ in nodes.references(payload, "FeatureTyping"):
             low.refer(Edge.CONVEYS, made, type_)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a flow", payloads(node))
     low.last(lambda: _flow(low, node, made))
     return made
 

@@ -36,7 +36,7 @@ def constraint(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.later(lambda: _body(low, node, made, result))
     for found in nodes.references(node, "ReferenceSubsetting"):
         low.refer(Edge.REFERENCES, made, found)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a constraint")
 
 
 def _body(low: "Lowering", node: Node, made: Element, result: Node) -> None:

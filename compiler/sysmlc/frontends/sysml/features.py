@@ -215,7 +215,7 @@ def literal(low: "Lowering", node: Node, owner: Element) -> Element:
     value = nodes.value_of(node)
     if value is not None:
         values.give(low, made, "value", value)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "an enumerated value")
     return made
 
 

@@ -65,7 +65,7 @@ def message(low: "Lowering", node: Node, owner: Element) -> None:
         for found in nodes.references(payload, "FeatureTyping"):
             low.refer(Edge.CALLS, made, found)
     low.last(lambda: _join(low, node, made))
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a message", payloads(node))
 
 
 def _join(low: "Lowering", node: Node, made: Element) -> None:

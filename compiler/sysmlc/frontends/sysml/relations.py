@@ -135,7 +135,7 @@ def allocation(low: "Lowering", node: Node, owner: Element | None) -> None:
     attrs: dict[str, AttrValue] = {"role": "allocate", "subkind": "abstraction"}
     made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **attrs)
     low.later(lambda: _allocate(low, node, made))
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "an allocation")
 
 
 def _allocate(low: "Lowering", node: Node, made: Element) -> None:

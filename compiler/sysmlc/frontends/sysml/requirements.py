@@ -58,7 +58,7 @@ def satisfy(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A satisfaction: by what it names, else by what it stands in."""
     attrs: dict[str, AttrValue] = {"role": "satisfy", "subkind": "abstraction"}
     made = low.add(node, Kind.DEPENDENCY, node.name or "", _package(low, owner), **attrs)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a satisfaction")
     found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
     low.refer(Edge.SUPPLIER, made, found)
     by = next(nodes.held(node, "SubjectMembership"), None)
@@ -103,4 +103,4 @@ def verify(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.graph.connect(Edge.CLIENT, made, owner)
     found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
     low.refer(Edge.SUPPLIER, made, found)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    annotations.texts(low, node, made, "a verification")
