@@ -1,14 +1,14 @@
 """Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from os import environ
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.cache import default
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.language.exchange import interchange_path, write
+from sysmlc.language.exchange import Files, interchange_path, write
 from sysmlc.language.library import VARIABLE, Library, core, find
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Document
@@ -34,7 +34,9 @@ class SysmlxBackend:
         if not models or any(one.language != "sysml" for one in options.inputs):
             models = [_said(graph, sink, options)]
         for model in models:
-            known = [*model.documents, *model.library.loaded()]
+            library = _files(model.library)
+            library.add(model.library.loaded())
+            known = Files(model.documents, library)
             for document in model.documents:
                 path = f"sysmlx/{interchange_path(document)}"
                 data = write(document, known, sink, _Places(model.documents))
@@ -72,6 +74,12 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
         first = next(iter(unseen))
         raise ValueError(f"the text that +sysml makes cannot be read: {first.message}")
     return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
+
+
+@lru_cache(maxsize=1)
+def _files(_library: Library) -> Files:
+    """The files of a library that references lead to, unfolded once for models in succession."""
+    return Files(())
 
 
 @cache

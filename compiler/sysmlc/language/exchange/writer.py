@@ -7,20 +7,17 @@ from urllib.parse import quote
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.elements import Element, Link, walk
-from sysmlc.language.exchange.identity import conjugated, identify
+from sysmlc.language.exchange.files import File, Files
 from sysmlc.language.exchange.naming import shown
-from sysmlc.language.exchange.unfolding import unfold
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
 from sysmlc.language.tree import Document, Node
 
 _SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
-_MEMBERSHIPS = {"importedMembership"}
-"""Features that refer to the membership of an element, not to the element."""
 
 
 def write(
     document: Document,
-    others: Sequence[Document],
+    others: Sequence[Document] | Files,
     sink: Sink,
     place: Callable[[Document], str] | None = None,
 ) -> bytes:
@@ -28,9 +25,11 @@ def write(
 
     ``others`` are the documents, libraries included, that references may lead to: they become
     hrefs relative to the path of the document, to where ``place`` says that the interchange
-    files are, by default those of the same names. What leads nowhere is reported and left out.
+    files are, by default those of the same names; to write several documents of a model, they are
+    given as the same ``Files``. What leads nowhere is reported and left out.
     """
-    writer = _Writer(document, others, sink, place or interchange_path)
+    files = others if isinstance(others, Files) else Files(others)
+    writer = _Writer(document, files, sink, place or interchange_path)
     return ("\n".join(lines(writer.root, writer.targets)) + "\n").encode()
 
 
@@ -40,44 +39,21 @@ def interchange_path(document: Document) -> str:
     return splitext(path)[0] + _SUFFIXES[document.language]
 
 
-class _File:
-    """An unfolded document, and which elements of it are those of which nodes."""
-
-    def __init__(self, document: Document) -> None:
-        self.document = document
-        self.root = unfold(document.root)
-        identify(self.root, document)
-        self.elements: dict[Node, Element] = {}
-        self.memberships: dict[Node, Element] = {}
-        self.conjugates: dict[Node | None, Element] = {}
-        for element, owner in walk(self.root):
-            if element.node is not None:
-                self.memberships.setdefault(element.node, element)
-                self.elements[element.node] = element
-            if element.kind == "ConjugatedPortDefinition" and owner is not None:
-                self.conjugates[conjugated(element)] = element
-
-    def target(self, node: Node, feature: str) -> Element | None:
-        if feature == "conjugatedPortDefinition":
-            return self.conjugates.get(node)
-        return (self.memberships if feature in _MEMBERSHIPS else self.elements).get(node)
-
-
 class _Writer:
     def __init__(
         self,
         document: Document,
-        others: Sequence[Document],
+        others: Files,
         sink: Sink,
         place: Callable[[Document], str],
     ) -> None:
         self._place = place
         self._document = document
         self._sink = sink
-        self._roots = {one.root: one for one in others}
-        self._files: dict[Node, _File] = {document.root: _File(document)}
+        self._others = others
+        self._file = File(document)
         self._folder = dirname(place(document)) or "."
-        self.root = self._files[document.root].root
+        self.root = self._file.root
         self._prune()
 
     def targets(self, element: Element) -> Targets:
@@ -97,7 +73,7 @@ class _Writer:
         if node is None:
             return link.text, "Element"
         root = _root(node)
-        file = self._file(root)
+        file = self._file if root is self._document.root else self._others.of(root)
         target = file.target(node, feature) if file else None
         if file is None or target is None:
             return "", ""
@@ -105,11 +81,6 @@ class _Writer:
             return target.id, ""
         path = relpath(self._place(file.document), self._folder)
         return f"{quote(path)}#{target.id}", target.kind
-
-    def _file(self, root: Node) -> _File | None:
-        if root not in self._files and root in self._roots:
-            self._files[root] = _File(self._roots[root])
-        return self._files.get(root)
 
     # -- what cannot be written ------------------------------------------------------------------
 
