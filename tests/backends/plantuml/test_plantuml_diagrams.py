@@ -112,4 +112,4 @@ Class tank "Tank" role="block"
       -> role tank.level
 """)
     written = texts(graph)["Tank.ibd.puml"]
-    assert '"out.fuelFlow"' in written
+    assert "out.fuelFlow</back>" in written
