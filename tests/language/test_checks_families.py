@@ -9,11 +9,13 @@ from sysmlc.language.metaclasses import ALL_GENERALS
 from sysmlc.language.names import resolve
 
 KERML = {
-    *("SM251", "SM252", "SM254", "SM255", "SM256", "SM257", "SM258"),
+    *("SM251", "SM252", "SM254", "SM255", "SM256", "SM257", "SM258", "SM266", "SM267"),
+    *("SM285", "SM286", "SM287", "SM288"),
 }
 """Rules about what SysML has no notation for: their examples are in KerML."""
 SYSML = {
-    *("SM250", "SM259", "SM260", "SM261", "SM262", "SM263", "SM264"),
+    *("SM250", "SM259", "SM260", "SM261", "SM262", "SM263", "SM264", "SM265", "SM268", "SM269"),
+    *("SM270", "SM271", "SM272", "SM273", "SM276", "SM277", "SM278", "SM279"),
 }
 
 

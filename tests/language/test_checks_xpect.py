@@ -21,7 +21,7 @@ pytestmark = pytest.mark.corpus
 
 _FOLDER = Path(os.environ.get("SYSMLC_CORPUS", "nowhere")) / "sysml2"
 _XPECT = _FOLDER / "pilot-xpect"
-REACHED = 176
+REACHED = 193
 """Of 197 errors in SysML models, so many are told at their place."""
 
 

@@ -1,5 +1,7 @@
 """Features that a connector or expression refers to belong to something around it."""
 
+from collections.abc import Iterator
+
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import NOT_ACCESSIBLE
 from sysmlc.language.metaclasses import kinds_of
@@ -14,36 +16,61 @@ _FEATURELESS = kinds_of("EnumerationDefinition") | kinds_of("Namespace") - TYPES
 
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
-    """Report a feature that nothing around the connector or expression has."""
+    """Report features that nothing around the connector or expression has."""
+    uses = list(_uses(node))
+    if not uses:
+        return
+    scopes = [node, *_around(node)]
+    if not any(all(_has(model, scope, feature) for *_, feature in uses) for scope in scopes):
+        far = [one for one in uses if not any(_has(model, scope, one[2]) for scope in scopes)]
+        for user, relation, feature in far or _outside(model, scopes[1], uses):
+            place = subject(document, user, relation.reference.start)
+            owner = model.name(feature.owner) if feature.owner else ""
+            text = "::".join(relation.reference.chain[0])
+            sink.report(NOT_ACCESSIBLE, place, name=text, owner=owner)
+
+
+def _uses(node: Node) -> Iterator[tuple[Node, Relation, Node]]:
+    """What an expression or the ends of a connector refer to: user, relation, first feature."""
+    if node.kind in _CONNECTORS:
+        for end in node.members:
+            yield from _of(end, "ReferenceSubsetting")
+    elif node.kind == "FeatureReferenceExpression":
+        yield from _of(node, "Membership")
+
+
+def _of(node: Node, kind: str) -> Iterator[tuple[Node, Relation, Node]]:
     for relation in node.relations:
-        if not relation.implied and _refers(node, relation):
-            targets = relation.reference.targets
-            first = targets[0] if targets else None
-            if first is not None and not _is_accessible(model, node, first):
-                place = subject(document, node, relation.reference.start)
-                owner = model.name(first.owner) if first.owner else ""
-                text = "::".join(relation.reference.chain[0])
-                sink.report(NOT_ACCESSIBLE, place, name=text, owner=owner)
+        targets = relation.reference.targets
+        if relation.kind == kind and not relation.implied and targets and _is_owned(targets[0]):
+            yield node, relation, targets[0]
 
 
-def _refers(node: Node, relation: Relation) -> bool:
-    if relation.kind == "Membership":
-        return node.kind == "FeatureReferenceExpression"
-    owner = node.owner
-    ends = owner is not None and owner.kind in _CONNECTORS
-    return relation.kind == "ReferenceSubsetting" and ends
-
-
-def _is_accessible(model: Model, node: Node, feature: Node) -> bool:
-    """Whether a type around ``node`` has the feature: owns it or specialises its owner."""
+def _is_owned(feature: Node) -> bool:
+    """Whether a feature has values only within what owns it."""
     owner = feature.owner
     if feature.kind not in FEATURES or owner is None or owner.kind in _FEATURELESS:
-        return True
-    if feature.membership not in _FEATURE_MEMBERSHIPS or owner.kind not in TYPES:
-        return True
+        return False
+    return feature.membership in _FEATURE_MEMBERSHIPS and owner.kind in TYPES
+
+
+def _around(node: Node) -> list[Node]:
+    found = []
     around = node.owner
     while around is not None:
-        if around is owner or (around.kind in TYPES and owner in model.supers_of(around)):
-            return True
+        found.append(around)
         around = around.owner
-    return False
+    return found
+
+
+def _has(model: Model, scope: Node, feature: Node) -> bool:
+    """Whether a type owns a feature or specialises its owner."""
+    owner = feature.owner
+    return scope is owner or (scope.kind in TYPES and owner in model.supers_of(scope))
+
+
+def _outside(
+    model: Model, scope: Node, uses: list[tuple[Node, Relation, Node]]
+) -> list[tuple[Node, Relation, Node]]:
+    """Of ends that no one thing has all of, those that the nearest has not."""
+    return [one for one in uses if not _has(model, scope, one[2])]

@@ -65,6 +65,7 @@ _MADE = {
     "Intersecting": "the intersection of",
     "Differencing": "the difference of",
     "FeatureChaining": "a chain of",
+    "Conjugation": "the conjugate of",
 }
 _CONJUGATION = frozenset({"Conjugation"})
 _REFERENCE = frozenset({"ReferenceSubsetting"})
@@ -76,13 +77,14 @@ _GENERAL = frozenset({"general", "superclassifier", "subsettedFeature", "redefin
 def check_operands(model: Model, node: Node) -> Iterator[Found]:
     """Report a type that is made of one other only, or of itself."""
     for kind, made in _MADE.items():
-        operands = list(written(node, frozenset({kind})))
-        for relation, target in operands:
+        operands = [one for one in node.relations if one.kind == kind and not one.implied]
+        for relation in operands:
+            target = relation.reference.target
             name, general = name_of(model, node), name_of(model, target)
             facts = {"name": name, "made": made, "general": general}
             if target is node:
                 yield Found(ITSELF, _place(relation), facts)
-            elif sum(r.kind == kind for r in node.relations) == 1:
+            elif kind != "Conjugation" and len(operands) == 1:
                 yield Found(ALONE, relation.reference.start, facts)
 
 

@@ -43,6 +43,28 @@ NO_END = error(
     "assoc Link {\n    end feature source;\n    end feature target;\n}\n"
     "assoc Wire specializes Link {\n    end feature redefines source;\n}\n",
 )
+OF_PACKAGE = error(
+    "SM278",
+    "redefines-package-feature",
+    "'{general}' is a member of no type, so '{name}' cannot redefine it",
+    "A feature is redefined in a type that would inherit it (KerML 1.0, "
+    "validateRedefinitionFeaturingTypes).",
+    "subset it: ':>' for ':>>'",
+    "part wheel;\npart spare redefines wheel;\n",
+    "part wheel;\npart spare subsets wheel;\n",
+)
+OF_SAME_OWNER = error(
+    "SM279",
+    "redefines-own-feature",
+    "'{name}' redefines '{general}' of the same owner",
+    "A feature is redefined in a type that would inherit it (KerML 1.0, "
+    "validateRedefinitionFeaturingTypes).",
+    "subset it: ':>' for ':>>'",
+    "part def Thing { alias drive for Car::engine; }\n"
+    "part def Car :> Thing {\n    part engine;\n    part small redefines drive;\n}\n",
+    "part def Thing { alias drive for Car::engine; }\n"
+    "part def Car :> Thing {\n    part engine;\n    part small subsets drive;\n}\n",
+)
 
 _SUBSETTINGS = kinds_of("Subsetting")
 _TURNING = frozenset({"Conjugation", "ConjugatedPortTyping"})
@@ -56,6 +78,8 @@ def check(model: Model, node: Node) -> Iterator[Found]:
         rules = (
             (NONUNIQUE, node.facts.get("isUnique") is False and _is_unique(target)),
             (NOT_CONSTANT, _may_change(node) and target.facts.get("isConstant") is True),
+            (OF_PACKAGE, relation.kind == "Redefinition" and _are_free(node, target)),
+            (OF_SAME_OWNER, relation.kind == "Redefinition" and _are_of_one(node, target)),
             (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
         )
         for rule, is_broken in rules:
@@ -66,6 +90,15 @@ def check(model: Model, node: Node) -> Iterator[Found]:
 
 def _is_unique(feature: Node) -> bool:
     return feature.facts.get("isUnique") is not False
+
+
+def _are_free(feature: Node, general: Node) -> bool:
+    return owning_type(feature) is None and owning_type(general) is None
+
+
+def _are_of_one(feature: Node, general: Node) -> bool:
+    owner = owning_type(feature)
+    return owner is not None and owner is owning_type(general)
 
 
 def _may_change(feature: Node) -> bool:

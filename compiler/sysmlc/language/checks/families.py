@@ -3,7 +3,20 @@
 from collections.abc import Iterable
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import bounds, combining, conformance, evaluable, kinds, metadata
+from sysmlc.language.checks import (
+    bounds,
+    cases,
+    combining,
+    conformance,
+    crossing,
+    ends,
+    evaluable,
+    expressions,
+    kinds,
+    metadata,
+    owned,
+    steps,
+)
 from sysmlc.language.checks.found import Check
 from sysmlc.language.names import Model
 from sysmlc.language.names.unresolved import subject
@@ -16,6 +29,12 @@ _FAMILIES: tuple[Iterable[tuple[frozenset[str], Check]], ...] = (
     bounds.CHECKS,
     evaluable.CHECKS,
     metadata.CHECKS,
+    cases.CHECKS,
+    ends.CHECKS,
+    owned.CHECKS,
+    steps.CHECKS,
+    expressions.CHECKS,
+    crossing.CHECKS,
 )
 
 

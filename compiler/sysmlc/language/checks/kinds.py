@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.checks.member_rules import VARIATION_OF_VARIATION
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.advice import kind_of
@@ -61,4 +62,13 @@ def check(model: Model, node: Node) -> Iterator[Found]:
                 yield Found(OTHER_KIND, relation.reference.start, facts)
 
 
-CHECKS = ((_DATA | _CLASSES, check),)
+def check_variation(model: Model, node: Node) -> Iterator[Found]:
+    """Report a variation that a variation specialises; usages are checked with their references."""
+    for relation, target in written(node, _SUBCLASSIFICATION):
+        is_closed = target.facts.get("isVariation") or target.kind == "EnumerationDefinition"
+        if node.facts.get("isVariation") and is_closed:
+            facts = {"name": name_of(model, node), "owner": ""}
+            yield Found(VARIATION_OF_VARIATION, relation.reference.start, facts)
+
+
+CHECKS = ((_DATA | _CLASSES, check), (kinds_of("Definition"), check_variation))

@@ -14,7 +14,6 @@ _OCCURRENCES = kinds_of("Class") | kinds_of("OccurrenceUsage")
 _INTERFACES = kinds_of("InterfaceDefinition") | kinds_of("InterfaceUsage")
 _FLOWS = kinds_of("FlowDefinition")
 _VERIFICATIONS = kinds_of("VerificationCaseDefinition") | kinds_of("VerificationCaseUsage")
-_USAGES = kinds_of("Usage")
 _ENUMERATIONS = kinds_of("EnumerationDefinition")
 
 
@@ -57,9 +56,6 @@ def _as_feature(node: Node, owner: Node) -> Rule | None:
 
 
 def _by_itself(model: Model, node: Node) -> Rule | None:
-    if node.facts.get("isVariation") and node.kind not in _USAGES:
-        generals = model.lookup.generals(node)
-        return rules.VARIATION_OF_VARIATION if any(map(_is_variation, generals)) else None
     if node.kind == "MetadataUsage":
         types = model.lookup.generals(node)
         return rules.ABSTRACT_METADATA if any(t.facts.get("isAbstract") for t in types) else None

@@ -88,12 +88,14 @@ def check_body(model: Model, node: Node) -> Iterator[Found]:
 
 
 def _is_strange(model: Model, owner: Node, member: Node) -> bool:
-    """Whether a feature in a body redefines nothing of what its owner specialises."""
+    """Whether a feature in a body is none of what its owner specialises, by name or link."""
     if member.membership not in _FEATURE_MEMBERSHIPS:
         return False
     redefined = [r.reference.target for r in member.relations if r.kind == "Redefinition"]
-    supers = model.supers(owner)
-    return bool(redefined) and not any(t is None or t.owner in supers for t in redefined)
+    generals = model.supers(owner)
+    if redefined:
+        return not any(one is None or one.owner in generals for one in redefined)
+    return not any(one.name == member.name for g in generals[1:] for one in g.members)
 
 
 CHECKS = (

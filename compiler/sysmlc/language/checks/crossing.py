@@ -1,0 +1,112 @@
+"""Cross features: what an end of an association is, seen from the other end (KerML 8.3.3.3.5)."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.composition import is_end
+from sysmlc.language.names import Model
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.implied import owning_type
+from sysmlc.language.tree import Node, Reference
+
+_RIGHT = (
+    "class Gate { feature locks : Lock; }\nclass Lock { feature gate : Gate; }\n"
+    "assoc Holds {\n    end feature holder : Gate crosses held.gate;\n"
+    "    end feature held : Lock crosses holder.locks;\n}\n"
+)
+NOT_OPPOSITE = error(
+    "SM285",
+    "crosses-own-end",
+    "'{name}' does not lead through the opposite end of '{owner}'",
+    "What an end crosses is a feature of what is at the other end (KerML 1.0, "
+    "validateCrossSubsettingCrossedFeature).",
+    "name the other end, a dot, and its feature",
+    _RIGHT.replace("crosses holder.locks", "crosses held.key").replace(
+        "class Lock {", "class Lock { feature key : Lock;"
+    ),
+    _RIGHT,
+)
+OTHER_TYPE = error(
+    "SM286",
+    "crosses-other-type",
+    "'{name}' has another type than the end that crosses it",
+    "The cross feature gives what is at the end (KerML 1.0, validateFeatureCrossFeatureType).",
+    "let the end and the feature have one type",
+    _RIGHT.replace("feature locks : Lock", "feature locks : Gate"),
+    _RIGHT,
+)
+NOT_SPECIAL = error(
+    "SM287",
+    "crosses-unrelated",
+    "'{name}' does not specialise '{general}', which the redefined end crosses",
+    "What an end gives is among what the end gives that it redefines (KerML 1.0, "
+    "validateFeatureCrossFeatureSpecialization).",
+    "cross a feature that subsets '{general}'",
+    _RIGHT.replace("class Gate {", "class Gate { feature keys : Lock;")
+    + "assoc Owns specializes Holds {\n    end feature holder : Gate crosses held.gate;\n"
+    "    end feature held : Lock crosses holder.keys;\n}\n",
+    _RIGHT.replace("class Gate {", "class Gate { feature keys : Lock subsets locks;")
+    + "assoc Owns specializes Holds {\n    end feature holder : Gate crosses held.gate;\n"
+    "    end feature held : Lock crosses holder.keys;\n}\n",
+)
+OTHER_OWN = error(
+    "SM288",
+    "crosses-past-own",
+    "'{owner}' has the cross feature '{name}' and crosses another one",
+    "A cross feature that an end owns is the one that it crosses (KerML 1.0, "
+    "validateFeatureOwnedCrossFeature).",
+    "cross '{name}', or leave it out",
+    "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
+    "    end mine [0..1] feature holder : Gate crosses held.gate;\n    end feature held : Lock;\n}\n",
+    "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
+    "    end mine [0..1] feature holder : Gate;\n    end feature held : Lock;\n}\n",
+)
+
+_CROSSES = frozenset({"CrossSubsetting"})
+_TYPING = frozenset({"FeatureTyping"})
+
+
+def check(model: Model, node: Node) -> Iterator[Found]:
+    """Report an end that crosses what is not its cross feature."""
+    for relation, crossed in written(node, _CROSSES) if _is_binary(node.owner) else ():
+        facts = {"name": name_of(model, crossed), "owner": name_of(model, node.owner)}
+        start = relation.reference.start
+        if not _is_opposite(node, relation.reference):
+            yield Found(NOT_OPPOSITE, start, {**facts, "name": str(relation.reference)})
+        typed = {target for _, target in written(node, _TYPING)}
+        is_typed = bool(typed and model.lookup.generals(crossed))
+        if is_typed and typed != set(model.types(crossed)):
+            yield Found(OTHER_TYPE, start, facts)
+        for general in _generally(model, node):
+            if not model.specializes(crossed, general):
+                yield Found(NOT_SPECIAL, start, {**facts, "general": name_of(model, general)})
+        for own in _own(node):
+            if own is not crossed:
+                names = {"name": name_of(model, own), "owner": name_of(model, node)}
+                yield Found(OTHER_OWN, own.start, names)
+
+
+def _is_binary(owner: Node | None) -> bool:
+    """Whether a feature is one of two ends: of more, what is opposite is a link of the others."""
+    return owner is not None and sum(map(is_end, owner.members)) == 2
+
+
+def _is_opposite(node: Node, reference: Reference) -> bool:
+    """Whether a chain leads from the other end to a feature of it."""
+    targets = reference.targets or []
+    is_other = bool(targets) and targets[0] is not node and is_end(targets[0])
+    return len(targets) == 2 and is_other and owning_type(targets[0]) is not None
+
+
+def _generally(model: Model, node: Node) -> list[Node]:
+    """What the ends cross that an end redefines."""
+    ends = sorted(model.lookup.redefined(node), key=lambda one: one.start)
+    return [target for end in ends for _, target in written(end, _CROSSES)]
+
+
+def _own(node: Node) -> list[Node]:
+    members = (one for one in node.members if one.membership == "OwningMembership")
+    return [one for one in members if one.kind == "Feature"]
+
+
+CHECKS = ((FEATURES, check),)

@@ -1,0 +1,110 @@
+"""Ends of associations and connectors: one type, two of them, something at each."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.language.checks.member_rules import TOO_MANY_ENDS
+from sysmlc.language.composition import is_end
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.positions import own
+from sysmlc.language.tree import Node
+
+END_TYPE = error(
+    "SM269",
+    "end-types",
+    "the end '{name}' of '{owner}' has {count} types and needs one",
+    "What is linked at an end is of the one type of that end (KerML 1.0, "
+    "validateAssociationEndTypes); an end redefines that of the general at its position and has "
+    "its type too.",
+    "keep one type, or let it specialise the inherited one",
+    "part def Plug;\npart def Lamp;\n"
+    "connection def Wire { end part a : Plug, Lamp; end part b : Lamp; }\n",
+    "part def Plug;\npart def Lamp;\n"
+    "connection def Wire { end part a : Plug; end part b : Lamp; }\n",
+)
+TOO_FEW = error(
+    "SM270",
+    "connects-too-few",
+    "'{name}' connects {count} element{s}",
+    "What connects has at least two related elements, unless it is abstract (KerML 1.0, "
+    "validateConnectorRelatedFeatures).",
+    "name what it connects at two ends at least",
+    "part gate;\nconnection { end ::> gate; }\n",
+    "part gate;\npart wall;\nconnection { end ::> gate; end ::> wall; }\n",
+)
+NO_FLOW_END = error(
+    "SM271",
+    "flow-end-unclear",
+    "'{name}' does not say what of the flow's end it belongs to",
+    "A flow goes from a feature of one element to a feature of another (SysML 2.0, "
+    "validateFlowEndImplicitSubsetting).",
+    "name the element, a dot, and its feature",
+    "part def A { out item x; }\npart def B { in item y; }\n"
+    "part plant { part a : A; part b : B; flow from A::x to b.y; }\n",
+    "part def A { out item x; }\npart def B { in item y; }\n"
+    "part plant { part a : A; part b : B; flow from a.x to b.y; }\n",
+)
+
+_ASSOCIATIONS = kinds_of("Association")
+_CONNECTORS = kinds_of("Connector") - kinds_of("Flow")
+_SUCCESSIONS = kinds_of("Succession")
+_PORTS = frozenset({"PortUsage", "ReferenceUsage"})
+"""Ends of interfaces that are ports; others are told as that."""
+_FLOWS = kinds_of("FlowDefinition")
+
+
+def check_types(model: Model, node: Node) -> Iterator[Found]:
+    """Report ends of an association with several types."""
+    for end in filter(is_end, node.members):
+        if node.kind == "InterfaceDefinition" and end.kind not in _PORTS:
+            continue
+        typings = [one for one in end.relations if one.kind == "FeatureTyping"]
+        crosses = any(one.kind == "CrossSubsetting" for one in end.relations)
+        count = len(typings if crosses else model.types(end))
+        if count > 1:
+            facts = {"name": name_of(model, end), "owner": name_of(model, node)}
+            yield Found(END_TYPE, end.start, {**facts, "count": str(count)})
+
+
+def check_related(model: Model, node: Node) -> Iterator[Found]:
+    """Report a connector with ends of its own that names less than two related elements."""
+    ends = own(node, "end")
+    if not ends or node.facts.get("isAbstract") or node.kind in _SUCCESSIONS:
+        return
+    ends += model.lookup.at_positions(node, "end")
+    count = len({end for end in ends if _is_related(end)})
+    if count < 2:
+        facts = {"name": name_of(model, node), "count": str(count)}
+        yield Found(TOO_FEW, node.start, {**facts, "s": "" if count == 1 else "s"})
+
+
+def _is_related(end: Node) -> bool:
+    return any(relation.kind == "ReferenceSubsetting" for relation in end.relations)
+
+
+def check_flow_end(model: Model, node: Node) -> Iterator[Found]:
+    """Report an end of a flow with a qualified name and no dot."""
+    if _is_related(node):
+        return
+    for member in node.members:
+        for relation in member.relations:
+            if relation.kind == "Redefinition" and len(relation.reference.chain[0]) > 1:
+                text = "::".join(relation.reference.chain[0])
+                yield Found(NO_FLOW_END, node.start, {"name": text})
+
+
+def check_flow(model: Model, node: Node) -> Iterator[Found]:
+    """Report a definition of flows that inherits more than two ends."""
+    ends = model.lookup.at_positions(node, "end")
+    if len(ends) > 2 and len(own(node, "end")) <= 2:
+        facts = {"name": name_of(model, ends[2]), "owner": name_of(model, node)}
+        yield Found(TOO_MANY_ENDS, node.start, facts)
+
+
+CHECKS = (
+    (_ASSOCIATIONS, check_types),
+    (_CONNECTORS, check_related),
+    (frozenset({"FlowEnd"}), check_flow_end),
+    (_FLOWS, check_flow),
+)

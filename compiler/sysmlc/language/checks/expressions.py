@@ -1,0 +1,65 @@
+"""Expressions name features: the names of types have no values (KerML 8.3.4.8)."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.checks.values import arguments
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.advice import kind_of
+from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.names.implied import owning_type
+from sysmlc.language.names.results import result
+from sysmlc.language.tree import Node
+
+NO_FEATURE = error(
+    "SM272",
+    "value-no-feature",
+    "'{name}' is {found} and has no value",
+    "An expression gives the values of features (KerML 1.0, "
+    "validateFeatureReferenceExpressionReferentIsFeature, "
+    "validateFeatureChainExpressionConformance).",
+    "name a feature; 'all {name}' gives everything of a type",
+    "attribute def Speed;\nattribute limit = Speed;\n",
+    "attribute def Speed;\nattribute usual : Speed;\nattribute limit = usual;\n",
+)
+OTHER_OWNER = error(
+    "SM273",
+    "chained-elsewhere",
+    "'{name}' is a feature of '{owner}', not of what stands before the dot",
+    "After a dot stands a feature of what is before it (KerML 1.0, "
+    "validateFeatureChainExpressionConformance).",
+    "write a dot for every step",
+    "part plant { part gate { attribute width; } attribute w = plant.gate::width; }\n",
+    "part plant { part gate { attribute width; } attribute w = plant.gate.width; }\n",
+)
+
+_MEMBERSHIP = frozenset({"Membership"})
+_REFERRING = frozenset({"FeatureReferenceExpression", "FeatureChainExpression"})
+
+
+def check(model: Model, node: Node) -> Iterator[Found]:
+    """Report an expression that names something else than a feature of what is before it."""
+    for relation, target in written(node, _MEMBERSHIP):
+        facts = {"name": name_of(model, target)}
+        if target.kind in TYPES - FEATURES:
+            facts["found"] = kind_of(target)
+            yield Found(NO_FEATURE, relation.reference.start, facts)
+        elif len(relation.reference.chain[0]) > 1 and _is_elsewhere(model, node, target):
+            facts["owner"] = name_of(model, target.owner)
+            yield Found(OTHER_OWNER, relation.reference.start, facts)
+
+
+def _is_elsewhere(model: Model, node: Node, target: Node) -> bool:
+    """Whether what is before the dot is known, and has not the feature."""
+    if node.kind != "FeatureChainExpression":
+        return False
+    operand = next(iter(arguments(node)), None)
+    source = result(operand, model.lookup) if operand is not None else None
+    owner = owning_type(target)
+    if source is None or owner is None or owner.kind not in FEATURES:
+        return False
+    return owner not in model.supers(source)
+
+
+CHECKS = ((_REFERRING & kinds_of("Expression"), check),)

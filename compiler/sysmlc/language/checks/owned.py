@@ -1,0 +1,94 @@
+"""What may stand where it is: results, variable features, imports at the top."""
+
+from collections.abc import Iterator
+
+from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.contents import FEATURES
+from sysmlc.language.names.implied import owning_type
+from sysmlc.language.tree import Node
+
+SECOND_RESULT = error(
+    "SM265",
+    "several-results",
+    "'{name}' has {count} result expressions, {whose}",
+    "What a calculation gives is said by one expression, which may be inherited (KerML 1.0, "
+    "validateFunctionResultExpressionMembership, validateExpressionResultExpressionMembership).",
+    "keep one of them",
+    "calc def One { 1 }\ncalc def Two :> One { 2 }\n",
+    "calc def One;\ncalc def Two :> One { 2 }\n",
+)
+VARIABLE_PORTION = error(
+    "SM266",
+    "variable-portion",
+    "'{name}' is a portion and cannot change",
+    "A portion is the same occurrence in part of its life (KerML 1.0, "
+    "validateFeaturePortionNotVariable).",
+    "leave 'var' or 'portion' out",
+    "class Gate {\n    portion var feature night;\n}\n",
+    "class Gate {\n    portion feature night;\n}\n",
+)
+VARIABLE_ELSEWHERE = error(
+    "SM267",
+    "variable-elsewhere",
+    "'{name}' may change, and '{owner}' has no time in which it could",
+    "Only what happens or exists in time has features that change (KerML 1.0, "
+    "validateFeatureIsVariable).",
+    "leave 'var' out",
+    "datatype Speed {\n    var feature limit;\n}\n",
+    "class Speed {\n    var feature limit;\n}\n",
+)
+ROOT_IMPORT = error(
+    "SM268",
+    "public-root-import",
+    "the import of '{name}' stands in no package and is not private",
+    "What a file imports at its top is for that file (KerML 1.0, "
+    "validateImportTopLevelVisibility).",
+    "write 'private' before 'import'",
+    "package Plant { part gate; }\npublic import Plant::*;\n",
+    "package Plant { part gate; }\nprivate import Plant::*;\n",
+)
+
+_FUNCTIONS = kinds_of("Function") | kinds_of("Expression")
+_IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
+
+
+def check_result(model: Model, node: Node) -> Iterator[Found]:
+    """Report a result expression beside another, own or inherited."""
+    own = _results(node)
+    if not own and not model.lookup.generals(node):
+        return
+    inherited = [one for general in model.supers(node)[1:] for one in _results(general)]
+    count = len(own) + len(inherited)
+    if count > 1:
+        start = own[-1].start if own else node.start
+        whose = "inherited ones" if not own else "its own and inherited ones"
+        facts = {"name": name_of(model, node), "count": str(count)}
+        yield Found(SECOND_RESULT, start, {**facts, "whose": whose if inherited else "its own"})
+
+
+def _results(node: Node) -> list[Node]:
+    return [one for one in node.members if one.membership == "ResultExpressionMembership"]
+
+
+def check_variable(model: Model, node: Node) -> Iterator[Found]:
+    """Report a feature that is said to change and cannot."""
+    if node.facts.get("isVariable") is not True:
+        return
+    owner = owning_type(node)
+    facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
+    if node.facts.get("isPortion"):
+        yield Found(VARIABLE_PORTION, node.start, facts)
+    elif owner is None or not model.specializes(owner, "Occurrences::Occurrence"):
+        yield Found(VARIABLE_ELSEWHERE, node.start, facts)
+
+
+def check_import(model: Model, node: Node) -> Iterator[Found]:
+    """Report an import of the root namespace that others could see."""
+    is_at_top = node.owner is not None and node.owner.owner is None
+    if is_at_top and node.visibility != "private" and node.relations:
+        yield Found(ROOT_IMPORT, node.start, {"name": str(node.relations[0].reference)})
+
+
+CHECKS = ((_FUNCTIONS, check_result), (FEATURES, check_variable), (_IMPORTS, check_import))
