@@ -126,3 +126,20 @@ def test_private_members_are_not_seen_from_outside_and_protected_ones_by_heirs()
 def test_what_imports_a_library_name_may_call_it_by_that():
     model = resolved("package Plant { private import ScalarValues::Real; attribute a : Real; }")
     assert leads(model, "Plant::a") == "ScalarValues::Real"
+
+
+def test_what_is_advised_is_neither_the_use_itself_nor_a_unit():
+    assert told(
+        """\
+        package Plant {
+            perform grip;
+            private package Use { attribute mass = 5 [SI::N]; }
+            part def Cell { connect a to N; }
+        }
+        package Tools { action grip; }
+        """
+    ) == [
+        "2: 'grip' is not known here: 'grip' is in 'Tools', which is not imported here",
+        "4: 'a' is not known here: known: Cell, Plant, Tools, Use, grip",
+        "4: 'N' is not known here: known: Cell, Plant, Tools, Use, grip",
+    ]

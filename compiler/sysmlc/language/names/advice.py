@@ -44,20 +44,30 @@ def advice(
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
     if hidden is not None and other is None:
         return f"'{names[-1]}' is there by a private import only"
-    package = _elsewhere(model, names) if within is None else None
+    package = _elsewhere(model, relation, names, start) if within is None else None
     if package is not None:
         return f"'{names[0]}' is in '{package.name}', which is not imported here"
     known = _known(lookup, names, start, within)
     roots = [p.name for p in model.packages() if p.name] if len(names) > 1 else []
-    return did_you_mean(names[-1], known or roots)
+    return did_you_mean(names[-1], known or roots) if known or roots else _UNNAMED
 
 
-def _elsewhere(model: "Model", names: tuple[str, ...]) -> Node | None:
-    """A package of the model or of a library file in use that has the name."""
+_UNNAMED = "declare it, or import the package that has it"
+
+
+def _elsewhere(
+    model: "Model", relation: Relation, names: tuple[str, ...], start: contexts.Start
+) -> Node | None:
+    """A package of the model or of a library file in use that has the name.
+
+    What a connector joins or a usage references is never in the library: a unit 'b' is not meant.
+    """
     if len(names) > 1:
         return None
-    for package in model.packages():
-        if any(
+    is_own = relation.kind == "ReferenceSubsetting"
+    around = _around(start)
+    for package in model.own_packages() if is_own else model.packages():
+        if package not in around and any(
             h.visibility in ("", "public") for h in model.lookup.owned(package).get(names[0], ())
         ):
             return package
@@ -91,12 +101,18 @@ def _known(
     elif within is not None:
         scopes = [within, *lookup.reached(within)]
     else:
-        scopes = []
-        scope = start.scope
-        while scope is not None:
-            scopes.append(scope)
-            scope = contexts.outer(scope)
+        scopes = _around(start)
     return [name for scope in scopes for name in lookup.owned(scope) if name != names[-1]]
+
+
+def _around(start: contexts.Start) -> list[Node]:
+    """The namespaces in which a name is looked up, the nearest first."""
+    scopes = []
+    scope = start.scope
+    while scope is not None:
+        scopes.append(scope)
+        scope = contexts.outer(scope)
+    return scopes
 
 
 def kind_of(node: Node) -> str:

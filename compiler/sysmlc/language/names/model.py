@@ -56,8 +56,11 @@ class Model:
 
     def packages(self) -> list[Node]:
         """The root members of the documents and of the library files read so far."""
-        read = [*self.documents, *self.library.loaded()]
-        return [member for document in read for member in document.root.members]
+        return [*self.own_packages(), *_members(self.library.loaded())]
+
+    def own_packages(self) -> list[Node]:
+        """The root members of the documents."""
+        return _members(self.documents)
 
     def _text(self, root: Node) -> str:
         document = self.document(root)
@@ -250,6 +253,10 @@ def _accepted(node: Node) -> list[tuple[str, Node]]:
         return []
     payload, accepted = payload_of(owner)
     return [("Subsetting", accepted)] if node is payload and accepted is not None else []
+
+
+def _members(documents: Sequence[Document]) -> list[Node]:
+    return [member for document in documents for member in document.root.members]
 
 
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
