@@ -150,3 +150,12 @@ def test_damaged_entries_are_not_used():
     assert unpack(b"") is None
     assert unpack(b"no tree") is None
     assert unpack(pack(parse("part a;", "a.sysml", "sysml", Sink()).root)[:-4]) is None
+
+
+def test_names_with_line_ends_and_tabs_are_kept_in_the_index(folder, tmp_path):
+    (folder / "odd.sysml").write_text(r"package 'Halls\nand\tdoors' { part def Both; }")
+    cache = Cache(tmp_path / "cache")
+    for _ in range(2):
+        library = find(folder, cache=cache)
+        assert names(library.roots("Halls\nand\tdoors")) == [("Package", "Halls\nand\tdoors")]
+        assert library.roots("Halls\nand") == []

@@ -221,6 +221,13 @@ def test_of_very_many_errors_the_first_hundred_are_told():
     assert len(said("part a : ;\n" * 1_000)) == 100
 
 
+def test_the_last_error_that_is_told_says_that_it_is_the_last():
+    sink = Sink()
+    parse("part a : ;\n" * 1_000, "a.sysml", "sysml", sink)
+    notes = ("of one file no more than 100 errors of syntax are told",)
+    assert [one.notes for one in sink] == [()] * 99 + [notes]
+
+
 @pytest.mark.parametrize("text", ["", " \n", "// nothing", "\ufeff"])
 def test_nothing_is_no_error(text):
     assert understood(text) == []

@@ -1,5 +1,6 @@
 """The model libraries that a model refers to: where they are, and their files, read when needed."""
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -74,7 +75,7 @@ class Library:
 
     def _indexed(self) -> dict[str, list[str]]:
         """Which files have which root members; kept in the cache under the files' digests."""
-        key = f"{self._digest()}-library-index" if self._cache else ""
+        key = f"{self._digest()}-library-names" if self._cache else ""
         kept = self._cache.get(key) if self._cache else None
         if kept is not None:
             return _index_of(kept)
@@ -84,8 +85,7 @@ class Library:
                 for name in {member.name, member.short} - {None}:
                     index.setdefault(str(name), []).append(path)
         if self._cache:
-            lines = [f"{name}\t{path}" for name in sorted(index) for path in index[name]]
-            self._cache.put(key, "\n".join(["index", *lines]).encode())
+            self._cache.put(key, json.dumps(index, sort_keys=True).encode())
         return index
 
     def _digest(self) -> str:
@@ -96,10 +96,7 @@ class Library:
 
 
 def _index_of(kept: bytes) -> dict[str, list[str]]:
-    index: dict[str, list[str]] = {}
-    for line in kept.decode().splitlines()[1:]:
-        name, _, path = line.partition("\t")
-        index.setdefault(name, []).append(path)
+    index: dict[str, list[str]] = json.loads(kept)
     return index
 
 

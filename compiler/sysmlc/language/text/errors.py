@@ -12,6 +12,7 @@ from sysmlc.suggest import did_you_mean
 
 _MOST = 100
 """Errors of one file that are told."""
+_LAST = f"of one file no more than {_MOST} errors of syntax are told"
 _LANGUAGES = {"kerml": "KerML", "sysml": "SysML"}
 _WORDS = {"BODY": "the comment", "STRING": "the text"}
 _COMMENT = (
@@ -50,7 +51,8 @@ class Errors:
             return
         place = Place(self._path, offset=self.byte(offset))
         facts.setdefault("advice", "")
-        self._sink.report(rule, Subject(place=place), help="", notes=(), **facts)
+        notes = () if self._left else (_LAST,)
+        self._sink.report(rule, Subject(place=place), help="", notes=notes, **facts)
 
     def byte(self, offset: int) -> int:
         """The byte of the file at which a character of the text starts."""
