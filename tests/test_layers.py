@@ -7,7 +7,7 @@ import sysmlc
 
 ROOT = Path(sysmlc.__file__).parent
 LAYERS = [
-    {"", "values", "resources", "output", "naming", "suggest", "cache", "depth"},
+    {"", "values", "resources", "output", "naming", "suggest", "cache", "depth", "collecting"},
     {"sources"},
     {"diagnostics"},
     {"ir"},

@@ -2,6 +2,7 @@
 
 import marshal
 import sys
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -108,6 +109,7 @@ def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | No
     return document
 
 
+@lru_cache(maxsize=1)
 def _code() -> str:
     """What a stored tree depends on beside the text: Python, our version, the parser's code."""
     here = Path(__file__).parent

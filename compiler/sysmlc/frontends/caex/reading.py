@@ -1,9 +1,8 @@
 """AutomationML read into the graph: the order in which the parts of its files are lowered."""
 
-import gc
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
+from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.caex import (
     account,
@@ -29,7 +28,7 @@ from sysmlc.sources import Fault, Source, SourceError
 def read_all(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
     """Read the files into the graph; see ``CaexFrontend.read``."""
     ordered = sorted(sources, key=lambda source: source.name)
-    with _no_collection():
+    with uncollected():
         documents = [d for source in ordered if (d := _read(source, sink)) is not None]
         standard = Standard()
         context = Context(documents, graph, sink, standard.provide)
@@ -66,23 +65,6 @@ def _lower(context: Context) -> None:
     for document in context.documents:
         metadata.lower(context, document)
     libraries.set_apart(context)
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
-
-    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
-    over a large graph again and again costs more than many passes.
-    """
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.freeze()
-            gc.enable()
 
 
 def _read(source: Source, sink: Sink) -> Document | None:

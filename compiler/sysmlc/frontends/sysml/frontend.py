@@ -43,10 +43,12 @@ class SysmlFrontend:
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Parse, resolve and lower all files of the unit."""
+        from sysmlc.collecting import uncollected
         from sysmlc.frontends.sysml.reading import read
 
         ordered = sorted(sources, key=lambda one: one.name)
-        read(ordered, graph, sink, coverage, library=self.library, cache=self.cache)
+        with uncollected():
+            read(ordered, graph, sink, coverage, library=self.library, cache=self.cache)
 
 
 FRONTEND = SysmlFrontend()

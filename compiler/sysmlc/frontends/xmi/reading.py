@@ -1,10 +1,9 @@
 """From the files of a unit to its elements: what the front end does when there is UML in XMI."""
 
-import gc
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 from sysmlc.cache import Cache
+from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.xmi import (
     account,
@@ -47,7 +46,7 @@ def read(
     ordered = sorted(sources, key=lambda source: source.name)
     models = [source for source in ordered if not is_snapshot(source)]
     beside = [source for source in ordered if is_snapshot(source)]
-    with _no_collection():
+    with uncollected():
         found = [_read(source, sink, cache) for source in models]
         documents = [document for document in found if document is not None]
         unit = Unit(documents, graph)
@@ -79,23 +78,6 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         unread.report(context)
         unread_tags.report(context)
         account.account(context, sink, coverage)
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Hold the cyclic garbage collector: nothing that is made here dies before the end.
-
-    What lives then is left out of its later rounds too: there are no cycles in it, and to walk
-    over a large graph again and again costs more than many passes.
-    """
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.freeze()
-            gc.enable()
 
 
 def _read(source: Source, sink: Sink, cache: Cache | None) -> Document | None:
