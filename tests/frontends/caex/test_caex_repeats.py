@@ -35,6 +35,18 @@ REPEATS = [
         classes(of_class(ONE)) + of_instance(TWO + THREE),
         "'Plant::i' has two of 'Attribute' named 'a'",
     ),
+    (
+        classes(of_class(ONE)) + of_instance(ONE + ONE),
+        "'Plant::i' has two of 'Attribute' named 'a'",
+    ),
+    (
+        classes(of_class(ONE.replace(">", ' ID="3">', 1) + TWO)),
+        "'Lib::C' has two of 'Attribute' named 'a'",
+    ),
+    (
+        classes(of_class("", "C") + of_class("", 'C" ID="3')),
+        "'Lib' has two of 'SystemUnitClass' named 'C'",
+    ),
     (of_instance(ONE + TWO, ""), "'Plant::i' has two of 'Attribute' named 'a'"),
     (of_instance(PORT, ""), "'Plant::i::p' has two of 'Attribute' named 'a'"),
 ]
@@ -51,6 +63,8 @@ ALONE = [
     classes(of_class("<Attribute Name='a'><Attribute Name='a'/></Attribute>")),
     plant('<InternalElement Name="i" ID="1"/><InternalElement Name="i" ID="2"/>'),
     classes("") + interfaces("", "Lib"),
+    classes(of_class(ONE + of_class("", "a"))),
+    of_instance(f"<AdditionalInformation><X>{ONE}{TWO}</X></AdditionalInformation>", ""),
 ]
 
 
@@ -113,3 +127,16 @@ def test_each_mirror_that_leads_into_a_circle_is_told_with_its_master(ids):
     assert reading.findings == [
         f"SM143: '{one}' is a mirror of itself, by way of '{masters[one]}'" for one in ids
     ]
+
+
+@pytest.mark.parametrize("ids", ["abcd", "dcba", "bdac"])
+def test_each_mirror_of_a_chain_that_leads_nowhere_is_told_with_what_is_missing(ids):
+    masters = {"a": "b", "b": "c", "c": "gone", "d": "e"}
+    gone = f"{'0' * 8}-{'0' * 4}-{'0' * 4}-{'0' * 4}-{'0' * 12}"
+    chain = "".join(mirror(one, masters[one].replace("gone", gone)) for one in ids)
+    reading = Read(plant(chain + '<InternalElement Name="e" ID="e"/>'))
+    lost = [one for one in ids if one != "d"]
+    assert reading.findings == [
+        f"SM138: '{one}' is a mirror of '{gone}', which does not exist" for one in lost
+    ]
+    assert reading.to("Plant::d", "mirrors") == ["Plant::e"]

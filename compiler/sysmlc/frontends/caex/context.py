@@ -53,8 +53,8 @@ class Context:
         """Rows by data type and text: values that it does not have."""
         self.unknown_types: dict[tuple[Document, str], int] = {}
         """The first row that names a data type that there is not."""
-        self.repeated: set[tuple[Document, int]] = set()
-        """Rows whose name another element beside them may have."""
+        self.masters: dict[tuple[Document, Node], Node | str] = {}
+        """What mirrors stand for in the end, as a file sees it; the id that leads nowhere."""
         self.endless: set[Node] = set()
         """Mirrors that lead into a circle."""
         self.references: dict[str, bool] = {}
@@ -102,7 +102,6 @@ class Context:
             source, ordinal = "", -1
         element = self.graph.new(id, kind, name, owner, ordinal, source)
         if element is None:
-            self.repeated.add((document, row))
             id = self.free(id, document.node(row))
             element = self.graph.add(Element(id, kind, name, owner, ordinal, source))
         if document.is_built_in:

@@ -91,8 +91,6 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
     structure = _structure(context, owner, node, document, element, declared)
     measures.type_value(context, element, node, document, structure or declared)
     constraints.lower(context, element, node, document)
-    if ("Attribute", node.name) in owner.members:
-        context.repeated.add((document, node.row))
     owner.members["Attribute", node.name] = Member(
         element.id, structure or declared, document, node.row
     )

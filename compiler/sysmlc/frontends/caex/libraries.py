@@ -51,8 +51,7 @@ def _class(context: Context, document: Document, node: Node, above: Node, family
         abstract=True if is_role else None,
     )
     type = Type(element.id, document, node.row, family, (*_path(above), node.name))
-    if not context.types.add(type):
-        context.repeated.add((document, node.row))
+    context.types.add(type)
     return type
 
 

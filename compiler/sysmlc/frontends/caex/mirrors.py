@@ -1,6 +1,6 @@
 """Mirrors: second places of one element; the last master of a chain is what is meant."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
@@ -40,14 +40,12 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
     seen: dict[Node, None] = {}
     while is_mirror(context, node) and node not in seen and node not in context.endless:
         seen[node] = None
-        found = context.find(master_id(node), document)
-        next_node = found[1] if found else None
-        if next_node is not None and node.tag == "Attribute":
-            next_node = _attribute(next_node, node)
-        if next_node is None:
-            _report(context, document, next(iter(seen)), master_id(node))
+        found = context.masters.get((document, node)) or _next(context, document, node)
+        if isinstance(found, str):
+            _remember(context, document, seen, found)
+            _report(context, document, next(iter(seen)), found)
             return None
-        node = next_node
+        node = found
     first = next(iter(seen), node)
     if seen:
         context.tell_lenient(document, first, master_id(first))
@@ -55,7 +53,22 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
         context.endless.update(seen)
         _report(context, document, first, master_id(first), is_circle=True)
         return None
+    _remember(context, document, seen, node)
     return node
+
+
+def _next(context: Context, document: Document, mirror: Node) -> Node | str:
+    """What a mirror names, or the id with which it leads nowhere."""
+    id = master_id(mirror)
+    found = context.find(id, document)
+    if found is None:
+        return id
+    return (_attribute(found[1], mirror) or id) if mirror.tag == "Attribute" else found[1]
+
+
+def _remember(context: Context, document: Document, seen: Iterable[Node], end: Node | str) -> None:
+    """Where all mirrors of a chain end: others that name them need not go along it again."""
+    context.masters.update(((document, one), end) for one in seen)
 
 
 def draw(

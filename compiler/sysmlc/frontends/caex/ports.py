@@ -12,10 +12,7 @@ _CARDINALITY = ("MinOccur", "MaxOccur")
 def said_of(context: Context, node: Node) -> dict[str, AttrValue]:
     """What the attributes of an interface say."""
     said: dict[str, AttrValue] = {}
-    children = list(node.of("Attribute"))
-    if len({child.name for child in children}) < len(children):
-        context.repeated.update((child.document, child.row) for child in children)
-    for child in children:
+    for child in node.of("Attribute"):
         _tell(context, said, child)
     return said
 

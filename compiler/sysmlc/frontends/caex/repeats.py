@@ -1,8 +1,12 @@
 """Names that should be of one element alone: of classes, libraries, attributes, aliases."""
 
+from collections.abc import Iterator
+from itertools import compress, repeat
+
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.strange import is_free
 from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
 
 REPEATED_NAME = rule(
@@ -34,21 +38,43 @@ _NAMED = frozenset({*CLASS_TAGS, *LIBRARIES, "Attribute"})
 
 
 def report(context: Context) -> None:
-    """Tell of the rows that could not have the id that their name makes."""
-    for document, row in sorted(context.repeated, key=lambda pair: (pair[0].name, pair[1])):
-        node = document.node(row)
-        if node.tag in _NAMED and not document.is_built_in and _is_repeated(node):
+    """Tell of each row that has the name of one before it beside it."""
+    for document in context.documents:
+        if document.is_built_in or not _has_repeats(document):
+            continue
+        for row in _repeated(document):
+            node = document.node(row)
             above = node.parent or node
-            owner = f"'{path_of(above) or document.name}'"
-            facts = {"owner": owner, "tag": node.tag, "name": node.name}
-            context.report(REPEATED_NAME, document, node, **facts)
+            facts = {"owner": f"'{path_of(above) or document.name}'", "tag": node.tag}
+            context.report(REPEATED_NAME, document, node, name=node.name, **facts)
 
 
-def _is_repeated(node: Node) -> bool:
-    """Whether an element before it beside it has its name."""
-    above = node.parent
-    beside = above.of(node.tag) if above is not None else ()
-    return any(one.name == node.name and one.row < node.row for one in beside)
+def _has_repeats(document: Document) -> bool:
+    """Whether two rows beside one another may have a name: of one tag, or one by chance.
+
+    Rows that state the same are looked at once; this is done for every file that is read.
+    """
+    are_named = list(map(_NAMED.__contains__, document.tags))
+    alike = list(compress(document.alike, are_named))
+    stating = set(alike)
+    stated = map(document.attributes.__getitem__, stating)
+    names = dict(zip(stating, map(dict.get, stated, repeat("Name")), strict=True))
+    beside = zip(compress(document.parents, are_named), map(names.get, alike), strict=True)
+    return len(set(beside)) < len(alike)
+
+
+def _key(document: Document, row: int) -> str:
+    return f"{document.tags[row]} {document.attributes[row].get('Name', '')}"
+
+
+def _repeated(document: Document) -> Iterator[int]:
+    found = set()
+    for row, (tag, parent) in enumerate(zip(document.tags, document.parents, strict=True)):
+        if tag in _NAMED:
+            key = (parent, _key(document, row))
+            if key in found and not is_free(document, row):
+                yield row
+            found.add(key)
 
 
 def declare(context: Context, document: Document, node: Node, file: str) -> None:

@@ -54,7 +54,7 @@ def _attributes(context: Context, document: Document) -> None:
     for row in _rows(document, unknown) if unknown else ():
         tag = document.tags[row]
         for name in unknown[tag, tuple(document.attributes[row])]:
-            if not _is_free(document, row):
+            if not is_free(document, row):
                 found.setdefault((tag, name), []).append(row)
     for (tag, name), rows in found.items():
         for row in rows:
@@ -100,7 +100,7 @@ def _is_own(name: str) -> bool:
     return SEPARATOR not in name and not name.startswith("xmlns")
 
 
-def _is_free(document: Document, row: int) -> bool:
+def is_free(document: Document, row: int) -> bool:
     """Whether a row lies in what may hold any XML, or in what CAEX does not know."""
     above = document.parents[row]
     while above >= 0:
@@ -145,7 +145,7 @@ def _has_stray_of_rows(document: Document) -> bool:
     """Whether a row has text of its own and is neither free nor an element that holds text."""
     own, tags = document.texts[""].items(), document.tags
     heard = (row for row, text in own if tags[row] in _SILENT and text.strip())
-    return any(not _is_free(document, row) for row in heard)
+    return any(not is_free(document, row) for row in heard)
 
 
 _SILENT = frozenset(ATTRIBUTES) - TEXTS

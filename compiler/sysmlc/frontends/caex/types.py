@@ -101,10 +101,10 @@ class Types:
         """A standard library is provided; it is asked where a file has none of its name."""
         self._standard[family, library] = document.name
 
-    def add(self, type: Type) -> bool:
+    def add(self, type: Type) -> None:
         """Know a class under its path; of two with the same path the first counts."""
         key = (type.document.name, type.family, type.path)
-        return self._by_path.setdefault(key, type) is type
+        self._by_path.setdefault(key, type)
 
     def find(self, text: str, family: Family, document: Document) -> Type | Missing:
         """The class that a path means in a file."""
