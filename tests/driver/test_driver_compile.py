@@ -1,6 +1,7 @@
 """One compile: inputs, findings in order, withheld outputs, faults that are no tracebacks."""
 
 import os
+import re
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -12,7 +13,7 @@ from driver_fakes import FAULTY, PLANT, UNNAMED_PORT, Outlines, Ports, compiled
 from sysmlc.config import Config
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
-from sysmlc.driver import Observer, Request, compile_model
+from sysmlc.driver import Observer, Request, compile_model, faults, inputs
 from sysmlc.output import Output
 from sysmlc.sources import whole
 
@@ -147,6 +148,10 @@ def test_in_a_folder_it_is_a_warning_and_other_files_do_not_matter(tmp_path, pla
 def test_a_folder_without_a_model_is_an_error(tmp_path):
     made = compiled(tmp_path)
     assert (codes(made), made.exit_code()) == (["SM173"], 1)
+    (found,) = made.diagnostics
+    assert found.message == f"'{tmp_path.name}' holds no model"
+    named = set(re.findall(r"\.\w+", faults.NOTHING_TO_COMPILE.why))
+    assert named == set(inputs.SUFFIXES)
 
 
 def test_our_own_outputs_in_a_folder_are_no_inputs(tmp_path, plant):

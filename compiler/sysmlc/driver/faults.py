@@ -86,7 +86,8 @@ NOTHING_TO_COMPILE = rule(
     Severity.ERROR,
     "'{path}' holds no model",
     why="A folder is searched for files whose names end as models' do "
-    "(.uml, .xmi, .xml, .mdxml, .mdzip, .ir); there is none.",
+    "(.uml, .xmi, .xml, .mdxml, .mdzip, .aml, .amlx, .caex, .sysml, .kerml, .sysmlx, .kermlx, "
+    ".kpar, .ir); there is none.",
     help="name a file, or another folder",
     wrong="models/readme.txt",
     right="models/plant.uml",

@@ -93,7 +93,8 @@ def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:
             found.append(path)
     if not found:
         name = name_of(folder, root)
-        sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=name)
+        shown = folder.resolve().name if name == "." else name
+        sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=shown)
     return found
 
 
