@@ -96,7 +96,7 @@ def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
 def _refine(made: "list[Compilation]") -> None:
     """Add what overlays say, when both models have one: else the overlay were the difference."""
     from sysmlc.diagnostics import Sink
-    from sysmlc.overlay.model import Refinement
+    from sysmlc.overlay import Refinement
     from sysmlc.passes.overlay import Overlay
 
     if all(one.graph.derived(Refinement) for one in made):

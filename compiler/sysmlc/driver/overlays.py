@@ -16,7 +16,7 @@ from sysmlc.sources.whole import read_whole
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
-    from sysmlc.overlay.model import Refinement
+    from sysmlc.overlay import Refinement
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def load_overlay(path: Path, root: Path, sink: Sink, *, is_named: bool) -> Loade
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return None
-    from sysmlc.overlay.reading import read
+    from sysmlc.overlay import read
 
     return LoadedOverlay(path, source, read(source, sink))
 
@@ -57,7 +57,7 @@ def store_all(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
     """Keep what overlays say for the pass ``overlay``."""
     said = [laid.refinement for laid in overlays if laid.refinement is not None]
     if said:
-        from sysmlc.overlay.model import Refinement
+        from sysmlc.overlay import Refinement
 
         graph.store(Refinement, said)
 
@@ -66,6 +66,6 @@ def models_of(overlay: LoadedOverlay) -> list[str]:
     """Files that the terms of an overlay name, each once, as it writes them."""
     if overlay.refinement is None:
         return []
-    from sysmlc.overlay.reading import files_of
+    from sysmlc.overlay import files_of
 
     return files_of(overlay.refinement)
