@@ -61,6 +61,24 @@ def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, what):
     assert "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").codes()
 
 
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        ("state def A { state a; then action z; state b; }", "Transition"),
+        ("action def A { action a; then part z; action b; }", "ControlFlow"),
+    ],
+)
+def test_sm480_what_leads_to_no_step_does_not_lead_to_the_next_one(body, name):
+    reading = read(f"package P {{ {body} }}")
+    told = [one.message for one in reading.sink if one.rule.code == "SM480"]
+    assert told == ["succession as usage is not read (1 in the unit, with all that they own)"]
+    assert [one for one in reading.graph if one.kind == name] == []
+    nearly = body.replace("action z", "state z").replace("part z", "action z")
+    reading = read(f"package P {{ {nearly} }}")
+    assert len([one for one in reading.graph if one.kind == name]) == 1
+    assert "SM480" not in reading.codes()
+
+
 def test_aliases_of_states_are_in_the_graph_wherever_they_stand():
     plain = "state def A { entry; then a; state a; alias b for a; alias <c> for a; }"
     beside = "state def B parallel { state r { state s; alias d for s; } alias e for r; }"

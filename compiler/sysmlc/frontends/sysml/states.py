@@ -214,6 +214,9 @@ def _vertices(low: "Lowering", node: Node, region: Element) -> None:
                 waiting.append((source or previous, one))
             else:
                 _step(low, one, region, source or previous, target)
+        elif waiting:
+            # A `then` stands before its target, and only states are vertices.
+            low.unsupported(waiting.pop()[1])
 
 
 def _succession(node: Node) -> tuple[Reference | None, Reference | None]:

@@ -49,6 +49,9 @@ def steps(low: "Lowering", found: Iterable[Node], owner: Element) -> None:
             low.lower(node, owner)
             if node.kind in _STEPS and "direction" not in node.facts:
                 _arrive(low, node, run)
+            elif run.waiting:
+                # A `then` stands before its target, which is no step of the graph.
+                low.unsupported(run.waiting.pop()[1])
 
 
 def _arrive(low: "Lowering", node: Node, run: _Run) -> None:
