@@ -6,13 +6,8 @@ from sysmlc.language.names import Model
 
 def check(model: Model, sink: Sink) -> None:
     """Report what in the documents of the model breaks a constraint of the specification."""
-    from sysmlc.language.checks import access, families, members, references, single, typing
+    from sysmlc.language.checks import families
 
     for document in model.documents:
         for node in document.root.walk():
-            typing.check(model, document, node, sink)
-            single.check(model, document, node, sink)
-            members.check(model, document, node, sink)
-            references.check(model, document, node, sink)
-            access.check(model, document, node, sink)
             families.check(model, document, node, sink)

@@ -15,12 +15,18 @@ _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 _FEATURELESS = kinds_of("EnumerationDefinition") | kinds_of("Namespace") - TYPES
 
 
+KINDS = _CONNECTORS | {"FeatureReferenceExpression"}
+"""Metaclasses that refer to features."""
+
+
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report features that nothing around the connector or expression has."""
     uses = list(_uses(node))
     if not uses:
         return
     scopes = [node, *_around(node)]
+    if len({id(feature.owner) for *_, feature in uses}) == 1 and uses[0][2].owner in scopes:
+        return
     if not any(all(_has(model, scope, feature) for *_, feature in uses) for scope in scopes):
         far = [one for one in uses if not any(_has(model, scope, one[2]) for scope in scopes)]
         for user, relation, feature in far or _outside(model, scopes[1], uses):

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.checks.found import DECLARED_TYPES, Found, error, name_of, written
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES, TYPES
 from sysmlc.language.tree import Node, Relation
 
 ALONE = error(
@@ -69,6 +68,7 @@ _MADE = {
 }
 _CONJUGATION = frozenset({"Conjugation"})
 _REFERENCE = frozenset({"ReferenceSubsetting"})
+_SPECIALIZATIONS = kinds_of("Specialization")
 _MULTIPLICITIES = kinds_of("Multiplicity")
 _SPECIFIC = frozenset({"specific", "subclassifier", "subsettingFeature", "redefiningFeature"})
 _GENERAL = frozenset({"general", "superclassifier", "subsettedFeature", "redefinedFeature"})
@@ -111,10 +111,9 @@ def check_multiplicity(model: Model, node: Node) -> Iterator[Found]:
 
 def check_conjugate(model: Model, node: Node) -> Iterator[Found]:
     """Report what a conjugated type specialises."""
-    if any(True for _ in written(node, _CONJUGATION)):
-        for relation, target in written(node, kinds_of("Specialization")):
-            facts = {"name": name_of(model, node), "general": name_of(model, target)}
-            yield Found(CONJUGATED, relation.reference.start, facts)
+    for relation, target in written(node, _SPECIALIZATIONS):
+        facts = {"name": name_of(model, node), "general": name_of(model, target)}
+        yield Found(CONJUGATED, relation.reference.start, facts)
 
 
 def check_apart(model: Model, node: Node) -> Iterator[Found]:
@@ -126,10 +125,10 @@ def check_apart(model: Model, node: Node) -> Iterator[Found]:
                 yield Found(CONJUGATED, relation.reference.start, facts)
 
 
-CHECKS = (
-    (TYPES, check_operands),
-    (FEATURES, check_reference),
-    (TYPES, check_multiplicity),
-    (TYPES, check_conjugate),
-    (kinds_of("Specialization"), check_apart),
+CHECKS = ((DECLARED_TYPES, check_multiplicity),)
+BY_RELATION = (
+    (frozenset(_MADE), check_operands),
+    (_REFERENCE, check_reference),
+    (_CONJUGATION, check_conjugate),
+    (_SPECIFIC, check_apart),
 )

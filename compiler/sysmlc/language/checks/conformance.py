@@ -2,12 +2,11 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.language.checks.found import DECLARED_FEATURES, Found, error, name_of, written
 from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
 from sysmlc.language.composition import USAGES, is_end
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node
@@ -69,7 +68,7 @@ OF_SAME_OWNER = error(
 _SUBSETTINGS = kinds_of("Subsetting")
 _TURNING = frozenset({"Conjugation", "ConjugatedPortTyping"})
 _TURNED = {"in": "out", "out": "in"}
-_PLAIN = FEATURES - USAGES
+_PLAIN = DECLARED_FEATURES - USAGES
 
 
 def check(model: Model, node: Node) -> Iterator[Found]:
@@ -152,4 +151,5 @@ def _said(feature: Node) -> str | None:
     return str(said) if said is not None else "out" if is_result else None
 
 
-CHECKS = ((FEATURES, check), (_PLAIN, check_direction))
+CHECKS = ((_PLAIN, check_direction),)
+BY_RELATION = ((_SUBSETTINGS, check),)

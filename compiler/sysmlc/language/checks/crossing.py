@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from sysmlc.language.checks.found import Found, error, name_of, written
 from sysmlc.language.composition import is_end
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node, Reference
 
@@ -57,7 +56,8 @@ OTHER_OWN = error(
     "validateFeatureOwnedCrossFeature).",
     "cross '{name}', or leave it out",
     "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
-    "    end mine [0..1] feature holder : Gate crosses held.gate;\n    end feature held : Lock;\n}\n",
+    "    end mine [0..1] feature holder : Gate crosses held.gate;\n"
+    "    end feature held : Lock;\n}\n",
     "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
     "    end mine [0..1] feature holder : Gate;\n    end feature held : Lock;\n}\n",
 )
@@ -109,4 +109,4 @@ def _own(node: Node) -> list[Node]:
     return [one for one in members if one.kind == "Feature"]
 
 
-CHECKS = ((FEATURES, check),)
+BY_RELATION = ((_CROSSES, check),)

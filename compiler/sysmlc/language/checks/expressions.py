@@ -59,7 +59,7 @@ def _is_elsewhere(model: Model, node: Node, target: Node) -> bool:
     owner = owning_type(target)
     if source is None or owner is None or owner.kind not in FEATURES:
         return False
-    return owner not in model.supers(source)
+    return owner not in model.supers_of(source)
 
 
 CHECKS = ((_REFERRING & kinds_of("Expression"), check),)

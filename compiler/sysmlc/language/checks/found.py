@@ -4,7 +4,9 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
+from sysmlc.language.names.contents import FEATURES, TYPES
 from sysmlc.language.tree import Node, Relation
 
 
@@ -16,6 +18,14 @@ class Found(NamedTuple):
     facts: dict[str, str]
 
 
+_WITHOUT_DECLARATION = (
+    kinds_of("InstantiationExpression")
+    | kinds_of("LiteralExpression")
+    | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
+)
+DECLARED_TYPES = TYPES - _WITHOUT_DECLARATION
+DECLARED_FEATURES = FEATURES - _WITHOUT_DECLARATION
+"""Types and features that somebody declares: not those that only make up an expression."""
 Check = Callable[[Model, Node], Iterable[Found]]
 """What is broken by one node; a check is called for the metaclasses that it is entered for."""
 

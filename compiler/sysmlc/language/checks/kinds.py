@@ -71,4 +71,4 @@ def check_variation(model: Model, node: Node) -> Iterator[Found]:
             yield Found(VARIATION_OF_VARIATION, relation.reference.start, facts)
 
 
-CHECKS = ((_DATA | _CLASSES, check), (kinds_of("Definition"), check_variation))
+BY_RELATION = ((_SUBCLASSIFICATION, check), (_SUBCLASSIFICATION, check_variation))

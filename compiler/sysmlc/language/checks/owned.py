@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.language.checks.found import DECLARED_FEATURES, DECLARED_TYPES, Found, error, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node
 
@@ -50,7 +49,7 @@ ROOT_IMPORT = error(
     "package Plant { part gate; }\nprivate import Plant::*;\n",
 )
 
-_FUNCTIONS = kinds_of("Function") | kinds_of("Expression")
+_FUNCTIONS = kinds_of("Function") | (kinds_of("Expression") & DECLARED_TYPES)
 _IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
 
 
@@ -91,4 +90,4 @@ def check_import(model: Model, node: Node) -> Iterator[Found]:
         yield Found(ROOT_IMPORT, node.start, {"name": str(node.relations[0].reference)})
 
 
-CHECKS = ((_FUNCTIONS, check_result), (FEATURES, check_variable), (_IMPORTS, check_import))
+CHECKS = ((_FUNCTIONS, check_result), (DECLARED_FEATURES, check_variable), (_IMPORTS, check_import))

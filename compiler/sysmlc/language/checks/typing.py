@@ -77,6 +77,10 @@ _BY_KIND = _by_kind()
 _TYPING = frozenset({"FeatureTyping", "Subsetting", "ReferenceSubsetting", "Redefinition"})
 
 
+KINDS = frozenset(_BY_KIND)
+"""Metaclasses of usages that are checked."""
+
+
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report a usage whose types are not what its kind wants."""
     wanted = _BY_KIND.get(node.kind)
