@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
+from sysmlc.ir.ordering import in_topological_order
 from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, declared, graphs
 from sysmlc.recipe.derive import Tables
@@ -186,25 +187,17 @@ def _definitely_set(graph: FlowGraph) -> dict[str, set[str]]:
     start |= {one.name for one in graph.variables if one.value is not None}
     nodes = {node.id: node for node in graph.nodes}
     before: dict[str, list[str]] = {}
-    for source, target in forward_edges(graph):
+    pairs = forward_edges(graph)
+    for source, target in pairs:
         before.setdefault(target, []).append(source)
     done: dict[str, set[str]] = {}
-    for id in _in_order(list(nodes), before):
+    for id in in_topological_order(nodes, pairs):
         ways = [done[one] for one in before.get(id, ())]
         joined = nodes[id].kind in ("join", "service", "function")
         have = set.union(*ways) if ways and joined else set.intersection(*ways) if ways else start
         done[f"<{id}"] = have
         done[id] = have | _sets(nodes[id])
     return done
-
-
-def _in_order(ids: list[str], before: Mapping[str, list[str]]) -> Iterator[str]:
-    import networkx
-
-    graph: networkx.DiGraph[str] = networkx.DiGraph()
-    graph.add_nodes_from(ids)
-    graph.add_edges_from((a, b) for b, sources in before.items() for a in sources)
-    yield from networkx.lexicographical_topological_sort(graph)
 
 
 def _sets(node: Node) -> set[str]:

@@ -1,13 +1,11 @@
 """Paths, cycles and times of a flow graph."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
 
+from sysmlc.ir.components import strong_components
+from sysmlc.ir.ordering import in_topological_order
 from sysmlc.recipe.model import FlowGraph, Node, Range
 from sysmlc.values import dataclass
-
-if TYPE_CHECKING:
-    from networkx import DiGraph
 
 Cost = Callable[[Node], Range | None]
 
@@ -39,17 +37,15 @@ def entries(graph: FlowGraph, component: Iterable[str]) -> list[str]:
 
 def cycles(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> list[list[str]]:
     """Strongly connected parts that hold a cycle, each in the order of ``nodes``."""
-    import networkx
-
-    ordered = list(nodes)
-    part: DiGraph[str] = networkx.DiGraph()
-    part.add_nodes_from(ordered)
-    part.add_edges_from(edges)
-    rank = {id: number for number, id in enumerate(ordered)}
+    following: dict[str, dict[str, None]] = {id: {} for id in nodes}
+    for source, target in edges:
+        following.setdefault(source, {})[target] = None
+        following.setdefault(target, {})
+    rank = {id: number for number, id in enumerate(following)}
     found = [
         sorted(component, key=rank.__getitem__)
-        for component in networkx.strongly_connected_components(part)
-        if len(component) > 1 or part.has_edge(*[next(iter(component))] * 2)
+        for component in strong_components(following)
+        if len(component) > 1 or component[0] in following[component[0]]
     ]
     return sorted(found, key=lambda component: rank[component[0]])
 
@@ -69,12 +65,7 @@ def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
 
 def in_order(graph: FlowGraph) -> list[str]:
     """Ids of the nodes, each after those that lead to it; where that leaves a choice, sorted."""
-    import networkx
-
-    order: DiGraph[str] = networkx.DiGraph()
-    order.add_nodes_from(sorted(node.id for node in graph.nodes))
-    order.add_edges_from(forward_edges(graph))
-    return list(networkx.lexicographical_topological_sort(order))
+    return list(in_topological_order((node.id for node in graph.nodes), forward_edges(graph)))
 
 
 # -- times -------------------------------------------------------------------------------------
@@ -171,17 +162,13 @@ class _Clock:
 
 def _parts(ids: Iterable[str], pairs: _Pairs) -> Iterator[tuple[list[str], bool]]:
     """Cycles and single nodes, each after what leads to it, and whether it is a cycle."""
-    import networkx
-
     ordered = list(ids)
     parts = {f"cycle {number}": part for number, part in enumerate(cycles(ordered, pairs))}
     home = {id: name for name, part in parts.items() for id in part}
     parts.update({f"node {id}": [id] for id in ordered if id not in home})
     home.update({id: f"node {id}" for id in ordered if id not in home})
-    order: DiGraph[str] = networkx.DiGraph()
-    order.add_nodes_from(parts)
-    order.add_edges_from((home[a], home[b]) for a, b in pairs if home[a] != home[b])
-    for name in networkx.lexicographical_topological_sort(order):
+    between = ((home[a], home[b]) for a, b in pairs if home[a] != home[b])
+    for name in in_topological_order(parts, between):
         yield parts[name], name.startswith("cycle ")
 
 

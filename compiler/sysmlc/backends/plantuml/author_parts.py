@@ -6,7 +6,7 @@ from dataclasses import field
 from sysmlc.backends.plantuml import ibd, labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author_choice import Choice
-from sysmlc.backends.plantuml.connections import Connection, Path, connections
+from sysmlc.backends.plantuml.connections import Connection, Path, connections, free_flows
 from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
@@ -128,7 +128,7 @@ class _Drawing:
         return [(), *typed] if in_frame or not typed else typed
 
     def _of(self, owner: Element, prefix: _Ids) -> Iterator[Line]:
-        for one in connections(self.choice.graph, owner):
+        for one in connections(self.choice.graph, owner, free_flows(self.choice.graph)):
             if not self.choice.ids.isdisjoint(one.shows):
                 source, target = self._end(prefix, one.source), self._end(prefix, one.target)
                 if source and target:

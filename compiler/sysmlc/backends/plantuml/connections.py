@@ -59,14 +59,20 @@ class Connection:
         return stack([keyword_label(self.label), *rows])
 
 
-def connections(graph: Graph, block: Element) -> list[Connection]:
+FreeFlows = dict[str, list[tuple[Element, Element, Element]]]
+"""Flow, source and target by the id of the owner of both."""
+
+
+def connections(graph: Graph, block: Element, flows: FreeFlows) -> list[Connection]:
     """Connectors of the block; item flows without a connector and allocations between features.
 
+    ``flows`` are those of the whole graph (``free_flows``), for they are few and blocks are many.
     What is bound to a constraint parameter stands in the parametric diagram.
     """
     owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
     drawn = [made for item in owned for made in _connector(graph, item)]
-    return [*drawn, *_free_flows(graph, block), *_allocations(graph, block)]
+    free = [_free_flow(graph, *ends) for ends in flows.get(block.id, ())]
+    return [*drawn, *free, *_allocations(graph, block)]
 
 
 def _connector(graph: Graph, connector: Element) -> Iterator[Connection]:
@@ -188,16 +194,17 @@ def _fits(graph: Graph, path: Path, named: set[str]) -> int:
     return 1 if named & types else 0
 
 
-def _free_flows(graph: Graph, block: Element) -> Iterator[Connection]:
-    """Item flows that no connector realises, between two features of this block."""
-    own = {item.id: item for item in graph.owned(block)}
+def free_flows(graph: Graph) -> FreeFlows:
+    """Item flows that no connector realises, by what owns both the features that they join."""
+    found: FreeFlows = {}
     for flow in graph.of_kind(Kind.ITEM_FLOW):
         if graph.targets(flow, Edge.REALIZING):
             continue
         for source in graph.targets(flow, Edge.FLOW_SOURCE):
             for target in graph.targets(flow, Edge.FLOW_TARGET):
-                if source.id in own and target.id in own:
-                    yield _free_flow(graph, flow, source, target)
+                if source.owner is not None and source.owner == target.owner:
+                    found.setdefault(source.owner, []).append((flow, source, target))
+    return found
 
 
 def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:

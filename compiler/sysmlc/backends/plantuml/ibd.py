@@ -8,7 +8,7 @@ from dataclasses import field
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.connections import Connection, Path, connections
+from sysmlc.backends.plantuml.connections import Connection, Path, connections, free_flows
 from sysmlc.backends.plantuml.domains import in_order
 from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.sides import sides
@@ -31,8 +31,9 @@ _TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All internal block diagrams, in the order of the model."""
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
+    flows = free_flows(graph)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        found = connections(graph, block)
+        found = connections(graph, block, flows)
         if found and not block.attrs.get("external"):
             yield from _of_block(graph, block, found)
 
