@@ -5,7 +5,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from sysmlc import resources
+from sysmlc import cache, resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.suggest import did_you_mean
@@ -110,12 +110,25 @@ def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _check(file: Path, text: str, table: object) -> None:
+    """Raises ConfigError. What was right before is not checked: jsonschema imports for 0.1 s."""
+    from hashlib import sha256
+
+    schema = resources.text("metamodels", "sysmlc-config.schema.json")
+    store = cache.default()
+    key = sha256(f"{len(schema)}:{schema}{file.name}:{text}".encode()).hexdigest()
+    if store is None or store.get(key) is None:
+        _validate(file, text, table, schema)
+        if store is not None:
+            store.put(key, b"right")
+
+
+def _validate(file: Path, text: str, table: object, schema: str) -> None:
     import json
 
     from jsonschema import Draft202012Validator
 
-    schema = json.loads(resources.text("metamodels", "sysmlc-config.schema.json"))
-    errors = sorted(Draft202012Validator(schema).iter_errors(table), key=lambda e: list(e.path))
+    validator = Draft202012Validator(json.loads(schema))
+    errors = sorted(validator.iter_errors(table), key=lambda e: list(e.path))
     if errors:
         raise ConfigError(_explained(file, text, errors[0]))
 
