@@ -1,6 +1,6 @@
 """The sink that takes the findings of one compilation."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
@@ -18,7 +18,15 @@ class Sink:
 
     def __init__(self, severities: Mapping[str, Severity | None] | None = None) -> None:
         self._severities = dict(severities or {})
+        self._settled: dict[str, Mapping[str, Severity | None]] = {}
         self._found: dict[tuple[str, str, Subject], Diagnostic] = {}
+
+    def settle(self, files: Iterable[str], severities: Mapping[str, Severity | None]) -> None:
+        """Say by code how much rules matter in files whose language rules otherwise.
+
+        What the language's own checks answer for is silent (None). The project has the last word.
+        """
+        self._settled.update(dict.fromkeys(files, severities))
 
     def report(
         self,
@@ -30,7 +38,7 @@ class Sink:
         **facts: object,
     ) -> None:
         """Report ``rule`` about ``subject``; ``facts`` fill the rule's phrase and its help."""
-        severity = self._severity(rule)
+        severity = self._severity(rule, subject)
         if severity is None:
             return
         message = rule.phrase.format(**facts)
@@ -42,10 +50,12 @@ class Sink:
         found = Diagnostic(rule, severity, message, subject, told, advice)
         self._found.setdefault((rule.code, message, subject), found)
 
-    def _severity(self, rule: Rule) -> Severity | None:
+    def _severity(self, rule: Rule, subject: Subject) -> Severity | None:
         for key in (rule.code, rule.name):
             if key in self._severities:
                 return self._severities[key]
+        if self._settled and subject.place is not None:
+            return self._settled.get(subject.place.file, {}).get(rule.code, rule.severity)
         return rule.severity
 
     def __iter__(self) -> Iterator[Diagnostic]:

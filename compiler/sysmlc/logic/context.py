@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
+from sysmlc.logic.context_objects import of_objects
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expression import (
@@ -79,18 +80,21 @@ class Context:
 
 
 def context_of(
-    graph: Graph, classifier: Element | None, assumed: tuple[int, int] = (0, 15)
+    graph: Graph,
+    classifier: Element | None,
+    assumed: tuple[int, int] = (0, 15),
+    within: Element | None = None,
 ) -> Context:
     """The context that a classifier gives; empty without one. A behaviour gives its parameters.
 
-    ``assumed`` is the range of Integers that have none.
+    ``assumed`` is the range of Integers that have none; ``within`` a behaviour of the classifier,
+    whose own names go before.
     """
     if classifier is None:
         return Context("", {}, _literals(graph))
-    known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
-    found = [one for one in known if one.name and _is_value(one)]
-    named = {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
-    named |= _of_arguments(graph, [one for one in found if one.kind is Kind.PARAMETER])
+    named = _named(graph, classifier) | of_objects(graph, classifier)
+    if within is not None and within is not classifier:
+        named |= _named(graph, within) | of_objects(graph, within)
     names = sorted(named, key=lambda name: (named[name].ordinal, name))
     variables = unique(names, "value", "event", "none")
     features = {
@@ -100,16 +104,10 @@ def context_of(
     return Context(classifier.name, features, _literals(graph))
 
 
-def _of_arguments(graph: Graph, parameters: list[Element]) -> dict[str, Element]:
-    """Values of the objects that a behaviour is given, by dotted names (``machine.busy``)."""
-    found = {}
-    for parameter in parameters:
-        type_ = query.type_of(graph, parameter)
-        if type_ is not None and type_.kind in (Kind.CLASS, Kind.COMPONENT):
-            for one in (*query.features(graph, type_), *_inherited(graph, type_)):
-                if one.kind is Kind.PROPERTY and one.role == "value":
-                    found[f"{parameter.name}.{one.name}"] = one
-    return found
+def _named(graph: Graph, classifier: Element) -> dict[str, Element]:
+    known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
+    found = [one for one in known if one.name and _is_value(one)]
+    return {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
 
 
 def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:

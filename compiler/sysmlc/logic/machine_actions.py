@@ -21,6 +21,7 @@ from sysmlc.logic.expression import (
     parse_effect,
     parse_expression,
     print_expression,
+    print_statement,
 )
 from sysmlc.logic.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
@@ -238,7 +239,9 @@ def _behaviour(reading: Reading, behaviour: Element, edge: Edge) -> list[Action]
         statements = parse_effect(body)
     except ExpressionError:
         return [_opaque(reading, body, behaviour)]
-    return [_action(reading, statement, body, behaviour) for statement in statements]
+    texts = [body] if len(statements) == 1 else map(print_statement, statements)
+    both = zip(statements, texts, strict=True)
+    return [_action(reading, statement, text, behaviour) for statement, text in both]
 
 
 def _opaque(reading: Reading, text: str, behaviour: Element) -> Raise:

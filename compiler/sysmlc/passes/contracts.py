@@ -91,8 +91,25 @@ def _told_apart(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Con
         name = contract.component
         seen[name] += 1
         if totals[name] > 1:
-            subject = graph.subject(graph[contract.origin])
-            sink.report(SAME_COMPONENT, subject, count=totals[name], component=name)
+            _report(graph, contract, [one for one in contracts if one.component == name], sink)
         number = seen[name]
         made.append(contract if number == 1 else replace(contract, component=f"{name}#{number}"))
     return made
+
+
+def _report(graph: Graph, contract: Contract, same: list[Contract], sink: Sink) -> None:
+    """Tell that a component is not the only one of its name, with the files of the others."""
+    behaviour, name = graph[contract.origin], contract.component
+    files = dict.fromkeys(graph[one.origin].source for one in same)
+    files.pop(behaviour.source, None)
+    sink.report(
+        SAME_COMPONENT,
+        graph.subject(behaviour),
+        notes=tuple(f"another '{name}' is in {file}" for file in files),
+        help=_IN_FILES if files else "",
+        count=len(same),
+        component=name,
+    )
+
+
+_IN_FILES = "packages of two files have one name: rename one, or compile the files one by one"

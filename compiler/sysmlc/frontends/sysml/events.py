@@ -68,7 +68,7 @@ def _received(low: "Lowering", made: Element, payload: Node) -> None:
     elif names == ["Base::Anything"] or not payload.relations:
         low.set(made, subkind="any")
     else:
-        low.set(made, subkind="signal")
+        low.set(made, subkind="signal", payload=nodes.name_of(payload))
         low.later(lambda: low.lead_all(Edge.TYPED_BY, made, types))
         low.later(lambda: _by_kind(low, made))
 

@@ -57,6 +57,7 @@ class Lowering:
         self._generals: list[tuple[Element, Element]] = []
         self._waits = False
         self._last: list[Callable[[], None]] = []
+        self._scalars: dict[str, list[tuple[str, Kind]]] = {}
         self._paths: dict[str, str] = {}
         self._taken: dict[str, int] = {}
         self._named: dict[str, str] = {}
@@ -224,8 +225,17 @@ class Lowering:
         href = stubs.href_of(name)
         if name in stubs.SCALARS:
             self.graph.refer(Pending(edge, source.id, href, kind, name))
+            if edge is Edge.TYPED_BY:
+                self._scalars.setdefault(source.id, []).append((name, kind))
         else:
             self.graph.refer(Pending(edge, source.id, self._stub(href, kind, name), kind, name))
+
+    def share_types(self, known: Element, other: Element) -> None:
+        """Give an element the types of another one, those of the library too."""
+        for type_ in self.graph.targets(known, Edge.TYPED_BY):
+            self.graph.connect(Edge.TYPED_BY, other, type_)
+        for name, kind in self._scalars.get(known.id, ()):
+            self.lead_to(Edge.TYPED_BY, other, name, kind)
 
     def _stub(self, href: str, kind: Kind, name: str) -> str:
         """Id of the element that stands for one of the standard library."""

@@ -104,8 +104,7 @@ def own_parameter(low: "Lowering", parameter_: Element, activity: Element) -> El
     low.set(made, direction=parameter_.attrs.get("direction"))
     low.set(made, multiplicity=parameter_.attrs.get("multiplicity"))
     low.graph.connect(Edge.REDEFINES, made, parameter_)
-    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
-        low.graph.connect(Edge.TYPED_BY, made, type_)
+    low.share_types(parameter_, made)
     return made
 
 
@@ -118,8 +117,7 @@ def node_of(low: "Lowering", parameter_: Element) -> Element:
     made = low.beside(parameter_, Kind.ACTIVITY_PARAMETER, parameter_.name)
     low.set(made, direction="out" if direction == "return" else direction)
     low.graph.connect(Edge.REFERENCES, made, parameter_)
-    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
-        low.graph.connect(Edge.TYPED_BY, made, type_)
+    low.share_types(parameter_, made)
     return made
 
 
@@ -133,6 +131,5 @@ def pin_of(low: "Lowering", action: Element, parameter_: Element) -> Element:
     low.set(made, direction="out" if is_out else "in")
     low.set(made, subkind=_subkind(action, "out" if is_out else "in"))
     low.set(made, multiplicity=parameter_.attrs.get("multiplicity"))
-    for type_ in low.graph.targets(parameter_, Edge.TYPED_BY):
-        low.graph.connect(Edge.TYPED_BY, made, type_)
+    low.share_types(parameter_, made)
     return made

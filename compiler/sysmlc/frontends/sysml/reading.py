@@ -9,6 +9,7 @@ from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
 from sysmlc.frontends.sysml.libraries import FILES
 from sysmlc.frontends.sysml.rules import NO_LIBRARY
+from sysmlc.frontends.sysml.settled import settle
 from sysmlc.frontends.sysml.unit import lower
 from sysmlc.ir import Graph
 from sysmlc.language.tree import Document
@@ -53,6 +54,7 @@ def read(
     ours += _missing(own, ours, cache)
     model = resolve([*own, *ours], found, sink)
     check(model, sink)
+    settle(own, sink)
     graph.store(Model, [*graph.derived(Model), model])
     lower(own, model, graph, sink, coverage)
 

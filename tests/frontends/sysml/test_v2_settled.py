@@ -1,0 +1,153 @@
+"""What rules for models in SysML v1 say of valid text in SysML v2, and contracts of its names."""
+
+from reading_v2 import FRONT, read
+
+from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, catalogue
+from sysmlc.frontends.sysml.settled import SEVERITIES
+from sysmlc.ir import Graph
+from sysmlc.logic.contract import Contract
+from sysmlc.passes import pipeline
+from sysmlc.sources import Source
+
+STEPS = ("resolve", "inherit", "classify", "ports", "flows", "behaviours", "activities")
+ALL = (*STEPS, "contracts")
+VALID = """
+package P {
+    enum def Colour { enum red; enum blue; }
+    attribute def Paint;
+    enum def Special :> Paint { enum gold; }
+    abstract action def Work { in speed : ScalarValues::Integer; }
+    requirement def Quiet { doc /* Be quiet. */ }
+    part def Pump { port p; port q; flow from p to q; }
+    part one : Pump { port redefines p; }
+    part def Plant { part pump : Pump; perform action run : Work; }
+}
+"""
+
+
+def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
+    assert read(VALID, passes=ALL).codes() == []
+    assert SEVERITIES["SM202"] is None
+
+
+def test_the_project_has_the_last_word():
+    graph, sink = Graph(), Sink({"SM214": Severity.WARNING})
+    FRONT.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())
+    pipeline.pipeline(("resolve", "inherit", "classify")).run(graph, sink)
+    assert [one.rule.code for one in sink] == ["SM214"]
+
+
+def test_other_files_are_judged_as_before():
+    sink, rule = Sink(), catalogue()["SM214"]
+    sink.settle(["model.sysml"], SEVERITIES)
+    sink.report(rule, Subject("a", place=Place("model.sysml")), requirement="a")
+    sink.report(rule, Subject("b", place=Place("model.uml")), requirement="b")
+    sink.report(rule, Subject("c"), requirement="c")
+    assert [one.subject.name for one in sink] == ["b", "c"]
+
+
+def contract(text, component):
+    reading = read(text, passes=ALL)
+    (found,) = [one for one in reading.graph.derived(Contract) if one.component == component]
+    names = {f"{one.owner} {one.name}" for one in found.variables}
+    return names, reading.codes()
+
+
+def test_outputs_of_steps_are_variables_of_the_contract():
+    names, codes = contract(
+        """
+package P {
+    private import ScalarValues::*;
+    item def Picture { attribute sharp : Boolean; }
+    action def Look { out seen : Boolean; out picture : Picture; }
+    action def Check {
+        first start;
+        then action look : Look;
+        then decide;
+            if look.seen and look.picture.sharp then keep;
+            else done;
+        action keep;
+        then done;
+    }
+}""",
+        "P::Check",
+    )
+    assert {"env look_seen", "env look_picture_sharp"} <= names
+    assert "SM458" not in codes
+
+
+def test_a_name_that_is_no_output_of_the_step_stays_plain_words():
+    names, codes = contract(
+        """
+package P {
+    action def Look { out mass : ScalarValues::Real; }
+    action def Check {
+        first start;
+        then action look : Look;
+        then decide;
+            if look.mass > 1.5 then keep;
+            else done;
+        action keep;
+        then done;
+    }
+}""",
+        "P::Check",
+    )
+    assert "SM458" in codes
+    assert "env look_mass" not in names
+
+
+MACHINE = """
+package P {
+    private import ScalarValues::*;
+    part def Machine { attribute busy : Boolean; attribute text : String; attribute age : Real; }
+    item def Fault { attribute severe : Boolean; }
+    action def Reset { in hard : Boolean; out accepted : Boolean; }
+    part def Cell {
+        attribute def Nothing;
+        exhibit state run {
+            in machine : Machine;
+            entry; then idle;
+            state idle;
+            state broken;
+            transition first idle accept fault : Fault if fault.severe
+                do assign machine.busy := false then broken;
+            transition first broken accept reset : Reset
+                do action { assign reset.accepted := true; assign machine.text := "ok"; }
+                then idle;
+        }
+    }
+}
+"""
+
+
+def test_payloads_and_arguments_of_states_are_variables_of_the_contract():
+    names, codes = contract(MACHINE, "P::Cell")
+    assert {"env fault_severe", "sys machine_busy", "sys reset_accepted"} <= names
+    assert "SM412" not in codes
+
+
+def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
+    reading = read(MACHINE, passes=ALL)
+    found = [one for one in reading.sink if one.rule.code == "SM415"]
+    assert [(one.severity, one.message) for one in found] == [
+        (
+            Severity.WARNING,
+            "'machine.text := \"ok\"' assigns to 'machine.text', which is no changeable property "
+            "with finite values of Cell",
+        )
+    ]
+
+
+def test_states_without_a_first_one_are_no_error():
+    reading = read("package P { state def S { state a; state b; } }", passes=ALL)
+    assert [(one.rule.code, one.severity) for one in reading.sink] == [("SM421", Severity.WARNING)]
+
+
+def test_components_of_one_name_in_two_files_are_told_with_both():
+    text = "package P { action def A { first start; then action x; then done; } }"
+    reading = read(text, text, passes=ALL)
+    (first, second) = [one for one in reading.sink if one.rule.code == "SM500"]
+    assert first.notes == ("another 'P::A' is in model.sysml",)
+    assert second.notes == ("another 'P::A' is in m0.sysml",)
+    assert first.help.startswith("packages of two files have one name")
