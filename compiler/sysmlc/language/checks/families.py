@@ -6,17 +6,20 @@ from typing import TypeVar
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks import (
     access,
+    binding,
     bounds,
     cases,
     combining,
     conformance,
     crossing,
+    duplicates,
     ends,
     evaluable,
     expressions,
     kinds,
     members,
     metadata,
+    multiplicity,
     owned,
     references,
     single,
@@ -51,12 +54,15 @@ _CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
     *owned.CHECKS,
     *steps.CHECKS,
     *expressions.CHECKS,
+    *duplicates.CHECKS,
+    *binding.CHECKS,
 )
 _RELATED: tuple[tuple[frozenset[str], Check], ...] = (
     *conformance.BY_RELATION,
     *combining.BY_RELATION,
     *kinds.BY_RELATION,
     *crossing.BY_RELATION,
+    *multiplicity.BY_RELATION,
 )
 
 

@@ -1,0 +1,46 @@
+"""What is bound to each other can be the same (KerML 8.3.4.5.2)."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.positions import own
+from sysmlc.language.tree import Node
+
+UNLIKE = rule(
+    "SM283",
+    "bound-unlike",
+    Severity.WARNING,
+    "'{one}' is bound to '{other}', and no value can be both: {types}",
+    why="Bound features have the same values, so one of their types specialises the other (KerML "
+    "1.0, validateBindingConnectorTypeConformance).",
+    help="bind features of types that conform",
+    wrong="part def A;\npart def B;\npart p { part a : A; part b : B; bind a = b; }\n",
+    right="part def A;\npart def B :> A;\npart p { part a : A; part b : B; bind a = b; }\n",
+)
+
+
+def check(model: Model, node: Node) -> Iterator[Found]:
+    """Report a binding of features of which the types have nothing in common."""
+    bound = [one for end in own(node, "end") for one in _referenced(end)]
+    if len(bound) != 2:
+        return
+    first, second = (model.types(one) for one in bound)
+    if first and second and not any(_conform(model, a, b) for a in first for b in second):
+        types = " and ".join(f"'{name_of(model, one[0])}'" for one in (first, second))
+        one, other = (name_of(model, feature) for feature in bound)
+        yield Found(UNLIKE, node.start, {"one": one, "other": other, "types": types})
+
+
+def _referenced(end: Node) -> list[Node]:
+    references = [one.reference for one in end.relations if one.kind == "ReferenceSubsetting"]
+    return [one.target for one in references if one.target is not None]
+
+
+def _conform(model: Model, one: Node, other: Node) -> bool:
+    return model.specializes(one, other) or model.specializes(other, one)
+
+
+CHECKS = ((kinds_of("BindingConnector"), check),)
