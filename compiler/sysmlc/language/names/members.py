@@ -22,6 +22,8 @@ class Members(Generals):
         self._owned: dict[Node, Owned] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._inheriting: set[Node] = set()
+        self._inheritable: dict[Node, frozenset[str] | None] = {}
+        self._names_of: dict[tuple[Node, ...], frozenset[str] | None] = {}
 
     def abandon(self) -> None:
         """Give up what is being looked for, after an error in the midst of it."""
@@ -92,6 +94,9 @@ class Members(Generals):
         hits = memo.get(name)
         if hits is not None:
             return hits
+        names = self._inheritable.get(scope)
+        if names is not None and name not in names:
+            return NONE
         if scope in self._inheriting:
             self.cuts += 1
             return NONE
@@ -104,7 +109,33 @@ class Members(Generals):
         self._inheriting.discard(scope)
         if self.cuts == before:
             memo[name] = hits
+            if not hits and scope not in self._inheritable:
+                self._inheritable[scope] = self._learnt(scope)
         return hits
+
+    def _learnt(self, scope: Node) -> frozenset[str] | None:
+        """The names of all that ``scope`` may inherit, found when all was searched in vain.
+
+        None where generals import some, or are not known for good.
+        """
+        key = tuple(self.all_generals(scope))
+        if key not in self._names_of:
+            self._names_of[key] = self._names_below(key)
+        return self._names_of[key]
+
+    def _names_below(self, generals: tuple[Node, ...]) -> frozenset[str] | None:
+        seen = dict.fromkeys(generals)
+        waiting = list(generals)
+        while waiting:
+            node = waiting.pop()
+            written, silent = self._generals.get(node), self._silently.get(node)
+            is_known = written is not None and silent is not None
+            if not is_known or any(one.visibility == "public" for one in self.imports(node)):
+                return None
+            found = [one for one in (*(written or ()), *(silent or ())) if one not in seen]
+            seen.update(dict.fromkeys(found))
+            waiting += found
+        return frozenset(name for node in seen for name in self.owned(node))
 
     def _general_hits(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []

@@ -88,17 +88,7 @@ class Model:
 
     def supers(self, node: Node) -> list[Node]:
         """``node`` and all that it specialises, directly or not, the nearest first."""
-        known = self._supers.get(node)
-        if known is None:
-            known = {node: None}
-            waiting = [node]
-            while waiting:
-                for general in self.lookup.all_generals(waiting.pop(0)):
-                    if general not in known:
-                        known[general] = None
-                        waiting.append(general)
-            self._supers[node] = known
-        return list(known)
+        return list(self.supers_of(node))
 
     def specializes(self, node: Node, general: Node | str) -> bool:
         """Whether ``node`` is ``general`` or specialises it, in any number of steps."""
@@ -107,16 +97,25 @@ class Model:
 
     def types(self, node: Node) -> list[Node]:
         """The types of a feature: its own, else those of what it subsets and redefines."""
-        found: dict[Node, None] = {}
+        found = {
+            general: None
+            for one in self._features_above(node)
+            for general in self.lookup.all_generals(one)
+            if general.kind not in FEATURES
+        }
+        if len(found) < 2:
+            return list(found)
+        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
+
+    def _features_above(self, node: Node) -> list[Node]:
+        """``node`` and the features that it subsets and redefines, directly or not."""
         waiting, seen = [node], {node}
-        while waiting:
-            for general in self.lookup.all_generals(waiting.pop(0)):
-                if general.kind not in FEATURES:
-                    found[general] = None
-                elif general not in seen:
+        for one in waiting:
+            for general in self.lookup.all_generals(one):
+                if general.kind in FEATURES and general not in seen:
                     seen.add(general)
                     waiting.append(general)
-        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
+        return waiting
 
     def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
         """Members of a namespace: own, inherited that nothing redefines, imported ones."""
@@ -209,8 +208,17 @@ class Model:
 
     def supers_of(self, node: Node) -> dict[Node, None]:
         """Like ``supers``, to look one up in."""
-        self.supers(node)
-        return self._supers[node]
+        known = self._supers.get(node)
+        if known is None:
+            known = {node: None}
+            waiting = [node]
+            for one in waiting:
+                for general in self.lookup.all_generals(one):
+                    if general not in known:
+                        known[general] = None
+                        waiting.append(general)
+            self._supers[node] = known
+        return known
 
     def add_implied(self) -> None:
         """Give the types and features of the documents what the text does not say of them.
