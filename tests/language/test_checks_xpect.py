@@ -94,7 +94,8 @@ def expected(severity="errors"):
     with (_XPECT / "expected-errors.tsv").open(encoding="utf-8", newline="") as rows:
         found = {}
         for row in csv.DictReader(rows, delimiter="\t"):
-            if row["severity"] == severity and "inherited member" not in row["message"]:
+            is_apart = severity == "warnings" and "inherited member" in row["message"]
+            if row["severity"] == severity and not is_apart:
                 found.setdefault(row["file"], []).append((int(row["line"]), row["at_text"]))
     return found
 

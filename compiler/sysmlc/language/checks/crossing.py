@@ -100,7 +100,7 @@ def _is_opposite(node: Node, reference: Reference) -> bool:
 
 def _generally(model: Model, node: Node) -> list[Node]:
     """What the ends cross that an end redefines."""
-    ends = sorted(model.lookup.redefined(node), key=lambda one: one.start)
+    ends = sorted(model.lookup.redefined(node), key=model.qualified_name)
     return [target for end in ends for _, target in written(end, _CROSSES)]
 
 
