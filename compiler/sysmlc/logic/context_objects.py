@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 
 _STEPS = (Kind.ACTION, Kind.STRUCTURED)
-_OBJECTS = (Kind.CLASS, Kind.COMPONENT, Kind.SIGNAL)
+_OBJECTS = (Kind.CLASS, Kind.COMPONENT, Kind.SIGNAL, Kind.DATA_TYPE)
 _CALLED = (Kind.OPERATION, Kind.ACTIVITY)
 
 
@@ -13,14 +13,16 @@ def of_objects(graph: Graph, behaviour: Element) -> dict[str, Element]:
     """Features by the names that expressions of the behaviour have for them.
 
     ``machine.busy`` is a value of an argument, ``fault.severity`` one of what a trigger accepts,
-    ``weigh.mass`` an output pin of a step, ``look.image.sharp`` a value of what such a pin holds.
+    ``weigh.mass`` an output pin of a step, ``look.image.sharp`` a value of what such a pin holds,
+    ``p.number`` one of what a structured node calls p.
     """
     arguments = [one for one in query.parameters(graph, behaviour) if one.name]
     found = dict(_values_of_all(graph, ((one.name, one) for one in arguments)))
     found |= _values_of_all(graph, _payloads(graph, behaviour))
     if behaviour.kind is Kind.ACTIVITY and _has_dotted_guard(graph, behaviour):
         pins = list(_pins(graph, behaviour, ""))
-        found |= dict(pins) | dict(_values_of_all(graph, pins))
+        objects = [*pins, *_variables(graph, behaviour)]
+        found |= dict(pins) | dict(_values_of_all(graph, objects))
     return found
 
 
@@ -65,6 +67,15 @@ def _pins(graph: Graph, owner: Element, prefix: str) -> Iterator[tuple[str, Elem
         for pin in graph.owned(step) if step.name else ():
             if pin.kind is Kind.PIN and pin.name and pin.attrs.get("direction") == "out":
                 yield f"{prefix}{step.name}.{pin.name}", pin
+
+
+def _variables(graph: Graph, owner: Element) -> Iterator[tuple[str, Element]]:
+    """Variables of structured nodes (the element that a loop is at)."""
+    for one in graph.owned(owner):
+        if one.kind is Kind.STRUCTURED:
+            yield from _variables(graph, one)
+        elif one.kind is Kind.PROPERTY and one.subkind == "variable" and one.name:
+            yield one.name, one
 
 
 def _has_dotted_guard(graph: Graph, owner: Element) -> bool:

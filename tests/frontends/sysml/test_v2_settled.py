@@ -18,7 +18,8 @@ package P {
     enum def Special :> Paint { enum gold; }
     abstract action def Work { in speed : ScalarValues::Integer; }
     requirement def Quiet { doc /* Be quiet. */ }
-    part def Pump { port p; port q; flow from p to q; }
+    port def Pipe { out attribute amount; }
+    part def Pump { port p; port q : Pipe; port r : ~Pipe; flow from q.amount to r.amount; }
     part one : Pump { port redefines p; }
     part def Plant { part pump : Pump; perform action run : Work; }
 }
@@ -26,7 +27,7 @@ package P {
 
 
 def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
-    assert read(VALID, passes=ALL).codes() == []
+    assert read(VALID, passes=ALL).codes() == ["SM300"]
     assert SEVERITIES["SM202"] is None
 
 
@@ -151,3 +152,37 @@ def test_components_of_one_name_in_two_files_are_told_with_both():
     assert first.notes == ("another 'P::A' is in model.sysml",)
     assert second.notes == ("another 'P::A' is in m0.sysml",)
     assert first.help.startswith("packages of two files have one name")
+
+
+LOOP = """
+package P {
+    private import ScalarValues::*;
+    attribute def Status { attribute free : Boolean; }
+    part def Belt { attribute pallets : Status [0..*]; }
+    action def Count {
+        in ref belt : Belt;
+        first start;
+        then for p in belt.pallets {
+            action look;
+            then decide;
+                if p.free then take;
+                else skip;
+            action take;
+            action skip;
+        }
+        then done;
+    }
+}"""
+
+
+def test_a_loop_keeps_its_collection_and_the_type_of_its_variable():
+    reading = read(LOOP)
+    region = reading.named("P::Count::<Structured>")
+    assert region.attrs["collection"] == "belt.pallets"
+    assert reading.to("P::Count::<Structured>::p", "typed-by") == ["P::Status"]
+
+
+def test_values_of_what_a_loop_is_at_are_variables_of_the_contract():
+    names, codes = contract(LOOP, "P::Count")
+    assert "env p_free" in names
+    assert "SM458" not in codes

@@ -4,7 +4,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.successions import steps
+from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
@@ -45,6 +47,7 @@ def if_(low: "Lowering", node: Node, owner: Element) -> None:
     merge = _control(low, node, owner, "merge")
     low.elements[id(node)] = decision
     low.spans[id(node)] = (decision, merge)
+    low.last(lambda: low.last(lambda: _start(low, node, owner, decision)))
     guards: list[Node | str | None] = [given[0] if given else "true", "else"]
     for number, guard in enumerate(guards):
         body = bodies[number] if number < len(bodies) else None
@@ -128,7 +131,7 @@ def while_(low: "Lowering", node: Node, owner: Element) -> None:
 
 
 def _start(low: "Lowering", node: Node, owner: Element, entry: Element) -> None:
-    """A loop that nothing precedes starts with the behaviour: its own way back is no start."""
+    """What nothing precedes starts with the behaviour: the way back of a loop is no start."""
     before = low.graph.sources(entry, Edge.FLOW_TARGET)
     if all(low.is_made(flow, node) for flow in before):
         _flow(low, node, (low.control(owner, "start"), entry))
@@ -167,9 +170,22 @@ def for_(low: "Lowering", node: Node, owner: Element) -> None:
     bodies = [one for one in held if one.kind.endswith("ActionUsage")]
     attrs = {"subkind": "expansion", "mode": "iterative"}
     made = low.add(node, Kind.STRUCTURED, node.name or "", owner, **attrs)
-    variable = next((one for one in node.members if one.kind == "ReferenceUsage"), None)
-    if variable is not None:
-        low.add(variable, Kind.PROPERTY, variable.name or "", made, subkind="variable")
+    _range_over(low, node, made)
     for body in bodies:
         low.elements.setdefault(id(body), made)
         steps(low, nodes.body_of(body) if not body.name else [body], made)
+
+
+def _range_over(low: "Lowering", node: Node, region: Element) -> None:
+    """The collection of a loop as text, and its variable, which has the type of the elements."""
+    held = nodes.held(node, "ParameterMembership")
+    collection = next((value for one in held if (value := nodes.value_of(one))), None)
+    if collection is not None:
+        low.later(lambda: low.set(region, collection=values.texts(collection, low)))
+    variable = next((one for one in node.members if one.kind == "ReferenceUsage"), None)
+    if variable is None:
+        return
+    made = low.add(variable, Kind.PROPERTY, variable.name or "", region, subkind="variable")
+    *_, feature = [None] if collection is None else (steps_of_value(collection) or [None])
+    types = types_of(low, variable) or ([] if feature is None else types_of(low, feature))
+    low.later(lambda: low.lead_all(Edge.TYPED_BY, made, types))
