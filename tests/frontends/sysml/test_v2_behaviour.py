@@ -224,3 +224,35 @@ package P {
     ]
     assert reading.named("P::Law").role == "constraint block"
     assert reading.named("P::Law::<Constraint>").attrs["body"] == "f == m * 2.0"
+
+
+def test_a_condition_that_nothing_precedes_starts_with_its_behaviour():
+    reading = read("""
+package P {
+    private import ScalarValues::*;
+    action def A {
+        attribute x : Integer = 0;
+        if x > 0 { assign x := 1; } else { assign x := 0; }
+    }
+}""")
+    assert reading.flows("P::A")[-1] == "start -> decision"
+
+
+def test_an_action_that_is_handed_over_is_a_parameter_and_no_step():
+    reading = read("""
+package P {
+    calc def Scenario { in t; return : ScalarValues::Real; }
+    analysis def Study { in calc scenario : Scenario; action run; }
+}""")
+    found = {one.name: one.kind.name for one in reading.graph.owned(reading.named("P::Study"))}
+    assert found == {"scenario": "PARAMETER", "run": "ACTION"}
+
+
+def test_a_succession_to_an_action_of_a_package_is_told_and_has_no_flow():
+    reading = read("""
+package P {
+    action focus;
+    action takePicture { first focus; then shoot; action shoot; then done; }
+}""")
+    assert reading.flows("P::takePicture") == ["shoot -> done"]
+    assert "SM480" in reading.codes()

@@ -51,6 +51,8 @@ _INTERACTING = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
 def _action(low: Lowering, node: Node, owner: Element | None) -> None:
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         activities.activity(low, node, owner)
+    elif owner.kind in _STEPPED and "direction" in node.facts:
+        in_behaviour(low, node, owner)
     elif owner.kind in _STEPPED:
         actions.action(low, node, owner)
     elif owner.kind in STRUCTURAL and node.kind == "PerformActionUsage":

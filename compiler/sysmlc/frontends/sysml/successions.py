@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node, Reference
 from sysmlc.values import dataclass
 
@@ -104,6 +105,9 @@ def _flow(
     guard: Node | None,
 ) -> None:
     """A control flow; without a guard of its own a guarded succession is the one for else."""
+    if any(isinstance(one, Reference) and _is_elsewhere(low, one) for one in (source, target)):
+        low.unsupported(node)
+        return
     for point in (source, target):
         _mention(low, run.owner, point, node)
     made = low.add(node, Kind.CONTROL_FLOW, node.name or "", run.owner)
@@ -113,6 +117,13 @@ def _flow(
         low.later(lambda: low.set(made, guard=values.texts(guard, low)))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.last(lambda: _join(low, made, source, target))
+
+
+def _is_elsewhere(low: "Lowering", point: Reference) -> bool:
+    """Whether an end is an action of a package, which is no step of any behaviour."""
+    owner = None if point.target is None or len(point.chain) > 1 else point.target.owner
+    is_package = owner is not None and (owner.kind == "Namespace" or is_a(owner.kind, "Package"))
+    return is_package and not is_of_library(low, point)
 
 
 def _mention(low: "Lowering", owner: Element, point: "Node | Reference | None", node: Node) -> None:
