@@ -196,6 +196,19 @@ def test_sm198_ten_thousand_levels_are_one_message(text):
     assert [line.split()[1] for line in said(text) if "SM191" not in line] == ["SM198"]
 
 
+def test_a_long_row_of_operators_is_flat_and_not_deep():
+    for rows in (" + ", " - "), (" and ",), (" * ", " / "):
+        row = "x" + "".join(rows[n % len(rows)] + "x" for n in range(1_000))
+        sink = Sink()
+        parse(f"attribute x; attribute a = {row};", "m.sysml", "sysml", sink)
+        assert list(sink) == []
+
+
+def test_sm198_rows_within_one_another_are_deep():
+    deep = "1 + 2 * (" * 101 + "1" + ")" * 101
+    assert [line.split()[1] for line in said(f"attribute a = {deep};")] == ["SM198"]
+
+
 def test_a_long_sequence_is_not_deep():
     document = parse(f"attribute a = ({'1, ' * 3_000}1);", "m.sysml", "sysml", Sink())
     literals = [node for node in document.root.walk() if node.kind == "LiteralInteger"]

@@ -4,12 +4,15 @@ import re
 from functools import cache
 from itertools import accumulate
 
+from sysmlc.language.text.build.operators import level
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.text.tables import Tables
 from sysmlc.language.tree import Node
 
 LIMIT = 200
 """Bodies, parentheses and brackets within one another; operators within one another too."""
+ROW = 2_000
+"""Operands of one row of operators (a + b + ...), which is flat in the text."""
 _OPENING, _CLOSING = "{([", "})]"
 
 
@@ -51,19 +54,33 @@ def _long(tables: Tables) -> re.Pattern[bytes]:
 def cut(root: Node) -> list[Node]:
     """Take expressions away that are nested deeper than the limit; those taken.
 
-    Elements of a sequence are beside one another, though the tree has them within one another.
+    Elements of a sequence and operands of one row of operators are beside one another, though
+    the tree has them within one another. The time for names in a row grows with its square.
     """
     taken = []
-    waiting = [(root, 0)]
+    waiting = [(root, 0, 0)]
     while waiting:
-        node, depth = waiting.pop()
-        if depth > LIMIT and node.owner is not None:
+        node, depth, row = waiting.pop()
+        if (depth > LIMIT or row > ROW) and node.owner is not None:
             taken.append(_uproot(node))
             continue
         for member in reversed(node.members):
-            beside = member.facts.get("operator") == "," == node.facts.get("operator")
-            waiting.append((member, depth if beside else depth + 1))
+            if member.facts.get("operator") == "," == node.facts.get("operator"):
+                waiting.append((member, depth, 0))
+            elif _is_row(node, member):
+                waiting.append((member, depth, row + 1))
+            else:
+                waiting.append((member, depth + 1, 0))
     return taken
+
+
+def _is_row(node: Node, member: Node) -> bool:
+    """Whether a left operand continues the row of operators that a binary operation ends."""
+    if len(node.members) < 2 or member is not node.members[0] or len(member.members) < 2:
+        return False
+    operators = node.facts.get("operator"), member.facts.get("operator")
+    levels = [level(one) for one in operators if isinstance(one, str)]
+    return len(levels) == 2 and levels[0] == levels[1] != -1
 
 
 def _uproot(node: Node) -> Node:

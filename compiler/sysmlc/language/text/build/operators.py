@@ -52,6 +52,11 @@ def grouped(tokens: Tokens, parts: list[Part]) -> Node:
     return done[0]
 
 
+def level(operator: str) -> int:
+    """How tightly a binary operator binds, those that bind least first; -1 for others."""
+    return _PRECEDENCE.get(operator, -1)
+
+
 def _before(left: int, right: int) -> bool:
     return left > right or (left == right and left != _RIGHT)
 
