@@ -82,3 +82,13 @@ def test_activities_of_a_large_library_render(corpus, plantuml):
     some = dict(list(drawn.items())[::40])
     assert len(some) > 9
     assert len(plantuml.render(some)) == len(some)
+
+
+def test_a_region_without_a_name_says_what_it_is_repeated_for():
+    graph = parse_text("""\
+Activity a "Count"
+  Structured r subkind="expansion" mode="iterative" collection="belt.pallets"
+    Action look "look" subkind="opaque"
+""")
+    (written,) = texts(graph).values()
+    assert "for each of belt.pallets" in written

@@ -129,6 +129,8 @@ def _title(node: Element, called: list[Element]) -> str:
         return node.name
     if called:
         return ", ".join(labels.name(item) for item in called)
+    if "collection" in node.attrs:
+        return f"for each of {node.attrs['collection']}"
     return labels.literal(node.attrs.get("value")) if "value" in node.attrs else labels.name(node)
 
 
