@@ -65,3 +65,49 @@ def test_the_core_has_every_metaclass_that_metadata_may_be_for():
     model = resolve(documents("part gate;"), library(), Sink())
     missing = [kind for kind in ALL_GENERALS if model.find(f"SysML::{kind}") is None]
     assert missing == []
+
+
+def test_a_conjugate_turns_directions_around():
+    text = "class C {{ in z; }} class T conjugates C; class D specializes T {{ {} :>> z; }}"
+    assert found(text.format("out"), "kerml") == []
+    assert found(text.format("in"), "kerml") == [
+        "'z' has another direction where it is defined, in 'C'"
+    ]
+
+
+def test_bounds_are_followed_through_values_that_are_constant():
+    assert found("""
+        attribute two = 1 + 1;
+        attribute less = two - 3;
+        attribute open;
+        part a[two];
+        part b[less];
+        part c[open];
+        part d[two > 1];
+    """) == [
+        "the multiplicity of 'b' has a bound that is -1",
+        "the multiplicity of 'd' has a bound that is true",
+    ]
+
+
+def test_values_that_double_at_each_step_are_given_up():
+    doubled = "".join(f"attribute a{n} = a{n - 1} + a{n - 1};\n" for n in range(1, 200))
+    assert found(f"attribute a0 = 1;\n{doubled}part gates[a199];") == []
+
+
+def test_features_of_metadata_are_named_at_every_depth():
+    assert found("""
+        metadata def Limits { attribute speed { attribute max; } }
+        part gate { @Limits { speed { max = 3; least = 1; } } }
+    """) == ["'least' is no feature of the metadata 'speed'"]
+
+
+def test_flows_need_a_dot():
+    text = """
+        part def A {{ out item x; }}
+        part p {{ part a : A; in item y; part b {{ in item z; }} {} }}
+    """
+    assert found(text.format("flow from a.x to b.z;")) == []
+    assert found(text.format("flow from a.x to y;")) == [
+        "'y' does not say what of the flow's end it belongs to"
+    ]

@@ -83,19 +83,18 @@ def _names(member: Node, feature: Node) -> bool:
 
 def check_body(model: Model, node: Node) -> Iterator[Found]:
     """Report what in the body of metadata is no feature of its definition."""
-    for owner in node.walk():
-        if owner.membership == "FeatureValue":
-            continue
+    waiting = [node]
+    for owner in waiting:
         for member in owner.members:
-            if _is_strange(model, owner, member):
-                facts = {"name": name_of(model, member), "owner": name_of(model, owner)}
-                yield Found(OTHER_FEATURE, member.start, facts)
+            if member.membership in _FEATURE_MEMBERSHIPS:
+                waiting.append(member)
+                if _is_strange(model, owner, member):
+                    facts = {"name": name_of(model, member), "owner": name_of(model, owner)}
+                    yield Found(OTHER_FEATURE, member.start, facts)
 
 
 def _is_strange(model: Model, owner: Node, member: Node) -> bool:
     """Whether a feature in a body is none of what its owner specialises, by name or link."""
-    if member.membership not in _FEATURE_MEMBERSHIPS:
-        return False
     redefined = [r.reference.target for r in member.relations if r.kind == "Redefinition"]
     generals = model.supers(owner)
     if redefined:

@@ -12,7 +12,7 @@ from sysmlc.language.tree import Node
 Value = bool | int | float | str
 EXPRESSIONS = kinds_of("Expression") - kinds_of("Usage")
 
-_DEEP = 100
+_DEEP = 24
 """Values that name features with values that name features: so many are followed."""
 _LITERALS = {
     "LiteralBoolean": "ScalarValues::Boolean",
@@ -86,7 +86,7 @@ def _operated(operator: str, operands: list[Value | None]) -> Value | None:
 def types(model: Model, expression: Node, depth: int = 0) -> list[Node]:
     """The types of what an expression gives; empty where they are not known."""
     name = _LITERALS.get(expression.kind)
-    if expression.kind == "OperatorExpression" and expression.facts["operator"] in _CONDITIONS:
+    if expression.kind == "OperatorExpression" and expression.facts.get("operator") in _CONDITIONS:
         name = "ScalarValues::Boolean"
     if name is not None:
         found = model.find(name)
