@@ -23,7 +23,8 @@ def laboratory(corpus, tmp_path_factory):
     file = tmp_path_factory.mktemp("ice") / "sysmlc.toml"
     file.write_text(LEVELS)
     folder = corpus / "sysml2" / "ice-lab"
-    request = Request((folder,), config=load(file), backends=tuple(select_backends(("recipe",))))
+    backends = tuple(select_backends(("recipe", "contracts")))
+    request = Request((folder,), config=load(file), backends=backends)
     return compile_model(request)
 
 
@@ -68,3 +69,16 @@ def test_only_the_names_that_are_known_to_be_missing_are_unresolved(laboratory):
     assert len(found) == 24
     told = [one for one in found if "OpcUaConnection" in one.message]
     assert len(told) == 9
+
+
+def test_the_milling_cell_has_a_contract_with_what_it_is_given_and_told(laboratory):
+    made = {one.path: one.text for one in laboratory.written()}
+    text = made["contracts/MillingCellBehavior.MillingCellEngravingStates.contract.json"]
+    owners = {name: one["owner"] for name, one in json.loads(text)["variables"].items()}
+    assert owners["equipment_mesBusy"] == owners["engraveCmd_accepted"] == "sys"
+    assert owners["time_pickDuration"] == owners["palletPresent"] == "env"
+
+
+def test_nothing_but_unresolved_names_is_an_error(laboratory):
+    errors = [one.rule.code for one in laboratory.diagnostics if one.is_error]
+    assert errors == ["SM205"] * 24
