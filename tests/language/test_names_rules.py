@@ -39,3 +39,11 @@ def test_imports_of_each_other_in_all_ways_end():
         for n in range(count)
     ]
     assert codes("\n".join([*packages, "part a : P0::X;"])) == {"SM205"}
+
+
+def test_an_import_of_what_no_input_has_asks_for_its_file():
+    sink = Sink()
+    resolve(documents("package P { private import Elsewhere::*; }"), library(), sink)
+    assert [found.help for found in sink] == [
+        "give the file that has it as an input too, or the folder of all files"
+    ]

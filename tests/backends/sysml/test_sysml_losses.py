@@ -34,6 +34,18 @@ def test_a_loss_is_counted_and_told_once():
     ]
 
 
+def test_a_verification_of_nothing_is_told():
+    _, told = written(
+        refined("""
+Package p "Plant"
+  Activity t "Try" role="test case"
+  Dependency v "" role="verify"
+    -> client t
+""")
+    )
+    assert [line[:5] for line in told] == ["SM736"]
+
+
 def test_what_cannot_be_written_is_not_referred_to():
     _, told = written(
         refined("""

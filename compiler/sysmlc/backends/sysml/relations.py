@@ -183,7 +183,7 @@ def _verify(book: Book, entry: Entry) -> list[Line]:
     """A verification case names the requirements in its objective."""
     clients, suppliers = _ends(book, entry)
     is_case = len(clients) == 1 and clients[0].shape.plain == "verification"
-    if not is_case or any(one.shape.keyword != "requirement" for one in suppliers):
+    if not suppliers or not is_case or any(one.shape.keyword != "requirement" for one in suppliers):
         return _plain(book, entry)
     return _inside(book, entry, clients[0], suppliers, "verify")
 

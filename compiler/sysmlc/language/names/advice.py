@@ -47,11 +47,18 @@ def advice(
     package = _elsewhere(model, relation, names, start) if within is None else None
     if package is not None:
         return f"'{names[0]}' is in '{package.name}', which is not imported here"
+    if relation.kind in _IMPORTED and lookup.search(start, names[:1], None) is None:
+        around = _around(start)
+        near = [p.name for p in model.packages() if p.name and p not in around]
+        said = did_you_mean(names[0], near) if near else ""
+        return said if said.startswith("did you mean") else _NOT_GIVEN
     known = _known(lookup, names, start, within)
     roots = [p.name for p in model.packages() if p.name] if len(names) > 1 else []
     return did_you_mean(names[-1], known or roots) if known or roots else _UNNAMED
 
 
+_IMPORTED = frozenset({"importedNamespace", "importedMembership"})
+_NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNNAMED = "declare it, or import the package that has it"
 
 
