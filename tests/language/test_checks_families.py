@@ -102,12 +102,13 @@ def test_features_of_metadata_are_named_at_every_depth():
     """) == ["'least' is no feature of the metadata 'speed'"]
 
 
-def test_flows_need_a_dot():
+def test_qualified_ends_of_flows_need_a_dot():
     text = """
         part def A {{ out item x; }}
         part p {{ part a : A; in item y; part b {{ in item z; }} {} }}
     """
     assert found(text.format("flow from a.x to b.z;")) == []
-    assert found(text.format("flow from a.x to y;")) == [
-        "'y' does not say what of the flow's end it belongs to"
+    assert found(text.format("flow from a.x to y;")) == []
+    assert found(text.format("flow from A::x to b.z;")) == [
+        "'A::x' does not say what of the flow's end it belongs to"
     ]

@@ -84,12 +84,15 @@ def _is_related(end: Node) -> bool:
 
 
 def check_flow_end(model: Model, node: Node) -> Iterator[Found]:
-    """Report an end of a flow that is named without a dot."""
+    """Report an end of a flow with a qualified name and no dot.
+
+    A simple name stands: what a behaviour holds flows into its steps as a whole.
+    """
     if _is_related(node):
         return
     for member in node.members:
         for relation in member.relations:
-            if relation.kind == "Redefinition" and not relation.implied:
+            if relation.kind == "Redefinition" and len(relation.reference.chain[0]) > 1:
                 text = "::".join(relation.reference.chain[0])
                 yield Found(NO_FLOW_END, node.start, {"name": text})
 
