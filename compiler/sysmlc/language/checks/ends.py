@@ -35,7 +35,7 @@ TOO_FEW = error(
 )
 NO_FLOW_END = error(
     "SM271",
-    "flow-end-unclear",
+    "flow-end-without-dot",
     "'{name}' does not say what of the flow's end it belongs to",
     "A flow goes from a feature of one element to a feature of another (SysML 2.0, "
     "validateFlowEndImplicitSubsetting).",
