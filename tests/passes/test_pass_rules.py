@@ -12,7 +12,7 @@ for name in STRUCTURAL:
 MODULES = {
     "resolve": (*range(150, 160), 166, 167),
     "inherit": range(200, 205),
-    "classify": range(210, 260),
+    "classify": range(210, 221),
     "ports": (*range(121, 123), *range(300, 310)),
     "flows": range(310, 320),
     "behaviours": range(400, 410),
