@@ -49,7 +49,7 @@ _Root = tuple[str, dict[str, str]]
 def fill(document: "Document", source: Source) -> bool:
     """Fill the columns of a document without rows; False when the file is not plain."""
     text = _text_of(source)
-    root = None if text is None else _checked(source)
+    root = None if text is None or _begins_too_deep(text) else _checked(source)
     if text is None or root is None or root[0] != "CAEXFile":
         return False
     try:
@@ -77,6 +77,12 @@ def _text_of(source: Source) -> str | None:
     if "!" in text and "<!--" in text:
         text = _COMMENT.sub("", text)
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def _begins_too_deep(text: str) -> bool:
+    """Whether more elements are open at the first end than may be: the rest need not be checked."""
+    ends = [at for at in (text.find("</"), text.find("/>")) if at >= 0]
+    return text.count("<", 0, min(ends, default=len(text))) > DEFAULT_LIMITS.depth
 
 
 def _checked(source: Source) -> _Root | None:
