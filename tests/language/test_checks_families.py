@@ -102,13 +102,16 @@ def test_features_of_metadata_are_named_at_every_depth():
     """) == ["'least' is no feature of the metadata 'speed'"]
 
 
-def test_qualified_ends_of_flows_need_a_dot():
-    text = """
-        part def A {{ out item x; }}
-        part p {{ part a : A; in item y; part b {{ in item z; }} {} }}
-    """
-    assert found(text.format("flow from a.x to b.z;")) == []
-    assert found(text.format("flow from a.x to y;")) == []
-    assert found(text.format("flow from A::x to b.z;")) == [
+def test_flows_need_a_dot_unless_a_usage_holds_what_flows():
+    text = (
+        "part def A {{ out item x; }} part def B {{ in item z; }}"
+        "{} plant {{ part a : A; part b : B; in item y; {} }}"
+    )
+    assert found(text.format("part def", "flow from a.x to b.z;")) == []
+    assert found(text.format("part", "flow from a.x to y;")) == []
+    assert found(text.format("part def", "flow from a.x to y;")) == [
+        "'y' does not say what of the flow's end it belongs to"
+    ]
+    assert found(text.format("part def", "flow from A::x to b.z;")) == [
         "'A::x' does not say what of the flow's end it belongs to"
     ]

@@ -43,19 +43,24 @@ def _text(
     book: Book, flow: Element, name: str, source: tuple[Element, str], target: tuple[Element, str]
 ) -> str:
     words = visibility(book, flow)
-    if _is_bound(book, source[0], target[0]):
+    if source[0].kind is not Kind.PIN or target[0].kind is not Kind.PIN:
+        _note_shared(book, flow, source[0], target[0])
         start = ["binding", quoted(name)] if name else []
         return " ".join([*words, *start, "bind", target[1], "=", source[1]])
     start = ["flow", quoted(name)] if name else ["flow"]
     return " ".join([*words, *start, "from", source[1], "to", target[1]])
 
 
-def _is_bound(book: Book, source: Element, target: Element) -> bool:
-    """Whether a parameter of the activity and a pin are one value: nothing else flows there."""
+def _note_shared(book: Book, flow: Element, source: Element, target: Element) -> None:
+    """Note a node of several flows, each of which takes or brings something: a binding does not.
+
+    A flow leads from a feature of one element to a feature of another (SysML 2.0, 7.16), which
+    what the activity itself holds does not have.
+    """
     for one, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
-        if one.kind is Kind.ACTIVITY_PARAMETER and len(book.graph.sources(one, edge)) == 1:
-            return True
-    return False
+        if one.kind is not Kind.PIN and len(book.graph.sources(one, edge)) > 1:
+            book.approximated(flow, "an object flow of a node with several", "a binding")
+            return
 
 
 def _reached(book: Book, control: Element) -> Iterator[Element]:

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.member_rules import TOO_MANY_ENDS
 from sysmlc.language.composition import is_end
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import is_a, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.positions import own
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Relation
 
 END_TYPE = error(
     "SM269",
@@ -84,17 +84,23 @@ def _is_related(end: Node) -> bool:
 
 
 def check_flow_end(model: Model, node: Node) -> Iterator[Found]:
-    """Report an end of a flow with a qualified name and no dot.
+    """Report an end of a flow without a dot that names a feature of no other feature.
 
-    A simple name stands: what a behaviour holds flows into its steps as a whole.
+    Of a usage it is that usage which the flow ends at.
     """
     if _is_related(node):
         return
     for member in node.members:
         for relation in member.relations:
-            if relation.kind == "Redefinition" and len(relation.reference.chain[0]) > 1:
+            if relation.kind == "Redefinition" and _is_held_by_a_type(relation):
                 text = "::".join(relation.reference.chain[0])
                 yield Found(NO_FLOW_END, node.start, {"name": text})
+
+
+def _is_held_by_a_type(relation: Relation) -> bool:
+    target = relation.reference.target
+    owner = target.owner if target is not None else None
+    return owner is not None and not relation.implied and not is_a(owner.kind, "Feature")
 
 
 def check_flow(model: Model, node: Node) -> Iterator[Found]:
