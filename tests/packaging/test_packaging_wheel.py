@@ -42,7 +42,7 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
     with tarfile.open(archive) as opened:
         names = {name.partition("/")[2] for name in opened.getnames()}
     assert {"LICENSE", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile"} <= names
-    assert {"hatch_build.py", "grammars/sysml.lark"} <= names
+    assert {"compiler/hatch_build.py", "grammars/sysml.lark"} <= names
     assert {"tests/conftest.py", "examples/lego-recipe/lego-recipe.uml"} <= names
 
 
