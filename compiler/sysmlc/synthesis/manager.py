@@ -1,0 +1,230 @@
+"""Decision diagrams: CUDD through ``dd.cudd``, or ``dd.autoref`` with the same calls, and limits.
+
+Diagrams (``Node``) are combined by ``&``, ``|``, ``~``, ``implies`` and ``equiv``; what the two
+libraries do differently, and what may run for long, are methods of ``Manager``.
+"""
+
+import logging
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from types import ModuleType
+from typing import Any, Protocol, Self, cast
+
+from sysmlc.values import dataclass
+
+ENGINES = ("cudd", "autoref")
+"""Names of the libraries, the fast one first."""
+_MEMORY = 8 << 30
+"""Bytes that a manager may take when nothing else is said."""
+_GIBIBYTE = 1 << 30
+
+
+class Node(Protocol):
+    """A decision diagram; equal diagrams of a manager are one node."""
+
+    def __and__(self, other: Self, /) -> Self: ...
+    def __or__(self, other: Self, /) -> Self: ...
+    def __invert__(self) -> Self: ...
+    def __le__(self, other: Self, /) -> bool: ...
+    def __len__(self) -> int: ...
+    def implies(self, other: Self, /) -> Self: ...
+    def equiv(self, other: Self, /) -> Self: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How much a manager may use; 0 is no limit of its own."""
+
+    nodes: int = 0
+    """Nodes that are alive at once."""
+    memory: int = 0
+    """Bytes."""
+    seconds: float = 0.0
+    """CPU time since the manager was made."""
+
+
+class LimitError(Exception):
+    """A limit was reached: ``what`` it limits, and the limit itself, in words."""
+
+    def __init__(self, what: str, limit: str) -> None:
+        super().__init__(f"the limit of {limit} {what} was reached")
+        self.what = what
+        self.limit = limit
+
+
+@dataclass(frozen=True, slots=True)
+class Usage:
+    """What a manager has used so far."""
+
+    nodes: int
+    peak: int
+    seconds: float
+
+
+Progress = Callable[[str], None]
+"""Called between operations with what is being done."""
+
+
+class Manager:
+    """Owner of the diagrams of one game; bits are declared in their order."""
+
+    def __init__(
+        self, engine: str = "", limits: Limits | None = None, progress: Progress | None = None
+    ) -> None:
+        """Take the named library, or the fast one if it is there.
+
+        Raises ImportError when the library that is asked for cannot be loaded.
+        """
+        self.limits = limits or Limits()
+        self.engine, library = _library(engine)
+        self._library = library
+        self._progress = progress
+        self._start = time.process_time()
+        self._peak = 0
+        # dd has no type hints that a checker could use.
+        self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
+        self.true: Node = cast("Node", self._bdd.true)
+        self.false: Node = cast("Node", self._bdd.false)
+
+    def declare(self, bits: Collection[str]) -> None:
+        """Add bits below those that are there."""
+        self._bdd.declare(*bits)
+
+    @property
+    def bits(self) -> tuple[str, ...]:
+        """All bits, the topmost first."""
+        levels: Mapping[str, int] = self._bdd.var_levels
+        return tuple(sorted(levels, key=lambda bit: levels[bit]))
+
+    def var(self, bit: str) -> Node:
+        """The diagram of one bit."""
+        return cast("Node", self._bdd.var(bit))
+
+    def cube(self, values: Mapping[str, bool]) -> Node:
+        """The conjunction of bits and negated bits."""
+        return cast("Node", self._bdd.cube(dict(values)))
+
+    def ite(self, test: Node, then: Node, otherwise: Node) -> Node:
+        """``then`` where the test holds, else ``otherwise``."""
+        return cast("Node", self._bdd.ite(test, then, otherwise))
+
+    def exist(self, bits: Collection[str], node: Node) -> Node:
+        """Some values of the bits make it true."""
+        return cast("Node", self._bdd.exist(set(bits), node)) if bits else node
+
+    def forall(self, bits: Collection[str], node: Node) -> Node:
+        """All values of the bits make it true."""
+        return cast("Node", self._bdd.forall(set(bits), node)) if bits else node
+
+    def and_exist(self, left: Node, right: Node, bits: Collection[str]) -> Node:
+        """``exist(bits, left & right)`` without the conjunction itself, where CUDD is there."""
+        if not bits:
+            return left & right
+        if self.engine == "cudd":
+            return cast("Node", self._library.and_exists(left, right, bits))
+        return self.exist(bits, left & right)
+
+    def rename(self, node: Node, bits: Mapping[str, str]) -> Node:
+        """The diagram over other bits; those that take a name must not be in it."""
+        return cast("Node", self._bdd.let(dict(bits), node)) if bits else node
+
+    def compose(self, node: Node, by: Mapping[str, Node]) -> Node:
+        """Bits replaced by diagrams, all at once."""
+        return cast("Node", self._bdd.let(dict(by), node)) if by else node
+
+    def assign(self, node: Node, values: Mapping[str, bool]) -> Node:
+        """The diagram for these values of bits."""
+        return cast("Node", self._bdd.let(dict(values), node)) if values else node
+
+    def restrict(self, node: Node, care: Node) -> Node:
+        """A diagram, smaller if possible, that is the same wherever ``care`` holds."""
+        if self.engine != "cudd" or care == self.true or care == self.false:
+            return node
+        made = cast("Node", self._library.restrict(node, care))
+        return made if len(made) < len(node) else node
+
+    def support(self, node: Node) -> frozenset[str]:
+        """The bits that the diagram depends on."""
+        return frozenset(self._bdd.support(node))
+
+    def pick(self, node: Node, bits: Collection[str]) -> dict[str, bool] | None:
+        """Values of the bits that make it true, the same ones every time; None if there are none.
+
+        Bits that do not matter are false. ``bits`` must contain the support.
+        """
+        found = next(self._bdd.pick_iter(node, set()), None) if node != self.false else None
+        return None if found is None else {bit: found.get(bit, False) for bit in bits}
+
+    def count(self, node: Node, bits: Collection[str]) -> int:
+        """Number of assignments to the bits that make it true (exact up to 2^53)."""
+        return int(round(self._bdd.count(node, len(bits))))
+
+    def reorder_automatically(self, is_on: bool) -> None:
+        """Let the library change the order of bits when diagrams grow."""
+        self._bdd.configure(reordering=is_on)
+
+    def sift(self) -> None:
+        """Look for a better order of bits now."""
+        with self.guard():
+            self._bdd.reorder()
+
+    def usage(self) -> Usage:
+        """Nodes alive, most of them seen at a check, CPU seconds."""
+        nodes = len(self._bdd)
+        self._peak = max(self._peak, nodes)
+        return Usage(nodes, self._peak, time.process_time() - self._start)
+
+    def check(self, doing: str = "") -> None:
+        """Say what is being done; raises LimitError when a limit is exceeded."""
+        used, limits = self.usage(), self.limits
+        if limits.nodes and used.nodes > limits.nodes:
+            raise LimitError("nodes", f"{limits.nodes:,}")
+        if limits.seconds and used.seconds > limits.seconds:
+            raise LimitError("of CPU time", f"{limits.seconds:g} s")
+        if self._progress is not None:
+            self._progress(doing)
+
+    @contextmanager
+    def guard(self) -> Iterator[None]:
+        """Turn what the library raises when its memory is used up into LimitError."""
+        try:
+            yield
+        except (RuntimeError, ValueError, MemoryError) as problem:
+            if isinstance(problem, MemoryError) or _is_memory(str(problem)):
+                size = (self.limits.memory or _MEMORY) / _GIBIBYTE
+                raise LimitError("of memory", f"{size:g} GiB") from None
+            raise
+
+
+def _is_memory(text: str) -> bool:
+    """How dd says that CUDD had no more memory: it does not look at most of its results."""
+    return "NULL" in text or "out of memory" in text
+
+
+def _library(engine: str) -> tuple[str, ModuleType]:
+    names = (engine,) if engine else ENGINES
+    for name in names:
+        try:
+            return name, import_module(f"dd.{name}")
+        except ImportError:
+            if name == names[-1]:
+                raise
+    raise ImportError(engine)
+
+
+def _new(library: ModuleType, engine: str, memory: int) -> Any:  # noqa: ANN401
+    logging.getLogger("dd").setLevel(logging.ERROR)
+    if engine != "cudd":
+        return library.BDD()
+    made = library.BDD(memory_estimate=min(memory, _half_of_the_machine()))
+    made.configure(reordering=False, max_memory=memory)
+    return made
+
+
+def _half_of_the_machine() -> int:
+    """dd refuses to start when it may take more than there is."""
+    import os
+
+    return int(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) // 2
