@@ -24,14 +24,26 @@ def classified(formula: Formula) -> Iterator[tuple[Class, Formula]]:
                 yield from classified(f.always(arg))
         case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if not _is_temporal(inner):
             yield Class.LIVENESS, inner
-        case Apply(Op.ALWAYS, (inner,)) if (step := _with_primes(inner)) is not None:
+        case Apply(Op.ALWAYS, (inner,)) if (step := with_primes(inner)) is not None:
             yield Class.SAFETY, step
         case _:
             is_plain = not _is_temporal(formula) and not _is_primed(formula)
             yield (Class.INIT if is_plain else Class.OTHER), formula
 
 
-def _with_primes(formula: Formula) -> Formula | None:
+def within(formula: Formula, class_: Class) -> Formula | None:
+    """A formula that stands among those of a class, with primes for X; None when it cannot.
+
+    Initial conditions have no next step; only ``other`` has temporal operators that reach
+    further than one.
+    """
+    if class_ is Class.OTHER:
+        return formula
+    step = with_primes(formula)
+    return None if class_ is Class.INIT and step is not None and _is_primed(step) else step
+
+
+def with_primes(formula: Formula) -> Formula | None:
     """The formula with primes for X, or None when it looks further than one step."""
     match formula:
         case Apply(Op.NEXT, (inner,)):
@@ -40,7 +52,7 @@ def _with_primes(formula: Formula) -> Formula | None:
         case Apply(op, _) if op in _TEMPORAL:
             return None
         case Apply(op, args):
-            parts = [_with_primes(arg) for arg in args]
+            parts = [with_primes(arg) for arg in args]
             known = tuple(part for part in parts if part is not None)
             return Apply(op, known) if len(known) == len(parts) else None
         case _:
