@@ -6,17 +6,21 @@
 
 from sysmlc.synthesis.game import Game, OutsideGr1Error, Part, make_game
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Node
+from sysmlc.synthesis.solve import Layer, Solution, solve
 from sysmlc.synthesis.symbols import SymbolError, Symbols
 
 __all__ = [
     "Game",
+    "Layer",
     "LimitError",
     "Limits",
     "Manager",
     "Node",
     "OutsideGr1Error",
     "Part",
+    "Solution",
     "SymbolError",
     "Symbols",
     "make_game",
+    "solve",
 ]

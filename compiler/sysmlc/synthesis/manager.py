@@ -159,7 +159,8 @@ class Manager:
 
     def count(self, node: Node, bits: Collection[str]) -> int:
         """Number of assignments to the bits that make it true (exact up to 2^53)."""
-        return int(round(self._bdd.count(node, len(bits))))
+        found: float = self._bdd.count(node, len(bits))
+        return round(found)
 
     def reorder_automatically(self, is_on: bool) -> None:
         """Let the library change the order of bits when diagrams grow."""

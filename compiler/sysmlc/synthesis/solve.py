@@ -1,0 +1,155 @@
+"""The winning states of a GR(1) game: a three-fold fixpoint.
+
+Piterman, Pnueli, Sa'ar, Synthesis of Reactive(1) Designs (2006); Bloem, Jobstmann, Piterman,
+Pnueli, Sa'ar (2012). The outer (greatest) fixpoint are states from which every goal can be reached
+again, the middle (least) ones the layers on the way to one goal, the inner (greatest) ones states
+in which the system may stay since an assumption does not recur.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import field
+from itertools import cycle
+
+from sysmlc.synthesis.game import Game, Part
+from sysmlc.synthesis.image import Product, Steps
+from sysmlc.synthesis.manager import Node
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """States from which the system comes closer to a goal in a step, or stays.
+
+    A state in ``states`` and not in the layer before it is in the goal itself (first layer), can
+    force the layer before, or is in one of ``waiting``.
+    """
+
+    states: Node
+    """This layer and all before it."""
+    waiting: tuple[Node, ...]
+    """For each fairness assumption: from here the system comes nearer, or stays here while the
+    assumption does not hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The outcome of a game."""
+
+    game: Game
+    is_realizable: bool
+    winning: Node
+    """States from which the system wins; with ``is_complete`` false those that may still be."""
+    is_complete: bool
+    """Whether the fixpoint was computed to its end; it need not be for the verdict."""
+    layers: tuple[tuple[Layer, ...], ...]
+    """For each goal (a game without goals has one: to go on) its layers, the nearest first."""
+    rounds: int
+    """Times a goal was computed."""
+    steps: int
+    """Predecessors computed."""
+
+
+def solve(game: Game, is_complete: bool = True) -> Solution:
+    """Decide a game; without ``is_complete`` stop as soon as it is lost.
+
+    Raises LimitError when a limit of the manager is reached.
+    """
+    with game.manager.guard():
+        return _Solver(game).run(is_complete)
+
+
+def is_won(game: Game, winning: Node) -> bool:
+    """Whether every initial input has an initial output in these states."""
+    manager = game.manager
+    answer = Product(manager, _nodes(game.init_guarantees), game.outputs)
+    lost = Product(manager, _nodes(game.init_assumptions), game.inputs)
+    return lost(~answer(winning)) == manager.false
+
+
+@dataclass(slots=True)
+class _Solver:
+    game: Game
+    _steps: Steps = field(init=False)
+    _goals: tuple[Node, ...] = field(init=False)
+    _fairness: tuple[Node, ...] = field(init=False)
+    _layers: list[tuple[Layer, ...]] = field(init=False)
+    _rounds: int = 0
+
+    def __post_init__(self) -> None:
+        self._steps = Steps(self.game)
+        self._goals = tuple(_nodes(self.game.goals)) or (self.game.manager.true,)
+        self._fairness = tuple(_nodes(self.game.fairness))
+        self._layers = [() for _ in self._goals]
+
+    def run(self, is_complete: bool) -> Solution:
+        """Take the goals in turn until none of them makes the winning states fewer."""
+        winning, settled = self.game.manager.true, 0
+        for goal in cycle(range(len(self._goals))):
+            found = self._attracted(goal, winning)
+            settled = settled + 1 if found == winning else 0
+            winning = found
+            if settled == len(self._goals):
+                break
+            if not is_complete and not is_won(self.game, winning):
+                return self._solution(winning, False, False)
+        return self._solution(winning, is_won(self.game, winning), True)
+
+    def _attracted(self, goal: int, winning: Node) -> Node:
+        """Those of the winning states from which the goal can be reached, again and again."""
+        self._rounds += 1
+        target = self._goals[goal] & self._steps.controllable(winning) & winning
+        reached, layers = self.game.manager.false, list[Layer]()
+        while reached != winning:
+            layer = self._layer(target, reached, winning, _at(self._layers[goal], len(layers)))
+            if layer.states == reached:
+                break
+            layers.append(layer)
+            reached = layer.states
+            self._say(goal, len(layers))
+        self._layers[goal] = tuple(layers)
+        return reached
+
+    def _layer(self, target: Node, reached: Node, winning: Node, before: Layer | None) -> Layer:
+        """The next layer; ``before`` is the one at its place when there were more states."""
+        start = target | (self._steps.controllable(reached) & winning)
+        bounds = before.waiting if before else (winning,) * len(self._fairness)
+        waiting = tuple(
+            self._waiting(start, ~fair, bound & winning)
+            for fair, bound in zip(self._fairness, bounds, strict=True)
+        )
+        states = start
+        for one in waiting:
+            states = states | one
+        return Layer(states, waiting)
+
+    def _waiting(self, start: Node, unfair: Node, bound: Node) -> Node:
+        """Start, and where the system can stay until it is there, unfair for ever."""
+        found = bound | start
+        while True:
+            fewer = found & (start | (unfair & self._steps.controllable(found)))
+            if fewer == found:
+                return found
+            found = fewer
+
+    def _say(self, goal: int, layers: int) -> None:
+        self.game.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
+
+    def _solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
+        return Solution(
+            self.game,
+            is_realizable,
+            winning,
+            is_complete,
+            tuple(self._layers),
+            self._rounds,
+            self._steps.count,
+        )
+
+
+def _at(layers: Sequence[Layer], place: int) -> Layer | None:
+    """The layer at a place, or the last one: later ones would have been the same."""
+    return layers[min(place, len(layers) - 1)] if layers else None
+
+
+def _nodes(parts: Iterable[Part]) -> list[Node]:
+    return [part.node for part in parts]
