@@ -5,10 +5,11 @@ import re
 
 import pytest
 
-from sysmlc.frontends.caex import columns, pieces
+from sysmlc.frontends.caex import columns, pieces, wellformed
 from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.document import Document
-from sysmlc.sources import Source
+from sysmlc.sources import Source, SourceError
+from sysmlc.sources.xml import parse, parser
 
 PLANT = """\
 <?xml version="1.0" encoding="utf-8"?>
@@ -36,6 +37,14 @@ xsi:schemaLocation="CAEX.xsd" SchemaVersion="3.0" FileName="plant.aml">
   </InstanceHierarchy>
 </CAEXFile>
 """
+
+SOUND = PLANT.replace("&#x41;&#66;", "AB")
+"""What no parser has to check again."""
+SHORT = (
+    '<CAEXFile SchemaVersion="3.0"><InstanceHierarchy Name="P"><InternalElement Name="A" ID="a">'
+    '<Attribute Name="x"><Value>1</Value></Attribute><Attribute Name="x"><Value>2</Value>'
+    "</Attribute></InternalElement></InstanceHierarchy></CAEXFile>"
+)
 
 
 def read(text, by):
@@ -120,6 +129,19 @@ def test_a_file_that_is_too_deep_is_left_to_the_parser():
     assert not pieces.fill(Document("deep.aml"), Source("deep.aml", text.encode()))
 
 
+def test_a_parser_checks_what_is_out_of_the_way_and_nothing_else(monkeypatch):
+    checked = []
+    root = wellformed.root
+    monkeypatch.setattr(wellformed, "root", lambda one: checked.append(one.name) or root(one))
+    monkeypatch.setattr(wellformed, "root_alone", lambda one: root(one))
+    read(SOUND, pieces.fill)
+    assert not checked
+    for text in (PLANT, WRITTEN["with a namespace below"](SOUND), SOUND + "<!-- -->"):
+        read(text, pieces.fill)
+    read(WRITTEN["with prefixes"](SOUND), pieces.fill)
+    assert len(checked) == 4
+
+
 def test_text_that_is_no_utf_8_is_left_to_the_parser():
     data = PLANT.encode("utf-16")
     assert not pieces.fill(Document("plant.aml"), Source("plant.aml", data))
@@ -168,3 +190,55 @@ def test_random_files_have_the_same_columns_or_are_left_to_the_parser():
             plain += 1
             assert said(read(text, pieces.fill)) == said(read(text, columns.fill)), text
     assert plain > 100
+
+
+SIGNS = (
+    *"<>/\"'&;= \n\tx:-!?[]\x00\x0b\x7f\ufffe\ufffd\r#1",
+    "]]>",
+    "&amp;",
+    "&#0;",
+    "<!--",
+    "-->",
+)
+TAGS_WRITTEN = (
+    "<Value>",
+    "</Value>",
+    "<Value/>",
+    "</Attribute>",
+    '<Attribute Name="a">',
+    "<!-- -->",
+)
+
+
+def damaged(text, chance):
+    """A text with a few small changes anywhere: most of them make it no XML."""
+    for _ in range(chance.randint(1, 2)):
+        at = chance.randrange(len(text))
+        lost = chance.choice((0, 0, 1, 1, 2, 8))
+        put = chance.choice((chance.choice(SIGNS), chance.choice(TAGS_WRITTEN), ""))
+        text = text[:at] + put + text[at + lost :]
+    return text
+
+
+def is_well_formed(data):
+    made = parser()
+    try:
+        parse(Source("plant.aml", data), made)
+    except SourceError:
+        return False
+    return True
+
+
+def test_no_damaged_file_passes_that_the_parser_refuses():
+    chance, passed, refused = random.Random(7), 0, 0
+    for _ in range(2000):
+        text = damaged(chance.choice((SOUND, SHORT)), chance)
+        data = text.encode()
+        if pieces.fill(Document("plant.aml"), Source("plant.aml", data)):
+            assert is_well_formed(data), text
+            assert said(read(text, pieces.fill)) == said(read(text, columns.fill)), text
+            passed += 1
+        else:
+            refused += not is_well_formed(data)
+    assert passed > 100
+    assert refused > 500

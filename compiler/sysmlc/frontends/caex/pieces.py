@@ -1,8 +1,8 @@
 """The columns of a file that is written plainly: its text is cut at the signs that start tags.
 
 Most tags of a plant say word for word what others say, but for an ID: each is read once, and its
-rows share the attributes. Expat only checks the file then, which takes a third of what it takes
-with a call into Python for every element. Comments, line ends and references to characters are
+rows share the attributes. That the file is well-formed is seen on the way (``wellformed``), or left
+to expat where something is unusual. Comments, line ends and references to characters are
 dealt with; a file with more than that (other encodings than UTF-8, CDATA, processing instructions,
 single quotes, attributes with prefixes) goes the general way (``columns``), which gives the same
 columns for every file.
@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from sysmlc.frontends.caex import wellformed
 from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.tags import (
     NotPlainError,
@@ -22,9 +23,8 @@ from sysmlc.frontends.caex.tags import (
     text_in,
     without_references,
 )
-from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
+from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.encoding import codec
-from sysmlc.sources.xml import SEPARATOR, parse, parser
 
 if TYPE_CHECKING:
     from sysmlc.frontends.caex.document import Document
@@ -42,26 +42,31 @@ _FOLDED_STARTS = "".join({name[0] for name in FOLDED})
 _SILENT, _LISTENING, _FOLDED = range(3)
 """Whether text is listened to for the row's own; or it was taken for a column of its parent."""
 
-_Root = tuple[str, dict[str, str]]
-"""Tag and attributes."""
-
 
 def fill(document: "Document", source: Source) -> bool:
     """Fill the columns of a document without rows; False when the file is not plain."""
-    text = _text_of(source)
-    root = None if text is None or _begins_too_deep(text) else _checked(source)
-    if text is None or root is None or root[0] != "CAEXFile":
+    written = _text_of(source)
+    text = None if written is None else _without_comments(written)
+    if text is None or _begins_too_deep(text):
+        return False
+    is_checked = text is not written or not wellformed.is_sound(source, text)
+    root = wellformed.root(source) if is_checked else wellformed.root_alone(source)
+    if root is None or root[0] != "CAEXFile":
         return False
     try:
-        _cut(document, text, root[1])
-    except NotPlainError:
+        is_sound = _cut(document, text, root[1])
+    except (NotPlainError, IndexError, StopIteration):
+        # No tag, more ends than starts, or fewer: all of them mean that it is not well-formed.
         document.clear()
         return False
-    return True
+    if is_sound or is_checked or wellformed.root(source) is not None:
+        return True
+    document.clear()
+    return False
 
 
 def _text_of(source: Source) -> str | None:
-    """The text without declaration and comments; None when there is more to it than tags."""
+    """The text without declaration; None when there is more to it than tags and comments."""
     mark, name = codec(source.data)
     if name != "utf-8":
         return None
@@ -74,33 +79,18 @@ def _text_of(source: Source) -> str | None:
     # Single characters first: to look for two takes ten times as long.
     if ("?" in text and "<?" in text) or ("!" in text and "<![" in text):
         return None
-    if "!" in text and "<!--" in text:
-        text = _COMMENT.sub("", text)
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def _without_comments(text: str) -> str:
+    """The text without comments; the same object when it has none."""
+    return _COMMENT.sub("", text) if "!" in text and "<!--" in text else text
 
 
 def _begins_too_deep(text: str) -> bool:
     """Whether more elements are open at the first end than may be: the rest need not be checked."""
     ends = [at for at in (text.find("</"), text.find("/>")) if at >= 0]
     return text.count("<", 0, min(ends, default=len(text))) > DEFAULT_LIMITS.depth
-
-
-def _checked(source: Source) -> _Root | None:
-    """The root; None when the file is not well-formed, which the general way tells."""
-    made, found = parser(), []
-
-    def start(tag: str, values: dict[str, str]) -> None:
-        found.append((tag.rpartition(SEPARATOR)[2], values))
-        made.StartElementHandler = None
-
-    made.StartElementHandler = start
-    try:
-        parse(source, made)
-    except SourceError:
-        return None
-    finally:
-        made.StartElementHandler = None
-    return found[0]
 
 
 def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
@@ -119,26 +109,41 @@ def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
         document.texts[""][0] = without_references(found[1])
 
 
-def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
-    """Fill the columns with the rows of a text that is well-formed.
+def _cut(document: "Document", text: str, root: dict[str, str]) -> bool:
+    """Fill the columns with the rows of a text; False when it has to be checked by a parser."""
+    reader, ends = Reader(), wellformed.Ends()
+    pieces = chain.from_iterable(_chunks(text))
+    _start(document, next(pieces), root)
+    last = _fill(document, pieces, reader, ends)
+    if not (ends.are_right() and is_plain("".join(document.ids))):
+        raise NotPlainError
+    document.has_changes = reader.has_changes
+    document.has_stray = reader.has_stray or ends.has_stray
+    document.shapes = {("CAEXFile", tuple(root)), *reader.shapes}
+    return reader.is_sound and ends.is_sound and wellformed.is_end(last)
+
+
+def _fill(
+    document: "Document", pieces: Iterator[str], reader: Reader, ended: wellformed.Ends
+) -> str:
+    """Fill the columns with the rows behind the root; the last piece.
 
     Text is listened to as in ``columns``: from a start tag that may have some to the next tag.
     """
-    tags, ends, texts, reader = document.tags, document.ends, document.texts, Reader()
-    known, read = reader.known.get, reader.read
-    stack, deepest = [-1, 0], DEFAULT_LIMITS.depth
+    tags, ends, texts = document.tags, document.ends, document.texts
+    known, read, end, expect = reader.known.get, reader.read, ended.add, ended.expect
     add_tag, add_attributes, add_id = tags.append, document.attributes.append, document.ids.append
     add_parent, add_ordinal = document.parents.append, document.ordinals.append
-    add_end, add_alike, push, pop = ends.append, document.alike.append, stack.append, stack.pop
-    pieces = chain.from_iterable(_chunks(text))
-    _start(document, next(pieces), root)
-    ended: set[str] = set()
-    end = ended.add
-    ordinal, row, state = 0, 1, _LISTENING
+    add_end, add_alike = ends.append, document.alike.append
+    stack, deepest = [0], DEFAULT_LIMITS.depth
+    push, pop = stack.append, stack.pop
+    ordinal, row, state, piece = 0, 1, _LISTENING, ""
     for piece in pieces:
         if piece[0] == "/":
             end(piece)
-            ends[pop()] = row
+            above = pop()
+            expect(tags[above])
+            ends[above] = row
             state = _SILENT
             continue
         ordinal += 1
@@ -146,11 +151,12 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
         tag, id = known(piece), ""
         if tag is None:
             if piece[0] in _FOLDED_STARTS and not state:
-                name, _, said = piece.partition(">")
+                name, sign, said = piece.partition(">")
                 column = texts.get(name)
-                if column is not None and above not in column:
+                if column is not None and sign and above not in column:
                     column[above] = without_references(said) if "&" in said else said
-                    end(_ended(pieces))
+                    end(next(pieces))
+                    expect(name)
                     continue
             tag, id = read(piece, row)
         name, values, is_empty, has_text, alike = tag
@@ -159,7 +165,8 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
             if state == _FOLDED:
                 state = _SILENT
                 if not is_empty:
-                    end(_ended(pieces))
+                    end(next(pieces))
+                    expect(name)
                 continue
         add_tag(name)
         add_attributes(values)
@@ -167,31 +174,15 @@ def _cut(document: "Document", text: str, root: dict[str, str]) -> None:
         add_alike(alike)
         add_parent(above)
         add_ordinal(ordinal)
+        row += 1
         if is_empty:
-            row += 1
             add_end(row)
         else:
-            push(row)
-            row += 1
+            push(row - 1)
             add_end(0)
             if len(stack) > deepest:
                 raise NotPlainError
-    if not is_plain("".join(document.ids)):
-        raise NotPlainError
-    document.has_changes = reader.has_changes
-    document.has_stray = reader.has_stray or _has_stray(ended)
-    document.shapes = {("CAEXFile", tuple(root)), *reader.shapes}
-
-
-def _has_stray(ended: set[str]) -> bool:
-    """Whether text stands behind an end tag."""
-    return any(piece.partition(">")[2].strip() for piece in ended)
-
-
-def _ended(pieces: Iterator[str]) -> str:
-    """The end tag of an element that is folded."""
-    piece = next(pieces)
-    if piece[0] != "/":
+    if stack:
         raise NotPlainError
     return piece
 

@@ -22,6 +22,13 @@ _UNLIKE = "Internal"
 """How tags start of which hardly two are alike."""
 
 _TAG = re.compile(r'([^\s/>"\'=!?]+)((?:\s+[^\s=>"\']+\s*=\s*"[^"]*")*)\s*(/?)>(.*)', re.DOTALL)
+_SOUND = re.compile(
+    r'N(?:[ \t\n]+N[ \t\n]*=[ \t\n]*"[^"]*")*[ \t\n]*/?>.*'.replace(
+        "N", r"[A-Za-z_][A-Za-z0-9_.-]*"
+    ),
+    re.DOTALL,
+)
+"""Tags that are well-formed beyond doubt, if no attribute comes twice."""
 _NAME = re.compile(r'([^\s=>"\']+)\s*=\s*"[^"]*"')
 _REFERENCE = re.compile(r"&(?:#x([0-9a-fA-F]+)|#([0-9]+)|(\w+));")
 _NAMED = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
@@ -43,6 +50,8 @@ class Reader:
         self._shapes: dict[tuple[str, ...], _Shape] = {}
         self.has_changes = False
         self.has_stray = False
+        self.is_sound = True
+        """Whether all tags are well-formed, characters and references aside."""
         self.shapes: set[tuple[str, tuple[str, ...]]] = set()
         """Tags with the names of their attributes, as they occur."""
 
@@ -68,7 +77,7 @@ class Reader:
             return tag, found
         if "ID" not in values:
             _remember(self.known, piece, tag)
-        elif sign and found == id:
+        elif sign and found == id and not head.count('"') % 2:
             values["ID"] = ""
             _remember(self._with_id, (head, tail), tag)
         return tag, found
@@ -99,12 +108,19 @@ class Reader:
         names = tuple(_NAME.findall(found[2]))
         if any(":" in name for name in names):
             raise NotPlainError
+        self.is_sound = self.is_sound and _is_sound(piece, names)
         self.has_changes = self.has_changes or "ChangeMode" in names
         name = found[1].rpartition(":")[2]
         is_over = bool(found[3]) or name in STRUCTURE
         self.has_stray = self.has_stray or (is_over and bool(found[4].strip()))
         self.shapes.add((name, names))
         return name, names, bool(found[3]), name not in STRUCTURE
+
+
+def _is_sound(piece: str, names: tuple[str, ...]) -> bool:
+    """Whether a tag is well-formed beyond doubt, and declares no namespace."""
+    has_each_once = len(set(names)) == len(names) and "xmlns" not in names
+    return has_each_once and _SOUND.fullmatch(piece) is not None
 
 
 def text_in(piece: str) -> str:
