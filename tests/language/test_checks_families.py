@@ -102,6 +102,14 @@ def test_features_of_metadata_are_named_at_every_depth():
     """) == ["'least' is no feature of the metadata 'speed'"]
 
 
+def test_a_feature_that_is_said_to_be_featured_may_be_redefined_where_no_type_owns_it():
+    free = "class Car { member feature driver; member feature owner redefines Car::driver; }"
+    told = ["'driver' is a member of no type, so 'owner' cannot redefine it"]
+    assert found(free, "kerml") == told
+    assert found(free.replace("driver;", "driver featured by Car;", 1), "kerml") == []
+    assert found(f"{free} featuring of Car::driver by Car;", "kerml") == []
+
+
 def test_flows_need_a_dot_unless_a_usage_holds_what_flows():
     text = (
         "part def A {{ out item x; }} part def B {{ in item z; }}"

@@ -101,3 +101,17 @@ def test_features_of_generals_and_of_packages_are_accessible():
     """)
         == []
     )
+
+
+def test_a_condition_of_a_filter_is_about_what_is_filtered():
+    text = """
+        package Plant {{
+            metadata def Rated {{ attribute isMandatory : ScalarValues::Boolean; }}
+            part belt {{ @Rated {{ isMandatory = true; }} }}
+        }}
+        package Seen {{ private import Plant::*; {} }}
+    """
+    assert found(text.format("filter @Rated and Rated::isMandatory;")) == []
+    assert found(text.format("attribute is = Rated::isMandatory;")) == [
+        "'Rated::isMandatory' is a feature of 'Rated', and nothing around here is one"
+    ]

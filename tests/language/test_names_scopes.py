@@ -1,5 +1,6 @@
 """Which element a name leads to: owned, inherited, imported, around, in the global scope."""
 
+import pytest
 from resolving import leads, resolved, told
 
 
@@ -96,6 +97,48 @@ def test_a_filter_keeps_out_what_has_not_the_metadata():
     assert told(plant % "Table") == [
         "9: 'Table' is not known here: 'Table' is in 'Plant', which is not imported here"
     ]
+
+
+@pytest.mark.parametrize(
+    ("condition", "kept"),
+    [
+        ('KerML::Element::name == "Gate"', {"Gate"}),
+        ("KerML::Type::isAbstract", {"Table"}),
+        ("not KerML::Type::isAbstract", {"Gate", "leaf"}),
+        ("KerML::Feature::isComposite", set()),
+        ("SysML::Usage::isVariation or KerML::Feature::isEnd", set()),
+        ("@SysML::PartUsage and not KerML::Feature::isComposite", {"leaf"}),
+        ("Plant::Rated::level > 1", {"Gate"}),
+        ("Plant::Rated::level <= 1", {"Table"}),
+        ("KerML::Element::qualifiedName != null", {"Gate", "Table", "leaf"}),
+    ],
+)
+def test_a_filter_asks_what_elements_say_of_themselves(condition, kept):
+    plant = """
+        package Plant {
+            metadata def Rated { attribute level : ScalarValues::Integer; }
+            part def Gate { @Rated { level = 2; } }
+            abstract part def Table { @Rated { level = 1; } }
+            part leaf;
+        }
+    """
+    uses = {"Gate": "part a : Gate;", "Table": "part a : Table;", "leaf": "part a :> leaf;"}
+    seen = f"package Seen {{ private import Plant::*; filter {condition}; %s }}"
+    assert {name for name, use in uses.items() if not told(plant, seen % use)} == kept
+
+
+def test_what_features_a_feature_may_be_in_it():
+    model = resolved(
+        """
+        class Car {
+            member feature driver featured by Car_snapshots {
+                member feature Car_snapshots subsets Occurrences::occurrences;
+            }
+        }
+        """,
+        language="kerml",
+    )
+    assert leads(model, "Car::driver", "TypeFeaturing") == "Car::driver::Car_snapshots"
 
 
 def test_imports_in_a_circle_end():

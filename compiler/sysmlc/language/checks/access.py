@@ -20,14 +20,19 @@ KINDS = _CONNECTORS | {"FeatureReferenceExpression"}
 
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
-    """Report features that nothing around the connector or expression has."""
+    """Report features that nothing around the connector or expression has.
+
+    A condition of a filter is about what is filtered (KerML 7.4.14), and that has the feature.
+    """
     uses = list(_uses(node))
     if not uses:
         return
     scopes = [node, *_around(node)]
     if len({id(feature.owner) for *_, feature in uses}) == 1 and uses[0][2].owner in scopes:
         return
-    if not any(all(_has(model, scope, feature) for *_, feature in uses) for scope in scopes):
+    if any(all(_has(model, scope, feature) for *_, feature in uses) for scope in scopes):
+        return
+    if not any(scope.membership == "ElementFilterMembership" for scope in scopes):
         far = [one for one in uses if not any(_has(model, scope, one[2]) for scope in scopes)]
         for user, relation, feature in far or _outside(model, scopes[1], uses):
             place = subject(document, user, relation.reference.start)

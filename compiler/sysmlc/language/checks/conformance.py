@@ -77,7 +77,7 @@ def check(model: Model, node: Node) -> Iterator[Found]:
         rules = (
             (NONUNIQUE, node.facts.get("isUnique") is False and _is_unique(target)),
             (NOT_CONSTANT, _may_change(node) and target.facts.get("isConstant") is True),
-            (OF_PACKAGE, relation.kind == "Redefinition" and _are_free(node, target)),
+            (OF_PACKAGE, relation.kind == "Redefinition" and _are_free(model, node, target)),
             (OF_SAME_OWNER, relation.kind == "Redefinition" and _are_of_one(node, target)),
             (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
         )
@@ -91,8 +91,23 @@ def _is_unique(feature: Node) -> bool:
     return feature.facts.get("isUnique") is not False
 
 
-def _are_free(feature: Node, general: Node) -> bool:
-    return owning_type(feature) is None and owning_type(general) is None
+def _are_free(model: Model, feature: Node, general: Node) -> bool:
+    if owning_type(feature) is not None or owning_type(general) is not None:
+        return False
+    return not (_is_featured(model, feature) or _is_featured(model, general))
+
+
+def _is_featured(model: Model, feature: Node) -> bool:
+    """Whether a type is said to have a feature that it does not own."""
+    if any(relation.kind == "TypeFeaturing" for relation in feature.relations):
+        return True
+    return any(
+        relation.reference.target is feature
+        for document in model.documents
+        for node in document.root.walk()
+        if node.kind == "TypeFeaturing"
+        for relation in node.relations
+    )
 
 
 def _are_of_one(feature: Node, general: Node) -> bool:

@@ -92,10 +92,11 @@ def _start(node: Node, relation: Relation) -> Start:
         return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
     if kind == "FeatureTyping":
         return Start(beyond_expressions(node), without=node)
-    if kind == "importedMembership" and node.facts.get("isImportAll"):
-        return Start(namespace(node), without=node, everything=True)
+    if kind == "TypeFeaturing":
+        return Start(node, without=node)
+    everything = kind == "importedMembership" and bool(node.facts.get("isImportAll"))
     before = _before(node, relation) if kind == "FeatureChaining" else None
-    return Start(namespace(node), without=node, before=before)
+    return Start(namespace(node), without=node, before=before, everything=everything)
 
 
 def _before(node: Node, relation: Relation) -> Relation | None:

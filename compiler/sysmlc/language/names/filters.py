@@ -1,7 +1,10 @@
 """Filters of imports: conditions about metadata, decided where constant (KerML 7.2.5.4)."""
 
+import operator as op
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from sysmlc.language.composition import USAGES, is_composite
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
@@ -12,6 +15,11 @@ if TYPE_CHECKING:
 Value = str | bool | int | float | None
 """What an expression gives; None is the empty sequence."""
 _METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+_STATED = frozenset(
+    {"isAbstract", "isConstant", "isDerived", "isEnd", "isIndividual", "isNegated", "isOrdered"}
+    | {"isParallel", "isPortion", "isSufficient", "isVariable", "isVariation"}
+)
+"""Attributes of metaclasses that are false unless the text states them."""
 
 
 class UndecidedError(Exception):
@@ -50,13 +58,30 @@ def _operated(operator: str, operands: list[Node], element: Node, lookup: "Gener
         return any(value is True for value in values)
     if operator == "not":
         return values[0] is not True
-    if operator in ("==", "===") and len(values) == 2:
-        return values[0] == values[1]
-    if operator in ("!=", "!==") and len(values) == 2:
-        return values[0] != values[1]
-    if operator == "xor" and len(values) == 2:
-        return (values[0] is True) != (values[1] is True)
+    if len(values) == 2 and operator in _COMPARISONS:
+        return _COMPARISONS[operator](values[0], values[1])
     raise UndecidedError(operator)
+
+
+def _order(compare: Callable[[float, float], bool]) -> Callable[[Value, Value], bool]:
+    def ordered(one: Value, other: Value) -> bool:
+        numbers = [value for value in (one, other) if isinstance(value, int | float)]
+        return len(numbers) == 2 and compare(numbers[0], numbers[1])
+
+    return ordered
+
+
+_COMPARISONS: dict[str, Callable[[Value, Value], bool]] = {
+    "==": op.eq,
+    "===": op.eq,
+    "!=": op.ne,
+    "!==": op.ne,
+    "xor": lambda one, other: (one is True) != (other is True),
+    "<": _order(op.lt),
+    "<=": _order(op.le),
+    ">": _order(op.gt),
+    ">=": _order(op.ge),
+}
 
 
 def _classified(expression: Node, element: Node, lookup: "Generals") -> bool:
@@ -102,6 +127,8 @@ def _referred(expression: Node, element: Node, lookup: "Generals") -> Value:
 
 
 def _given(feature: Node, element: Node, lookup: "Generals") -> Value:
+    if feature.owner is not None and _is_reflective(feature.owner):
+        return _of_metaclass(feature, element)
     for usage in metadata(element):
         for member in usage.members:
             if feature in lookup.redefined(member):
@@ -109,6 +136,22 @@ def _given(feature: Node, element: Node, lookup: "Generals") -> Value:
         if feature.owner is not None and lookup.conforms(usage, feature.owner):
             return _bound(feature, element, lookup)
     return None
+
+
+def _of_metaclass(feature: Node, element: Node) -> Value:
+    """What an element itself says for ``Element::name``, ``Type::isAbstract`` and alike."""
+    name, metaclass = feature.name or "", feature.owner and feature.owner.name
+    if not is_a(element.kind, metaclass or ""):
+        return None
+    if name == "declaredName" or (name == "name" and element.name is not None):
+        return element.name
+    if name in ("shortName", "declaredShortName"):
+        return element.short
+    if name == "isComposite" and element.kind in USAGES:
+        return is_composite(element)
+    if name in _STATED or name == "isComposite":
+        return element.facts.get(name, False)
+    raise UndecidedError(name)
 
 
 def _bound(feature: Node, element: Node, lookup: "Generals") -> Value:
