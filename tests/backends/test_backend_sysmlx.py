@@ -139,3 +139,18 @@ def test_models_of_other_languages_are_said_without_a_broken_reference(name, cor
     files, codes = emitted(made.graph)
     assert "SM758" not in codes
     assert len(list(again(files)[0].root.walk())) > 100
+
+
+def nested(depth):
+    rows = (f'{"  " * level}Package p{level} "P{level}"' for level in range(depth))
+    return parse_text("\n".join(rows) + "\n")
+
+
+def test_what_is_nested_deeper_than_text_is_read_is_not_written_but_told():
+    assert emitted(nested(202)) == ({}, ["SM748"])
+
+
+def test_what_is_nested_as_deep_as_text_is_read_is_written():
+    files, codes = emitted(nested(200))
+    assert list(files) == ["sysmlx/P0.sysmlx"]
+    assert codes == []

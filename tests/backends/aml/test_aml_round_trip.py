@@ -294,3 +294,14 @@ def test_order_of_hashes_is_not_in_the_file(tmp_path):
         subprocess.run(arguments, env=environment, capture_output=True, check=False)
     made = [next((tmp_path / seed).rglob("*.aml")).read_bytes() for seed in ("0", "7")]
     assert made[0] == made[1]
+
+
+def test_information_of_a_vendor_is_kept_however_deep_it_is():
+    deep = f"{'<x>' * 400}{'</x>' * 400}"
+    text = (
+        '<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">'
+        f"<AdditionalInformation>{deep}</AdditionalInformation></CAEXFile>"
+    )
+    texts, _, _ = round_trip(read(Source("plant.aml", text.encode())))
+    (written,) = texts.values()
+    assert written.count("<x>") + written.count("<x/>") == 400

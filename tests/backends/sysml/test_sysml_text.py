@@ -475,3 +475,34 @@ def test_the_text_does_not_depend_on_hash_seeds(seed):
             [sys.executable, "-c", script, *folders], capture_output=True, check=True
         ).stdout
     )
+
+
+TYPED_BY_EACH_OTHER = """
+Package p "Plant"
+  Class a "A" role="block"
+    Property x "x"
+      -> typed-by y
+    Property y "y" role="part"
+      -> typed-by z
+    Property z "z"
+      -> typed-by y
+  Association k "k"
+    -> end k.e
+    Property k.e "e"
+      -> typed-by k
+  Instance i "i"
+    -> instance-of i
+"""
+
+
+def test_types_that_lead_in_a_circle_do_no_harm():
+    lines = lines_of(TYPED_BY_EACH_OTHER)
+    assert lines[2:5] == ["ref x :> y;", "part y :> z;", "ref z :> y;"]
+    assert lines[-5:-1] == ["connection def k {", "end e : k;", "}", "part i :> i;"]
+
+
+def test_a_row_of_types_ends_however_long_it_is():
+    rows = (f'    Property f{n} "f{n}"\n      -> typed-by f{n + 1}' for n in range(2000))
+    last = '    Property f2000 "f2000" role="part"'
+    lines = lines_of("\n".join(['Package p "P"', '  Class a "A" role="block"', *rows, last]))
+    assert lines[-4:-2] == ["ref f1999 :> f2000;", "part f2000;"]

@@ -85,8 +85,10 @@ def ordered(node: Node) -> list[Node]:
 
 
 def parsed(text: str) -> Node:
-    """The nodes that a text means; it is XML that a front end wrote."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    """The nodes that a text means; it is XML that a front end wrote, as deep as it reads any."""
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True
+    )
     source = etree.fromstring(text.encode(), parser)
     root = _node(source)
     waiting = [(source, root)]

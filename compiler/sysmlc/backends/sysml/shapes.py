@@ -104,6 +104,8 @@ _USED_BY_KEYWORD = {
     "occurrence": "occurrence",
 }
 """Keyword of features by that of the definition, or behaviour, that types them; else ``ref``."""
+_TYPES = 30
+"""Features typed by features: so many decide how the first one is written."""
 HOLDERS = (Kind.PACKAGE, Kind.PROFILE)
 
 
@@ -171,8 +173,7 @@ def behaviour_shape(graph: Graph, element: Element) -> Shape:
 
 def feature_keyword(graph: Graph, feature: Element) -> str:
     """Keyword of a feature by its type, else by its role."""
-    type_ = type_of(graph, feature)
-    shape = None if type_ is None else shape_of(graph, type_)
+    shape = _shape_of_type(graph, feature, type_of(graph, feature))
     if shape is not None:
         return _USED_BY_KEYWORD.get(shape.keyword, "ref")
     role = feature.role
@@ -182,12 +183,32 @@ def feature_keyword(graph: Graph, feature: Element) -> str:
     return "attribute" if is_value else "ref"
 
 
+def _shape_of_type(graph: Graph, element: Element, type_: Element | None) -> Shape | None:
+    """How the type of an element is written; None where types lead in a circle, or too far."""
+    if type_ is None or type_.kind in _DEFINITIONS:
+        return None if type_ is None else shape_of(graph, type_)
+    level = [element]
+    for _ in range(_TYPES):
+        level = [t for one in level for t in _types(graph, one) if t.kind not in _DEFINITIONS]
+        if not level:
+            return shape_of(graph, type_)
+    return None
+
+
+def _types(graph: Graph, element: Element) -> list[Element]:
+    """What decides how an element is written: its types, or those of its ends."""
+    if element.kind is Kind.INSTANCE:
+        return graph.targets(element, Edge.INSTANCE_OF)
+    ends = graph.targets(element, Edge.END) if element.kind is Kind.ASSOCIATION else [element]
+    found = {type_.id: type_ for end in ends if (type_ := type_of(graph, end)) is not None}
+    return list(found.values())
+
+
 def is_part_port(graph: Graph, port: Element) -> bool:
     """Whether a port is written as a part: it is typed by a block, and nothing only flows."""
-    type_ = type_of(graph, port)
-    if type_ is None or port.role == "flow port":
+    if port.role == "flow port":
         return False
-    shape = shape_of(graph, type_)
+    shape = _shape_of_type(graph, port, type_of(graph, port))
     return shape is not None and shape.keyword == "part def"
 
 
@@ -200,7 +221,7 @@ def _parameter(graph: Graph, element: Element) -> Shape | None:
 
 def _association(graph: Graph, element: Element) -> Shape:
     ends = [type_of(graph, end) for end in graph.targets(element, Edge.END)]
-    shapes = [None if end is None else shape_of(graph, end) for end in ends]
+    shapes = [_shape_of_type(graph, element, end) for end in ends]
     joins_ports = bool(shapes) and all(one and one.keyword == "port def" for one in shapes)
     return Shape("interface def" if joins_ports else "connection def", is_named=False)
 
@@ -209,7 +230,7 @@ def _instance(graph: Graph, element: Element) -> Shape:
     if element.role in ("unit", "quantity kind"):
         return Shape("attribute")
     type_ = graph.target(element, Edge.INSTANCE_OF)
-    shape = None if type_ is None else shape_of(graph, type_)
+    shape = _shape_of_type(graph, element, type_)
     keyword = "part" if shape is None else _USED_BY_KEYWORD.get(shape.keyword, "ref")
     return Shape(keyword, is_named=element.subkind != "part")
 

@@ -5,12 +5,14 @@ from functools import cache, lru_cache
 from os import environ
 
 from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.sysmlx.rules import TOO_DEEP
 from sysmlc.cache import default
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Element, Graph
 from sysmlc.language.exchange import Files, interchange_path, write
 from sysmlc.language.library import VARIABLE, Library, core, find
 from sysmlc.language.names import Model
+from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.tree import Document
 from sysmlc.output import Output
 from sysmlc.sources import SourceError
@@ -32,7 +34,8 @@ class SysmlxBackend:
         """Add a file for each file of the model; report what cannot be said."""
         models = graph.derived(Model)
         if not models or any(one.language != "sysml" for one in options.inputs):
-            models = [_said(graph, sink, options)]
+            said = _said(graph, sink, options)
+            models = [] if said is None else [said]
         for model in models:
             library = _files(model.library)
             library.add(model.library.loaded())
@@ -54,14 +57,16 @@ class _Places:
         return path if document.root in self._own else f"{_LIBRARY}/{path}"
 
 
-def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
+def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
     """The graph as SysML v2 text says it, with names resolved; losses are those of the text.
 
-    Raises ValueError when that text has syntax errors, which is a fault of ours.
+    None, and a message, for one that is nested deeper than text is read. Raises ValueError when
+    the text has other syntax errors, which is a fault of ours.
     """
     from sysmlc.backends.sysml import BACKEND as TEXT
     from sysmlc.language.names import resolve
     from sysmlc.language.text import parse
+    from sysmlc.language.text.rules import DEEP
 
     written = Output()
     TEXT.emit(graph, written, sink, options)
@@ -72,8 +77,20 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model:
     ]
     if unseen.has_errors():
         first = next(iter(unseen))
+        if first.rule is DEEP:
+            deepest = _deepest(graph)
+            sink.report(TOO_DEEP, graph.subject(deepest), name=deepest.name, limit=LIMIT)
+            return None
         raise ValueError(f"the text that +sysml makes cannot be read: {first.message}")
     return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
+
+
+def _deepest(graph: Graph) -> Element:
+    """The first of the elements with the most owners."""
+    level = graph.roots()
+    while below := [one for owner in level for one in graph.owned(owner)]:
+        level = below
+    return level[0]
 
 
 @lru_cache(maxsize=1)
