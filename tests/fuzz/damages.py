@@ -3,12 +3,13 @@
 import io
 import re
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable
 from random import Random
 
-from dialects.mutate import Change, Damage, damage, mutate
-from fuzz.changes import CHANGES
+from dialects.mutate import Damage, damage
 
+Spoil = Callable[[bytes, Random], tuple[str, bytes]]
+"""Changes a document; says what was done."""
 _NAMESPACE = re.compile(rb"""xmlns:?\w*=["']([^"']+)["']""")
 _DATE = (2021, 3, 31, 9, 38, 0)
 
@@ -74,6 +75,15 @@ def _declared(data: bytes, random: Random) -> bytes:
     return re.sub(rb"^<\?xml[^?]*", head.encode(), data, count=1)
 
 
+TEXT_DAMAGES: tuple[Damage, ...] = (
+    _cut_pieces,
+    _double_a_line,
+    _merge_conflict,
+    _mixed_encodings,
+    _mixed_encodings,
+)
+"""Of files that are no XML."""
+
 DAMAGES: tuple[Damage, ...] = (
     _unbalance,
     _cut_pieces,
@@ -88,20 +98,16 @@ DAMAGES: tuple[Damage, ...] = (
 # -- archives ------------------------------------------------------------------------------------
 
 
-def mutate_archive(
-    data: bytes, random: Random, changes: Sequence[Change] | None = None
-) -> tuple[str, bytes]:
-    """Change a model inside an archive, the archive's table, or its bytes."""
+def mutate_archive(data: bytes, random: Random, spoil: Spoil) -> tuple[str, bytes]:
+    """Change a model inside an archive by ``spoil``, the archive's table, or its bytes."""
     if random.random() < 0.25:
         return damage(data, random, (_cut_at_border, _lie))
     entries = _unpacked(data)
-    models = [
-        name for name in entries if entries[name].lstrip()[:1] == b"<" and "BINARY" not in name
-    ]
+    models = [name for name in entries if _is_model(name, entries[name])]
     done = "entries"
     if models and random.random() < 0.8:
         name = random.choice(models)
-        done, entries[name] = mutate(entries[name], random, CHANGES, DAMAGES, changes)
+        done, entries[name] = spoil(entries[name], random)
     else:
         names = list(entries)
         one, other = random.choice(names), random.choice(names)
@@ -110,6 +116,12 @@ def mutate_archive(
         else:
             del entries[one]
     return f"in the archive: {done}", _packed(entries)
+
+
+def _is_model(name: str, data: bytes) -> bool:
+    if name.endswith((".sysml", ".kerml", ".json")):
+        return True
+    return data.lstrip()[:1] == b"<" and "BINARY" not in name
 
 
 def _unpacked(data: bytes) -> dict[str, bytes]:

@@ -5,15 +5,18 @@ the command alone (processor time of the child, its largest resident size), not 
 Python. ``python -m fuzz.guard`` is that process; it reads commands as lines of JSON.
 """
 
+import atexit
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import Self
 
@@ -164,8 +167,36 @@ def _warm_up() -> None:
         render(make_report(made.diagnostics, made.sources, str), "text", color=False)
     for name in group.COMMANDS:
         import_module(f"sysmlc.cli.{name}")
+    _keep_library()
     gc.collect()
     gc.freeze()
+
+
+def _keep_library() -> None:
+    """Keep what is the same for all models of SysML v2: parse tables, the library's files.
+
+    Commands have no cache, so that models are read; the library is, as in any second run, in one.
+    """
+    from sysmlc.backends.sysmlx import backend
+    from sysmlc.cache import Cache
+    from sysmlc.driver import Request, compile_model
+    from sysmlc.language import library
+
+    folder = tempfile.mkdtemp(prefix="fuzz-library-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    kept, find = Cache(Path(folder)), library.find
+    library._read = cache(library._read)
+    library.find = backend.find = lambda path=None, environment=os.environ, cache=None: find(
+        path, environment, kept
+    )
+    found = library.find()
+    for path in found.paths():
+        found.document(path)
+    found.roots("no such name")
+    for language in ("sysml", "kerml"):
+        model = Path(folder, f"m.{language}")
+        model.write_text("package P { private import ScalarValues::*; }")
+        compile_model(Request((model,)))
 
 
 _MODEL = """<?xml version="1.0" encoding="UTF-8"?>

@@ -11,38 +11,21 @@ import shutil
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from random import Random
 
-from lxml import etree
-
-from dialects.magicdraw import write_mdzip, write_xml
-from dialects.mutate import damage, mutate
-from fuzz.aml_changes import AML_CHANGES
-from fuzz.changes import CHANGES
-from fuzz.damages import DAMAGES, mutate_archive
 from fuzz.guard import MEGABYTE, Bounds, Ended, Guard
+from fuzz.mutants import SUFFIXES, Mutant, models, mutant
 
 SECONDS = 5
 MEMORY = 1024 * MEGABYTE
-ARGS = ("-o", "out", "--emit", "+graph,+ecore,+ir", "--diagrams", "both", "--verify-each")
+EMITTED = "+aml,+ecore,+graph,+ir,+reqtable,+sysml,+uml"
+ARGS = ("-o", "out", "--diagrams", "both", "--verify-each")
 _EVERY = 20
 """One mutant of so many is compiled again with another hash seed."""
-_AML = {".aml", ".amlx"}
-_EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*/*.uml"))
-
-
-@dataclass(frozen=True, slots=True)
-class Mutant:
-    """A spoilt model: file name, what was done to which model, content."""
-
-    seed: int
-    name: str
-    done: str
-    data: bytes
+_EXCHANGED = 8
+"""One of so many is written as interchange of SysML v2 too, which takes long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,47 +34,6 @@ class Found:
 
     mutant: Mutant
     what: str
-
-
-def models(corpus: Path | None, largest: int) -> list[Path]:
-    """The examples, and the files of the corpus up to a size in bytes."""
-    inside = corpus.rglob("*") if corpus else ()
-    wanted = {".uml", ".xml", ".mdxml", ".mdzip", ".xmi", *_AML}
-    real = [p for p in inside if p.suffix in wanted and p.stat().st_size <= largest]
-    return [*_EXAMPLES, *sorted(real)]
-
-
-def mutant(seed: int, among: Sequence[Path]) -> Mutant:
-    """The mutant of a number. Small models are chosen more often than large ones."""
-    random = Random(seed)
-    weights = [1 / (20_000 + path.stat().st_size) for path in among]
-    path = random.choices(among, weights)[0]
-    is_example = path in _EXAMPLES
-    dialect = random.choice(["uml", "uml", "xml", "mdzip"]) if is_example else path.suffix[1:]
-    whole = _document(path, dialect if is_example else "")
-    changes = AML_CHANGES if path.suffix in _AML else None
-    if dialect in ("mdzip", "amlx"):
-        done, data = mutate_archive(whole, random, changes)
-    elif _is_well_formed(path):
-        done, data = mutate(whole, random, CHANGES, DAMAGES, changes)
-    else:
-        done, data = damage(whole, random, DAMAGES)
-    return Mutant(seed, f"m{seed}.{dialect}", f"{path.name}: {done}", data)
-
-
-@cache
-def _is_well_formed(path: Path) -> bool:
-    try:
-        etree.parse(path)
-    except etree.XMLSyntaxError:
-        return False
-    return True
-
-
-@cache
-def _document(path: Path, dialect: str) -> bytes:
-    writer = {"xml": write_xml, "mdzip": write_mdzip}.get(dialect, bytes)
-    return writer(path.read_bytes())
 
 
 class Hunter:
@@ -136,14 +78,16 @@ class Hunter:
             yield Found(spoilt, "other outputs with another hash seed")
 
     def _compile(self, guard: Guard, folder: Path, spoilt: Mutant) -> Ended:
-        return guard.run(folder, "build", spoilt.name, *ARGS, bounds=self.bounds)
+        emitted = EMITTED if spoilt.seed % _EXCHANGED else f"{EMITTED},+sysmlx"
+        args = ("build", spoilt.name, "--emit", emitted, *ARGS)
+        return guard.run(folder, *args, bounds=self.bounds)
 
     def _fresh(self, spoilt: Mutant) -> Path:
         folder = self.folder / "work"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         (folder / ".git").mkdir()
-        (folder / spoilt.name).write_bytes(spoilt.data)
+        write(spoilt, folder)
         return folder
 
     def _count(self, spoilt: Mutant, ended: Ended) -> None:
@@ -151,6 +95,14 @@ class Hunter:
         self.seconds += ended.seconds
         self.slowest = max(self.slowest, (ended.seconds, spoilt.seed))
         self.largest = max(self.largest, (ended.megabytes, spoilt.seed))
+
+
+def write(spoilt: Mutant, folder: Path) -> None:
+    """Write the files of a mutant into a folder."""
+    for name, data in spoilt.files:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
 
 
 def _sign(ended: Ended) -> str:
@@ -171,7 +123,7 @@ def _state(folder: Path) -> str:
 def main() -> int:
     """Hunt; print what is found and how it went; 1 when something was found."""
     asked = _arguments()
-    among = models(asked.corpus, asked.largest * 1024)
+    among = models(asked.corpus, asked.largest * 1024, asked.kinds.split(","))
     found = 0
     with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
         hunter = Hunter(Path(folder))
@@ -181,8 +133,7 @@ def main() -> int:
                 found += 1
                 print(f"{seed} {spoilt.done}: {finding.what}", flush=True)
                 if asked.keep:
-                    asked.keep.mkdir(parents=True, exist_ok=True)
-                    (asked.keep / spoilt.name).write_bytes(spoilt.data)
+                    write(spoilt, asked.keep)
         hunter.close()
     print(_summary(hunter, asked.count, found), flush=True)
     return 1 if found else 0
@@ -203,6 +154,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--corpus", type=Path, help="a folder of real models to spoil too")
     parser.add_argument("--largest", type=int, default=300, help="largest model, in kB")
+    parser.add_argument("--kinds", default=",".join(SUFFIXES), help="of models, comma separated")
     parser.add_argument("--keep", type=Path, help="folder for the mutants that were found")
     return parser.parse_args()
 

@@ -8,12 +8,14 @@ from dataclasses import replace
 
 import pytest
 
-from fuzz.hunt import Hunter, models, mutant
+from fuzz.hunt import Hunter
+from fuzz.mutants import models, mutant
 
 BATCH = 20
 EXAMPLES = range(0, 60, BATCH)
 REAL = range(0, 140, BATCH)
 PLANTS = range(0, 200, BATCH)
+V2 = range(0, 140, BATCH)
 LARGEST = 150 * 1024
 
 
@@ -40,20 +42,27 @@ def test_spoilt_examples_are_answered_with_findings(hunter, first):
 @pytest.mark.corpus
 @pytest.mark.parametrize("first", REAL)
 def test_spoilt_real_models_are_answered_with_findings(hunter, corpus, first):
-    among = models(corpus / "xmi", LARGEST)
+    among = models(corpus / "xmi", LARGEST, ["xmi"])
     assert unanswered(hunter, range(first, first + BATCH), among) == []
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("first", PLANTS)
 def test_spoilt_plants_are_answered_with_findings(hunter, corpus, first):
-    among = [p for p in models(corpus / "aml", LARGEST) if p.suffix in (".aml", ".amlx")]
+    among = models(corpus / "aml", LARGEST, ["aml"])
+    assert unanswered(hunter, range(first, first + BATCH), among) == []
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("first", V2)
+def test_spoilt_texts_of_sysml_v2_are_answered_with_findings(hunter, corpus, first):
+    among = models(corpus / "sysml2", LARGEST, ["v2"])
     assert unanswered(hunter, range(first, first + BATCH), among) == []
 
 
 @pytest.mark.corpus
 def test_spoilt_plants_are_wrong_and_right(hunter, corpus):
-    among = [p for p in models(corpus / "aml", LARGEST) if p.suffix in (".aml", ".amlx")]
+    among = models(corpus / "aml", LARGEST, ["aml"])
     before = dict(hunter.codes)
     assert unanswered(hunter, range(700, 720), among) == []
     assert min(hunter.codes[code] - before.get(code, 0) for code in (0, 1)) > 5
@@ -88,5 +97,6 @@ def test_a_fault_would_be_found(hunter, monkeypatch):
     monkeypatch.undo()
     monkeypatch.setattr(hunter, "bounds", Bounds(seconds=5, memory=1 << 20))
     # What the process has set free would hold a small one.
-    large = replace(spoilt, name="m.uml", data=b"<!--" + b"." * (64 << 20) + b"--><m/>")
+    file = ("m.uml", b"<!--" + b"." * (64 << 20) + b"--><m/>")
+    large = replace(spoilt, name="m.uml", files=(file,))
     assert [found.what[:4] for found in hunter.look(large)] == ["exit"]
