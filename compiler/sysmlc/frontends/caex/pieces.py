@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from sysmlc.frontends.caex.document import Document
 
 _CHUNK = 1 << 16
-"""Characters that are cut at once: what comes of them stays near the processor."""
+"""Bytes that are cut at once: what comes of them stays near the processor."""
 
-_DECLARATION = re.compile(r"<\?xml\s.*?\?>", re.DOTALL)
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_DECLARATION = re.compile(rb"<\?xml\s.*?\?>", re.DOTALL)
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*(?<!/)>(.*)""", re.DOTALL)
 
 _FOLDED_STARTS = "".join({name[0] for name in FOLDED})
@@ -45,18 +45,20 @@ _SILENT, _LISTENING, _FOLDED = range(3)
 
 def fill(document: "Document", source: Source) -> bool:
     """Fill the columns of a document without rows; False when the file is not plain."""
-    written = _text_of(source)
-    text = None if written is None else _without_comments(written)
-    if text is None or _begins_too_deep(text):
+    start = _start_of(source.data)
+    if start is None:
         return False
-    is_checked = text is not written or not wellformed.is_sound(source, text)
+    data = _without_comments(source.data)
+    if _begins_too_deep(data, start):
+        return False
+    is_checked = data is not source.data or not wellformed.is_sound(data)
     root = wellformed.root(source) if is_checked else wellformed.root_alone(source)
     if root is None or root[0] != "CAEXFile":
         return False
     try:
-        is_sound = _cut(document, text, root[1])
-    except (NotPlainError, IndexError, StopIteration):
-        # No tag, more ends than starts, or fewer: all of them mean that it is not well-formed.
+        is_sound = _cut(document, _chunks(data, start), root[1])
+    except (NotPlainError, UnicodeDecodeError, IndexError, StopIteration):
+        # The last two: more ends than starts, or fewer; it is not well-formed.
         document.clear()
         return False
     if is_sound or is_checked or wellformed.root(source) is not None:
@@ -65,32 +67,29 @@ def fill(document: "Document", source: Source) -> bool:
     return False
 
 
-def _text_of(source: Source) -> str | None:
-    """The text without declaration; None when there is more to it than tags and comments."""
-    mark, name = codec(source.data)
+def _start_of(data: bytes) -> int | None:
+    """Where the declaration is over; None when there is more to it than tags and comments."""
+    mark, name = codec(data)
     if name != "utf-8":
         return None
-    try:
-        text = source.data[mark:].decode()
-    except UnicodeDecodeError:
-        return None
-    declared = _DECLARATION.match(text)
-    text = text[declared.end() :] if declared else text
+    declared = _DECLARATION.match(data, mark)
+    start = declared.end() if declared else mark
     # Single characters first: to look for two takes ten times as long.
-    if ("?" in text and "<?" in text) or ("!" in text and "<![" in text):
+    at = data.find(b"?", start)
+    if at >= 0 and data.find(b"<?", start) >= 0:
         return None
-    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+    return None if b"!" in data and b"<![" in data else start
 
 
-def _without_comments(text: str) -> str:
-    """The text without comments; the same object when it has none."""
-    return _COMMENT.sub("", text) if "!" in text and "<!--" in text else text
+def _without_comments(data: bytes) -> bytes:
+    """The bytes without comments; the same object when there is none."""
+    return _COMMENT.sub(b"", data) if b"!" in data and b"<!--" in data else data
 
 
-def _begins_too_deep(text: str) -> bool:
+def _begins_too_deep(data: bytes, start: int) -> bool:
     """Whether more elements are open at the first end than may be: the rest need not be checked."""
-    ends = [at for at in (text.find("</"), text.find("/>")) if at >= 0]
-    return text.count("<", 0, min(ends, default=len(text))) > DEFAULT_LIMITS.depth
+    ends = [at for at in (data.find(b"</", start), data.find(b"/>", start)) if at >= 0]
+    return data.count(b"<", start, min(ends, default=len(data))) > DEFAULT_LIMITS.depth
 
 
 def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
@@ -109,13 +108,13 @@ def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
         document.texts[""][0] = without_references(found[1])
 
 
-def _cut(document: "Document", text: str, root: dict[str, str]) -> bool:
+def _cut(document: "Document", chunks: Iterator[list[str]], root: dict[str, str]) -> bool:
     """Fill the columns with the rows of a text; False when it has to be checked by a parser."""
     reader, ends = Reader(), wellformed.Ends()
-    pieces = chain.from_iterable(_chunks(text))
+    pieces = chain.from_iterable(chunks)
     _start(document, next(pieces), root)
     last = _fill(document, pieces, reader, ends)
-    if not (ends.are_right() and is_plain("".join(document.ids))):
+    if 0 in document.ends or not is_plain("".join(document.ids)):
         raise NotPlainError
     document.has_changes = reader.has_changes
     document.has_stray = reader.has_stray or ends.has_stray
@@ -131,7 +130,7 @@ def _fill(
     Text is listened to as in ``columns``: from a start tag that may have some to the next tag.
     """
     tags, ends, texts = document.tags, document.ends, document.texts
-    known, read, end, expect = reader.known.get, reader.read, ended.add, ended.expect
+    known, read = reader.known.get, reader.read
     add_tag, add_attributes, add_id = tags.append, document.attributes.append, document.ids.append
     add_parent, add_ordinal = document.parents.append, document.ordinals.append
     add_end, add_alike = ends.append, document.alike.append
@@ -140,9 +139,9 @@ def _fill(
     ordinal, row, state, piece = 0, 1, _LISTENING, ""
     for piece in pieces:
         if piece[0] == "/":
-            end(piece)
             above = pop()
-            expect(tags[above])
+            if tags[above] != ended[piece]:
+                raise NotPlainError
             ends[above] = row
             state = _SILENT
             continue
@@ -155,18 +154,16 @@ def _fill(
                 column = texts.get(name)
                 if column is not None and sign and above not in column:
                     column[above] = without_references(said) if "&" in said else said
-                    end(next(pieces))
-                    expect(name)
+                    if ended[next(pieces)] != name:
+                        raise NotPlainError
                     continue
             tag, id = read(piece, row)
         name, values, is_empty, has_text, alike = tag
         if has_text or state:
             state = _listen(texts, tag, piece, above, row)
             if state == _FOLDED:
+                _pass_end(tag, pieces, ended)
                 state = _SILENT
-                if not is_empty:
-                    end(next(pieces))
-                    expect(name)
                 continue
         add_tag(name)
         add_attributes(values)
@@ -182,9 +179,13 @@ def _fill(
             add_end(0)
             if len(stack) > deepest:
                 raise NotPlainError
-    if stack:
-        raise NotPlainError
     return piece
+
+
+def _pass_end(tag: Tag, pieces: Iterator[str], ended: wellformed.Ends) -> None:
+    """Pass over the end tag of an element that is folded."""
+    if not tag[2] and ended[next(pieces)] != tag[0]:
+        raise NotPlainError
 
 
 def _listen(texts: dict[str, dict[int, str]], tag: Tag, piece: str, above: int, row: int) -> int:
@@ -200,11 +201,17 @@ def _listen(texts: dict[str, dict[int, str]], tag: Tag, piece: str, above: int, 
     return _SILENT if is_empty else _LISTENING
 
 
-def _chunks(text: str) -> Iterator[list[str]]:
-    """What stands between the signs that start tags, in lists."""
-    start, end = text.index("<") + 1, len(text)
+def _chunks(data: bytes, start: int) -> Iterator[list[str]]:
+    """What stands between the signs that start tags, in lists.
+
+    Bytes become text here: new memory is what takes longest in that, and so it is used again.
+    """
+    start, end = data.index(b"<", start) + 1, len(data)
     while start < end:
-        stop = text.find("<", start + _CHUNK)
+        stop = data.find(b"<", start + _CHUNK)
         stop = end if stop < 0 else stop
-        yield text[start:stop].split("<")
+        text = data[start:stop].decode()
+        if "\r" in text:
+            text = text.replace("\r\n", "\n").replace("\r", "\n")
+        yield text.split("<")
         start = stop + 1

@@ -1,6 +1,7 @@
 """Start tags as they are written, read once each: what they state, apart from IDs, comes again."""
 
 import re
+from sys import intern
 from typing import TypeVar
 
 from sysmlc.frontends.caex.columns import STRUCTURE
@@ -96,7 +97,7 @@ class Reader:
         name, names, is_empty, has_text = shape
         values = dict(zip(names, parts[1::2], strict=False))
         values.pop("xmlns", None)
-        if not is_plain("".join(values.values())):
+        if not is_plain("".join(parts[1::2])):
             values = {name: _value(text) for name, text in values.items()}
         return name, values, is_empty, has_text, row
 
@@ -110,7 +111,7 @@ class Reader:
             raise NotPlainError
         self.is_sound = self.is_sound and _is_sound(piece, names)
         self.has_changes = self.has_changes or "ChangeMode" in names
-        name = found[1].rpartition(":")[2]
+        name = intern(found[1].rpartition(":")[2])
         is_over = bool(found[3]) or name in STRUCTURE
         self.has_stray = self.has_stray or (is_over and bool(found[4].strip()))
         self.shapes.add((name, names))
@@ -146,7 +147,7 @@ def _character(reference: re.Match[str]) -> str:
 
 def is_plain(value: str) -> bool:
     """Whether the value of an attribute means what is written: no reference, no line end."""
-    return "&" not in value and value.isprintable()
+    return "&" not in value and "\n" not in value and "\t" not in value
 
 
 def _value(text: str) -> str:

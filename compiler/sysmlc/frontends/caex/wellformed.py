@@ -7,6 +7,7 @@ different one once. Nothing that expat refuses may pass; what is only unusual is
 """
 
 import re
+from sys import intern
 
 from sysmlc.frontends.caex.tags import NotPlainError
 from sysmlc.sources import Source, SourceError
@@ -19,7 +20,7 @@ _CHARACTERS = bytes([*b"\t\n\r", *range(0x20, 0x100)])
 """All bytes that may stand in XML in UTF-8, once it is known to be UTF-8."""
 _NO_CHARACTERS = (b"\xef\xbf\xbe", b"\xef\xbf\xbf")
 """U+FFFE and U+FFFF, which are UTF-8 and no characters of XML."""
-_NAMED = ("amp;", "lt;", "gt;", "quot;", "apos;")
+_NAMED = (b"&amp;", b"&lt;", b"&gt;", b"&quot;", b"&apos;")
 
 _END = re.compile(r"/([A-Za-z_][A-Za-z0-9_.-]*)[ \t\n]*>(.*)", re.DOTALL)
 _LOOSE_END = re.compile(r"/(?:[^>]*:)?([^>:]*?)\s*>(.*)", re.DOTALL)
@@ -29,16 +30,25 @@ _NEAR = 1 << 16
 _BLANK = " \t\n"
 
 
-def is_sound(source: Source, text: str) -> bool:
-    """Whether all characters and references of a text without CDATA and comments are right."""
-    if "]" in text and "]]>" in text:
+def is_sound(data: bytes) -> bool:
+    """Whether all characters and references are right of what has no CDATA and no comments.
+
+    That they are UTF-8 has to be seen elsewhere.
+    """
+    if (b"]" in data and b"]]>" in data) or data.translate(None, _CHARACTERS):
         return False
-    if not all(behind.startswith(_NAMED) for behind in text.split("&")[1:]):
+    if not data.isascii() and any(one in data for one in _NO_CHARACTERS):
         return False
-    data = source.data
-    if data.translate(None, _CHARACTERS):
-        return False
-    return data.isascii() or not any(one in data for one in _NO_CHARACTERS)
+    return _has_named_references_only(data)
+
+
+def _has_named_references_only(data: bytes) -> bool:
+    at = data.find(b"&")
+    while at >= 0:
+        if not data.startswith(_NAMED, at):
+            return False
+        at = data.find(b"&", at + 1)
+    return True
 
 
 def root(source: Source) -> Root | None:
@@ -71,33 +81,23 @@ def is_end(piece: str) -> bool:
     return not piece.partition(">")[2].strip(_BLANK)
 
 
-class Ends:
-    """The end tags of a text as they come, with the names that they should have.
+class Ends(dict[str, str]):
+    """Names of the elements that end tags end, by the tags and the texts behind them.
 
-    ``is_sound`` says whether all are as they should be, ``has_stray`` whether text is behind one;
-    both are known when ``are_right`` was asked.
+    ``is_sound`` says whether all are as they should be, ``has_stray`` whether text was behind.
     """
 
     def __init__(self) -> None:
-        self._pieces: list[str] = []
-        self._expected: list[str] = []
-        self.add = self._pieces.append
-        """Add an end tag with the text behind it."""
-        self.expect = self._expected.append
-        """Say what the end tag that is added now should end: the name as ``_LOOSE_END`` has it."""
+        super().__init__()
         self.is_sound = True
         self.has_stray = False
 
-    def are_right(self) -> bool:
-        """Whether each end tag ends what it should. Raises NotPlainError for what is no tag."""
-        names = {piece: self._name(piece) for piece in set(self._pieces)}
-        return list(map(names.__getitem__, self._pieces)) == self._expected
-
-    def _name(self, piece: str) -> str:
+    def __missing__(self, piece: str) -> str:
         sound = _END.fullmatch(piece)
         found = sound or _LOOSE_END.fullmatch(piece)
         if found is None:
             raise NotPlainError
         self.is_sound = self.is_sound and sound is not None
         self.has_stray = self.has_stray or bool(found[2].strip())
-        return found[1]
+        self[piece] = name = intern(found[1])
+        return name
