@@ -5,11 +5,9 @@ the command alone (processor time of the child, its largest resident size), not 
 Python. ``python -m fuzz.guard`` is that process; it reads commands as lines of JSON.
 """
 
-import atexit
 import json
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -175,28 +173,29 @@ def _warm_up() -> None:
 def _keep_library() -> None:
     """Keep what is the same for all models of SysML v2: parse tables, the library's files.
 
-    Commands have no cache, so that models are read; the library is, as in any second run, in one.
+    Commands have no cache, so that models are read; the library is known, as in any second run.
+    Nothing of it is resolved here: its names may mean something else beside another model.
     """
     from sysmlc.backends.sysmlx import backend
     from sysmlc.cache import Cache
     from sysmlc.driver import Request, compile_model
     from sysmlc.language import library
 
-    folder = tempfile.mkdtemp(prefix="fuzz-library-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    kept, find = Cache(Path(folder)), library.find
-    library._read = cache(library._read)
-    library.find = backend.find = lambda path=None, environment=os.environ, cache=None: find(
-        path, environment, kept
-    )
-    found = library.find()
-    for path in found.paths():
-        found.document(path)
+    with tempfile.TemporaryDirectory() as folder:
+        for language in ("sysml", "kerml"):
+            model = Path(folder, f"m.{language}")
+            model.write_text("package P { private import ScalarValues::*; }")
+            compile_model(Request((model,)))
+        for _ in range(2):
+            found = library.find(cache=Cache(Path(folder)))
+            documents = {path: found.document(path) for path in found.paths()}
     found.roots("no such name")
-    for language in ("sysml", "kerml"):
-        model = Path(folder, f"m.{language}")
-        model.write_text("package P { private import ScalarValues::*; }")
-        compile_model(Request((model,)))
+    library._read = cache(library._read)
+    read, index = library.read, found._index
+    library.read = lambda source, path, *more: documents.get(path) or read(source, path, *more)
+    library.Library._indexed = lambda _: index
+    backend._library.cache_clear()
+    backend._files.cache_clear()
 
 
 _MODEL = """<?xml version="1.0" encoding="UTF-8"?>
