@@ -141,10 +141,34 @@ def test_a_word_that_nearly_is_a_keyword_is_asked_about():
         ("enum def E { a, b; }", "members end with ';', they are not separated by commas"),
         ("part def A extends B;", "what is more special says ':>' or 'specializes'"),
         ("attribute a = if b then c else d;", "question mark: if a ? b else c"),
+        ("action def Fill(in fuel : F, out level : L);", "of the body: { in fuel; }"),
+        ("calc def Double(x) { x }", "of the body: { in x; }"),
+        ("part p { connect a.p[1] to b.p; }", "stands before it: [0..1] a"),
+        ("private import ISQ::TorqueValue as Torque;", "alias Torque for ...;"),
+        ("private import ISQ.*;", "names of packages are joined by '::'"),
+        ("action a { succession b then c; }", "succession first b then ..."),
+        ("state s { transition b to c; }", "transition first b then ..."),
+        ("state s { transition t first b then c when x; }", "is 'accept when c'"),
+        ("calc def F { return x * 2; }", "declares the result: return r = ...;"),
+        ("part p { assert x > 5; }", "in braces: assert constraint { x > 0 }"),
+        ("part p { connect a with b; }", "joined by 'to': connect a to b"),
+        ("block Gate;", "'block' is no keyword: a block is a 'part def'"),
+        ("part p { value x : Real; }", "'attribute' is meant"),
+        ("action a { stream b.x to c.y; }", "'flow' is meant: flow from a.x to b.y"),
     ],
 )
 def test_common_slips_get_the_words_that_are_right(text, advice):
     assert advice in advised(text)[0]
+
+
+def test_parameters_in_parentheses_of_kerml_get_the_words_that_are_right():
+    assert advised("feature f { expr s(x) : Boolean; }", "kerml") == [
+        "parameters are members of the body: { in x; }"
+    ]
+
+
+def test_words_that_are_right_elsewhere_are_no_slips():
+    assert "no keyword" not in "".join(advised("class Gate { value : Real ; ] }", "kerml"))
 
 
 def test_sm195_members_stand_only_where_they_mean_something():

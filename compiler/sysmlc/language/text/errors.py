@@ -3,12 +3,11 @@
 from codecs import BOM_UTF8
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
-from sysmlc.language.text import rules
+from sysmlc.language.text import hints, rules
 from sysmlc.language.text.grammar_words import expectation
 from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.text.scan import Fault, Tokens
 from sysmlc.sources import Source
-from sysmlc.suggest import did_you_mean
 
 _MOST = 100
 """Errors of one file that are told."""
@@ -19,13 +18,6 @@ _COMMENT = (
     "a comment /* */ is an element of the model and stands between members, or after `doc` or "
     "`comment`; a note anywhere is written //* ... */ or // ..."
 )
-_HINTS = {
-    "import": "an import stands in a body: private import A::*;",
-    ":=": "':=' gives an initial value, '=' binds for good, 'default' may be overridden",
-    ",": "members end with ';', they are not separated by commas",
-    "extends": "what is more special says ':>' or 'specializes'",
-    "then": "an expression asks with a question mark: if a ? b else c",
-}
 
 
 class Errors:
@@ -78,7 +70,7 @@ class Errors:
         """A token does not fit."""
         said = expectation(expected, self.beginnings)
         found = self._found(at)
-        advice = self._about_unit(at) or _HINTS.get(self._tokens[at]) or self._about_word(at - 1)
+        advice = hints.slip(self._tokens, at, expected, self.beginnings)
         start = self._tokens.starts[at]
         self.report(rules.SYNTAX, start, found=found, expected=said, advice=advice)
 
@@ -94,7 +86,7 @@ class Errors:
         if meant == "NAME":
             self.report(rules.KEYWORD, start, word=word, language=_LANGUAGES[self._language])
             return
-        advice = f"{_HINTS[':=']}: here only '{meant}' can stand"
+        advice = f"{hints.INITIAL}: here only '{meant}' can stand"
         expected = f"'{meant}'"
         self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
 
@@ -103,24 +95,11 @@ class Errors:
         before = self._before(at)
         end = self._tokens.ends[before]
         said = self._found(before)
-        advice = f"put {words} there" if words != "';'" else self._about_word(before)
-        advice = advice or "put ';' there, or a body in braces"
+        advice = f"put {words} there"
+        if words == "';'":
+            about = hints.missing(self._tokens, before, at, self.beginnings)
+            advice = about or "put ';' there, or a body in braces"
         self.report(rules.MISSING, max(end - 1, 0), missing=words, before=said, advice=advice)
-
-    def _about_unit(self, at: int) -> str:
-        """A name behind a number is meant as its unit."""
-        unit, number = self._tokens[at], self._tokens[at - 1] if at else ""
-        is_unit = number[:1].isdigit() and unit[:1].isalpha()
-        return f"units stand in brackets: {number} [{unit}]" if is_unit else ""
-
-    def _about_word(self, at: int) -> str:
-        """Where a member starts with a word that no keyword is: the keyword that may be meant."""
-        word = self._tokens[at] if at >= 0 else ""
-        is_first = at == 0 or self._tokens[at - 1] in (";", "{", "}")
-        if not is_first or not word.isidentifier() or word in self.beginnings:
-            return ""
-        said = did_you_mean(word, [known for known in self.beginnings if known.isalpha()])
-        return f"'{word}' is no keyword: {said}" if said.startswith("did") else ""
 
     def _before(self, at: int) -> int:
         """The last token before one that the text really has."""
