@@ -6,6 +6,7 @@ libraries do differently, and what may run for long, are methods of ``Manager``.
 
 import logging
 import time
+import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
@@ -19,6 +20,17 @@ ENGINES = ("cudd", "autoref")
 _MEMORY = 8 << 30
 """Bytes that a manager may take when nothing else is said."""
 _GIBIBYTE = 1 << 30
+_START = 1 << 26
+"""Bytes that CUDD is told to expect: it sets aside and clears a share of them at once, which for
+8 GiB takes longer than most games."""
+_CACHE = 1 << 14
+"""Slots of the cache at the start; it grows."""
+_NODE = 32
+"""Bytes of a node."""
+_LOOSE = 5
+"""CUDD lets its tables grow fast up to this part of the memory; so it does from ``_START``."""
+_PATIENCE = 0.05
+"""CPU seconds between looks at the limits: counting nodes takes longer than most operations."""
 
 
 class Node(Protocol):
@@ -83,6 +95,7 @@ class Manager:
         self._progress = progress
         self._start = time.process_time()
         self._peak = 0
+        self._next_look = 0.0
         # dd has no type hints that a checker could use.
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
         self.true: Node = cast("Node", self._bdd.true)
@@ -172,20 +185,34 @@ class Manager:
             self._bdd.reorder()
 
     def usage(self) -> Usage:
-        """Nodes alive, most of them seen at a check, CPU seconds."""
-        nodes = len(self._bdd)
-        self._peak = max(self._peak, nodes)
+        """Nodes alive, the most there have been, CPU seconds."""
+        nodes, peak = self._counts()
+        self._peak = max(self._peak, peak)
         return Usage(nodes, self._peak, time.process_time() - self._start)
 
     def check(self, doing: str = "") -> None:
         """Say what is being done; raises LimitError when a limit is exceeded."""
+        now = time.process_time()
+        if doing and self._progress is not None:
+            self._progress(doing)
+        if now < self._next_look:
+            return
+        self._next_look = now + _PATIENCE
         used, limits = self.usage(), self.limits
         if limits.nodes and used.nodes > limits.nodes:
             raise LimitError("nodes", f"{limits.nodes:,}")
         if limits.seconds and used.seconds > limits.seconds:
             raise LimitError("of CPU time", f"{limits.seconds:g} s")
-        if self._progress is not None:
-            self._progress(doing)
+
+    def _counts(self) -> tuple[int, int]:
+        if self.engine != "cudd":
+            nodes = len(self._bdd)
+            return nodes, nodes
+        with warnings.catch_warnings():
+            # dd warns of a change of the unit of memory in every call.
+            warnings.simplefilter("ignore")
+            found = self._bdd.statistics()
+        return found["n_nodes"], found["peak_live_nodes"]
 
     @contextmanager
     def guard(self) -> Iterator[None]:
@@ -219,13 +246,7 @@ def _new(library: ModuleType, engine: str, memory: int) -> Any:  # noqa: ANN401
     logging.getLogger("dd").setLevel(logging.ERROR)
     if engine != "cudd":
         return library.BDD()
-    made = library.BDD(memory_estimate=min(memory, _half_of_the_machine()))
-    made.configure(reordering=False, max_memory=memory)
+    made = library.BDD(_START, _CACHE)
+    loose = memory // _NODE // _LOOSE
+    made.configure(reordering=False, max_memory=memory, loose_up_to=loose)
     return made
-
-
-def _half_of_the_machine() -> int:
-    """dd refuses to start when it may take more than there is."""
-    import os
-
-    return int(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) // 2

@@ -158,11 +158,9 @@ class Symbols:
         match formula:
             case Const(str(literal)):
                 return {literal: self.manager.true}
-            case Var(name, primed):
-                return {
-                    one: self.manager.cube(self.code(name, one, primed))
-                    for one in self._literals(formula)
-                }
+            case Var(name, primed) if literals := self._literals(formula):
+                codes = {one: self.code(name, one, primed) for one in literals}
+                return {one: self.manager.cube(code) for one, code in codes.items()}
             case _:
                 raise SymbolError("a literal is compared with what is none")
 

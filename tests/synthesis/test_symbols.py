@@ -1,0 +1,142 @@
+"""Formulas as diagrams: the values that satisfy them are those that evaluation gives."""
+
+from itertools import product
+
+import pytest
+from contracts_in_lines import contract
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import IntegerDomain, Owner, Variable
+from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.ltl import parse_formula
+from sysmlc.synthesis import Manager, SymbolError, Symbols
+
+VARIABLES = contract("""
+    env go: bool
+    sys n: -2..4
+    sys m: 3..6
+    env lamp: red amber green
+""").variables
+DOMAINS = {one.name: one.domain for one in VARIABLES}
+
+
+def symbols(engine: str = "") -> Symbols:
+    return Symbols(Manager(engine), VARIABLES)
+
+
+def agrees(found: Symbols, formula) -> None:
+    """The diagram says what evaluation says, for all values of the four variables."""
+    node = found.bdd(formula)
+    for values in domains.valuations(DOMAINS):
+        assert (found.encode(values) <= node) == is_true(formula, values), values
+
+
+ATOMS = st.sampled_from([Var("n"), Var("m"), *(Const(value) for value in range(-3, 6))])
+NUMBERS = st.recursive(
+    ATOMS,
+    lambda inner: st.builds(
+        lambda op, left, right: Apply(op, (left, right)),
+        st.sampled_from([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD]),
+        inner,
+        inner,
+    ),
+    max_leaves=4,
+)
+COMPARISONS = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
+
+
+@settings(max_examples=60)
+@given(COMPARISONS, NUMBERS, NUMBERS)
+def test_arithmetic_is_that_of_whole_numbers(op, left, right):
+    agrees(symbols(), f.compare(op, left, right))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["lamp=red", "lamp!=amber & go", "go <-> n>1", "!go | lamp=green", "n=m", "n + 1 > m -> go"],
+)
+@pytest.mark.parametrize("engine", ["cudd", "autoref"])
+def test_literals_booleans_and_numbers(engine, text):
+    agrees(symbols(engine), parse_formula(text, DOMAINS))
+
+
+def test_a_prime_is_the_next_value():
+    found = symbols()
+    assert found.bdd(parse_formula("n'=m'", DOMAINS)) == found.prime(
+        found.bdd(parse_formula("n=m", DOMAINS))
+    )
+    assert found.unprime(found.bdd(parse_formula("go'", DOMAINS))) == found.bdd(Var("go"))
+
+
+def test_values_are_coded_and_decoded():
+    found = symbols()
+    for values in domains.valuations(DOMAINS):
+        code = {bit: on for name in values for bit, on in found.code(name, values[name]).items()}
+        assert found.decode(code) == values
+    with pytest.raises(SymbolError, match="no value with the code 7"):
+        found.decode({"n.0": True, "n.1": True, "n.2": True})
+    with pytest.raises(SymbolError, match="n cannot be 5"):
+        found.encode({"n": 5})
+
+
+def test_the_range_is_the_codes_that_stand_for_values():
+    found = symbols()
+    for name, domain in DOMAINS.items():
+        codes = found.manager.count(found.domain(name), found.bits(name))
+        assert codes == domains.size(domain), name
+    assert found.domain("m") == found.manager.true
+
+
+def test_bits_stand_beside_their_next_values():
+    assert symbols().manager.bits[:6] == ("go.0", "go.0'", "n.0", "n.0'", "n.1", "n.1'")
+
+
+@pytest.mark.parametrize(
+    ("formula", "why"),
+    [
+        (Var("n"), "n is not Boolean"),
+        (Var("gone"), "gone is no variable"),
+        (f.eq(Var("go"), Const(1)), "1 is not Boolean"),
+        (f.compare(Op.LT, Var("lamp"), Const("red")), "< compares numbers"),
+        (f.eq(Var("lamp"), Var("n")), "compared with what is none"),
+        (f.always(Var("go")), "G gives no Boolean of one step"),
+    ],
+)
+def test_what_has_no_value_is_said(formula, why):
+    with pytest.raises(SymbolError, match=why):
+        symbols().bdd(formula)
+
+
+def test_numbers_may_be_large():
+    wide = Variable("w", Owner.SYSTEM, IntegerDomain(-5_000, 60_000))
+    found = Symbols(Manager(), [wide])
+    node = found.bdd(parse_formula("w * 3 = 29997", {"w": wide.domain}))
+    assert found.encode({"w": 9_999}) == node
+
+
+def test_a_variable_with_one_value_can_be_seen():
+    one = Variable("one", Owner.SYSTEM, IntegerDomain(7, 7))
+    found = Symbols(Manager(), [one])
+    assert [len(found.bits("one")), found.decode({"one.0": False})] == [1, {"one": 7}]
+
+
+def test_names_of_a_diagram_are_its_variables():
+    found = symbols()
+    node = found.bdd(parse_formula("go -> n'=1", DOMAINS))
+    assert [found.names(node), found.names(node, primed=True)] == [("go",), ("n",)]
+
+
+def test_every_pair_of_small_numbers_is_divided_towards_zero():
+    found = symbols()
+    for left, right in product(range(-4, 5), repeat=2):
+        for op in (Op.DIV, Op.MOD):
+            apply = Apply(op, (Const(left), Const(right)))
+            expected = [n for n in range(-9, 10) if is_true(f.eq(apply, Const(n)), {})]
+            truths = [
+                n for n in range(-9, 10) if found.bdd(f.eq(apply, Const(n))) == found.manager.true
+            ]
+            assert truths == expected, (op, left, right)
