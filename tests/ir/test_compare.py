@@ -287,3 +287,46 @@ def test_values_of_a_part_come_with_the_part():
         '  Instance is "st" subkind="part"\n    -> represents s\n'
     )
     assert told(old, new) == ["Gate: added property st"]
+
+
+TWINS = """\
+DataType m "Mix"
+  Property a ""
+  Property b ""
+  Constraint x "" body="A <= 100"
+    -> references {}
+  Constraint y "" body="B <= 50"
+    -> references {}
+"""
+
+
+def test_twins_are_told_apart_by_the_constraints_that_speak_of_them():
+    assert told(TWINS.format("a", "b"), TWINS.format("b", "a"), "id") == []
+    assert told(TWINS.format("a", "b"), TWINS.format("b", "b"), "id") != []
+
+
+def test_twins_are_told_apart_by_the_attributes_that_name_them():
+    links = """\
+Class k "Cell"
+  Property a ""
+  Property b ""
+  Property c "" opposite="{}"
+  Property d "" opposite="{}" default=1
+"""
+    assert told(links.format("a", "b"), links.format("b", "a"), "id") == []
+    assert told(links.format("a", "b"), links.format("b", "b"), "id") != []
+
+
+def test_twins_are_told_apart_by_the_ends_of_connectors_that_lead_to_them():
+    wires = """\
+Class k "Cell"
+  Port a ""
+  Port b ""
+  Connector c
+    ConnectorEnd c.1
+      -> role {}
+    ConnectorEnd c.2 multiplicity="2"
+      -> role {}
+"""
+    assert told(wires.format("a", "b"), wires.format("b", "a"), "id") == []
+    assert told(wires.format("a", "b"), wires.format("b", "b"), "id") != []

@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.frontends.xmi import FRONTEND as XMI
 from sysmlc.ir import Graph
-from sysmlc.ir.compare import What, compare
+from sysmlc.ir.compare import compare
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
@@ -48,14 +48,11 @@ def test_new_ids_another_order_and_other_places_are_no_difference(form, seed):
 
 @pytest.mark.parametrize(("form", "seed"), SEEDS)
 def test_without_any_names_every_element_is_still_found_by_what_surrounds_it(form, seed):
-    """But for ends of links: which of twins an attribute names is not part of surroundings."""
     old, new = read(form, seed), read(form, seed)
     for graph in (old, new):
         for element in list(graph):
             graph.rename(element, "")
-    changes = compare(old, reissued(new, Random(seed)))
-    assert {(change.what, change.aspect) for change in changes} <= {(What.CHANGED, "link ends")}
-    assert len(changes) <= 1
+    assert compare(old, reissued(new, Random(seed))) == []
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -80,10 +80,8 @@ class Refinement:
     def _ties(self, element: Element) -> list[tuple[str, Element]]:
         found: list[tuple[str, Element]] = []
         for part in self._side.below(element):
-            out = self._side.out.get(part.id, {})
-            found += [(f"{part.name} {edge} >", one) for edge, to in out.items() for one in to]
-            into = self._side.into.get(part.id, ())
-            found += [(f"{part.name} < {edge}", one) for edge, one in into]
+            ties = self._side.ties.get(part.id, ())
+            found += [(f"{part.name} {how}", one) for how, one in ties]
         return found
 
 

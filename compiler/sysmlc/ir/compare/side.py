@@ -3,8 +3,14 @@
 from collections.abc import Iterator
 from functools import cached_property
 
-from sysmlc.ir.compare.content import PASSED_OVER, is_detail, is_header
-from sysmlc.ir.element import Element
+from sysmlc.ir.compare.content import (
+    NOT_CONTENT,
+    PASSED_OVER,
+    WORDS,
+    is_detail,
+    is_header,
+)
+from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge
 
@@ -62,6 +68,38 @@ class Side:
                         found.setdefault(target.id, []).append((edge, origin))
         return found
 
+    @cached_property
+    def ties(self) -> dict[str, list[tuple[str, Element]]]:
+        """What leads from an element and to it, and how: edges, and attributes that name others.
+
+        Those of details belong to the owner of the detail, with the words that the detail says.
+        """
+        found: dict[str, list[tuple[str, Element]]] = {}
+        for source, how, target in (*self._leads(), *self._mentions()):
+            origin = self.visible(source)
+            if origin is None:
+                continue
+            said = how if origin is source else f"{_words(source)} {how}"
+            found.setdefault(origin.id, []).append((f"{said} >", target))
+            if origin is not target:
+                found.setdefault(target.id, []).append((f"< {said}", origin))
+        return found
+
+    def _leads(self) -> Iterator[tuple[Element, str, Element]]:
+        for source, edges in self.out.items():
+            for edge, targets in edges.items():
+                yield from ((self.graph[source], str(edge), target) for target in targets)
+
+    def _mentions(self) -> Iterator[tuple[Element, str, Element]]:
+        """Attributes whose values are ids, those in tuples too, with their places there."""
+        for element in self.graph:
+            for name, raw in element.attrs.items():
+                if name not in WORDS and name not in NOT_CONTENT:
+                    for how, id in _texts(raw, name):
+                        named = self.graph.get(id)
+                        if named is not None and named is not element:
+                            yield element, how, named
+
     def visible(self, element: Element) -> Element | None:
         """The element, or the nearest owner that is told for itself."""
         found: Element | None = element
@@ -80,3 +118,17 @@ class Side:
             top = stack.pop()
             yield top
             stack.extend(reversed(self.children(top)))
+
+
+def _texts(raw: AttrValue, how: str) -> Iterator[tuple[str, str]]:
+    """Texts of a value, each with its place."""
+    if isinstance(raw, str):
+        yield how, raw
+    elif isinstance(raw, tuple):
+        for place, part in enumerate(raw):
+            yield from _texts(part, f"{how} {place}")
+
+
+def _words(detail: Element) -> str:
+    said = [str(detail.attrs[name]) for name in sorted(WORDS & detail.attrs.keys())]
+    return " ".join([detail.kind, detail.name, *said])
