@@ -207,6 +207,8 @@ LEVELS = (
     "material",
     "capability",
     "opc ua call",
+    "opc ua variable",
+    "delay",
 )
 """Levels of a recipe, as docs/ir.md has them."""
 

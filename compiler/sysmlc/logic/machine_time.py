@@ -60,6 +60,14 @@ def ticks_of(reading: Reading, trigger: Element) -> int | None:
     return max(1, ceil(number))
 
 
+def milliseconds(text: str) -> int | None:
+    """A duration with a unit, ``5 s``, in milliseconds; None for any other text."""
+    found = _TIME.match(text)
+    if found is None or found[2].lower() not in _SECONDS:
+        return None
+    return round(float(found[1]) * _SECONDS[found[2].lower()] * 1000)
+
+
 def told_time(reading: Reading, trigger: Element) -> str:
     """The Boolean by which the environment says that a time has come."""
     text = str(trigger.attrs.get("when", "")) or trigger.name

@@ -5,6 +5,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class Context:
     _segments: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
+    _literals: dict[str, list[Element]] = field(default_factory=dict)
 
     # -- levels --------------------------------------------------------------------------------
 
@@ -79,12 +81,22 @@ class Context:
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
 
+    def literal(self, name: str) -> Element | None:
+        """The enumeration literal ``Enumeration::literal``; None where two are called so."""
+        if not self._literals:
+            for one in self.graph.of_kind(Kind.ENUMERATION_LITERAL):
+                self._literals.setdefault(_last_two(self.graph.qualified_name(one)), []).append(one)
+        found = self._literals.get(_last_two(name), [])
+        return found[0] if len(found) == 1 else None
+
     def _level(self, element: Element) -> str:
         family = [element, *query.generals(self.graph, element)]
         own = next((found for one in family if (found := self.own_level(one))), "")
         if own:
             return own
         definition = self.definition(element)
+        if element.kind is Kind.OPERATION:
+            definition = self.graph.target(element, Edge.METHOD)
         return "" if definition is None or definition is element else self.level(definition)
 
     def definition(self, element: Element) -> Element | None:
@@ -134,8 +146,8 @@ class Context:
 
 
 def activity_nodes(context: Context, activity: Element) -> list[Element]:
-    """Nodes that the activity owns directly; what a structured node owns stays inside it."""
-    return [one for one in context.graph.owned(activity) if one.kind in _NODES]
+    """Nodes of the activity, those in for-each regions and plain blocks too."""
+    return [one for one in contents(context.graph, activity) if one.kind in _NODES]
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +218,10 @@ def number(text: str) -> int | float | None:
     if value != value or value in (float("inf"), float("-inf")):
         return None
     return int(value) if value == int(value) else value
+
+
+def _last_two(name: str) -> str:
+    return "::".join(name.split("::")[-2:])
 
 
 def _numbered(siblings: list[Element]) -> Iterator[tuple[str, str]]:

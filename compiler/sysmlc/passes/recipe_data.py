@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
-from sysmlc.passes.recipe_expressions import is_data, parameter, read
+from sysmlc.passes.recipe_expressions import is_data, is_input, parameter, read, read_time
+from sysmlc.passes.recipe_paths import feature_at, with_values
+from sysmlc.passes.recipe_regions import contents, is_inlined
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
 from sysmlc.values import dataclass
@@ -30,8 +32,9 @@ class Data:
     @classmethod
     def of(cls, context: Context, activity: Element) -> "Data":
         """The data of an activity."""
-        owned = context.graph.owned(activity)
-        names = {context.label(one) for one in owned if one.kind in (Kind.PARAMETER, Kind.PROPERTY)}
+        inside = contents(context.graph, activity)
+        kinds = (Kind.PARAMETER, Kind.PROPERTY)
+        names = {context.label(one) for one in inside if one.kind in kinds}
         pins = Counter(context.label(pin) for pin in _outputs(context, activity))
         shared = {name for name, count in pins.items() if count > 1}
         spoken = _spoken(context, activity)
@@ -56,7 +59,7 @@ class Data:
 
     def read(self, text: str) -> Expr:
         """An expression of the activity, with the variables that output pins set."""
-        found = read(text)
+        found = with_values(self.context, self.activity, read(text))
         if not self.dotted:
             return found
         names = {
@@ -77,6 +80,16 @@ class Data:
         full = name if owner is None else f"{self.context.label(owner)}.{name}"
         return full if name in self.shared or full in self.dotted else name
 
+    def size(self, collection: Expr) -> int | None:
+        """How many elements a collection has at most, when its multiplicity says it."""
+        match collection:
+            case Var(name):
+                found = feature_at(self.context, self.activity, name)
+                limits = None if found is None else query.bounds(found.attrs.get("multiplicity"))
+                return None if limits is None else limits[1]
+            case _:
+                return None
+
     def source_of(self, flow: Element) -> Expr | None:
         """Value that an object flow carries: the variable of the pin or parameter it starts at."""
         graph, seen = self.context.graph, {flow.id}
@@ -85,7 +98,7 @@ class Data:
             start = query.flow_source(graph, stack.pop())
             if start is None:
                 continue
-            if start.kind is Kind.PIN:
+            if start.kind is Kind.PIN and not self._is_passed_on(start):
                 return Var(self.variable(start))
             if start.kind is Kind.ACTIVITY_PARAMETER:
                 return Var(self._parameter_name(start))
@@ -94,22 +107,27 @@ class Data:
             stack.extend(one for one in before if one.kind is Kind.OBJECT_FLOW)
         return None
 
+    def _is_passed_on(self, pin: Element) -> bool:
+        """Whether a pin of a block only hands on what comes to it."""
+        owner = self.context.graph.owner(pin)
+        return owner is not None and is_inlined(self.context.graph, owner)
+
     # -- declarations --------------------------------------------------------------------------
 
     def parameters(self, *directions: str) -> tuple[Parameter, ...]:
-        """Parameters with one of the directions; machines and materials are left out."""
+        """Parameters with one of the directions; materials and optional machines are left out."""
         return data_parameters(self.context, self.activity, *directions)
 
     def variables(self) -> tuple[Parameter, ...]:
         """Attributes of the activity, and what output pins declare, by name."""
-        owned = self.context.graph.owned(self.activity)
+        inside = contents(self.context.graph, self.activity)
         attributes = [
-            one for one in owned if one.kind is Kind.PROPERTY and is_data(self.context, one)
+            one for one in inside if one.kind is Kind.PROPERTY and is_data(self.context, one)
         ]
         found = {self.context.label(one): parameter(self.context, one) for one in attributes}
         heads = {name.partition(".")[0] for name in self.dotted}
         for one in query.parameters(self.context.graph, self.activity, "in"):
-            if one.name in heads and not is_data(self.context, one):
+            if one.name in heads and not is_input(self.context, one):
                 found[one.name] = parameter(self.context, one)
         names = self.declared
         for pin in _outputs(self.context, self.activity):
@@ -122,7 +140,7 @@ class Data:
     def _pins(self, node: Element, direction: str) -> Iterator[Element]:
         for pin in self.context.graph.owned(node):
             fits = pin.kind is Kind.PIN and pin.attrs.get("direction") == direction
-            if fits and is_data(self.context, pin):
+            if fits and is_input(self.context, pin):
                 yield pin
 
     def _filled(self, pin: Element) -> Expr | None:
@@ -131,8 +149,9 @@ class Data:
             return Lit(value)
         if isinstance(value, str):
             return self.read(value)
+        unit = pin.attrs.get("value_unit")
         if isinstance(value, bool | int | float):
-            return Lit(value)
+            return read_time(f"{value} {unit}") if isinstance(unit, str) else Lit(value)
         for flow in query.incoming(self.context.graph, pin):
             found = self.source_of(flow)
             if found is not None:
@@ -166,8 +185,8 @@ def _renamed(expression: Expr, names: Mapping[str, str]) -> Expr:
 def _spoken(context: Context, activity: Element) -> frozenset[str]:
     """Dotted names in the values, guards and texts of an activity."""
     texts: list[object] = []
-    for node in context.graph.owned(activity):
-        texts += [node.attrs.get("guard"), node.attrs.get("body"), node.attrs.get("default")]
+    for node in contents(context.graph, activity):
+        texts += [node.attrs.get(key) for key in ("guard", "body", "default", "collection")]
         texts += [pin.attrs.get("value") for pin in context.graph.owned(node)]
     dotted = (_DOTTED.findall(text) for text in texts if isinstance(text, str) and "." in text)
     return frozenset(name for found in dotted for name in found)
@@ -177,13 +196,13 @@ _DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 
 
 def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:
-    """Parameters that hold values, in order."""
+    """Parameters that hold values, or a machine that is needed, in order."""
     found = query.parameters(context.graph, element, *directions)
-    return tuple(parameter(context, one) for one in found if is_data(context, one))
+    return tuple(parameter(context, one) for one in found if is_input(context, one))
 
 
 def _outputs(context: Context, activity: Element) -> Iterator[Element]:
-    for node in context.graph.owned(activity):
+    for node in contents(context.graph, activity):
         for pin in context.graph.owned(node) if node.kind is Kind.ACTION else ():
             if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
                 yield pin

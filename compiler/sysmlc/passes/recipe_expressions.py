@@ -2,6 +2,7 @@
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.logic import expression as source
+from sysmlc.logic.machine_time import milliseconds
 from sysmlc.passes.recipe_context import Context
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Opaque, Var
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType
@@ -23,6 +24,12 @@ def read(text: str) -> Expr:
         return translate(source.parse_expression(text))
     except source.ExpressionError:
         return Opaque(text)
+
+
+def read_time(text: str) -> Expr:
+    """A duration in milliseconds: a number with a unit, or an expression that is one already."""
+    found = milliseconds(text)
+    return read(text) if found is None else Lit(found)
 
 
 def optional(text: str) -> Expr | None:
@@ -80,13 +87,22 @@ def assignments(text: str) -> list[tuple[str, Expr]] | None:
 def parameter(context: Context, element: Element) -> Parameter:
     """A parameter, pin or property as a recipe's parameter."""
     return Parameter(
-        context.label(element), value_type(context, element), unit(context, element), value(element)
+        context.label(element), value_type(context, element), unit(context, element), given(element)
     )
 
 
 def is_data(context: Context, element: Element) -> bool:
     """Whether it holds a value, and is not a machine or a material that goes through."""
     return context.level(query.type_of(context.graph, element)) not in ("machine", "material")
+
+
+def is_input(context: Context, element: Element) -> bool:
+    """Whether it holds a value, or a machine without which nothing can be done."""
+    if is_data(context, element):
+        return True
+    limits = query.bounds(element.attrs.get("multiplicity"))
+    is_machine = context.level(query.type_of(context.graph, element)) == "machine"
+    return is_machine and (limits is None or limits[0] > 0)
 
 
 def value_type(context: Context, element: Element) -> ValueType | None:
@@ -108,6 +124,8 @@ def _single(context: Context, type_: Element) -> ValueType:
         known = _PRIMITIVES.get(_local_name(one))
         if known is not None:
             return known
+    if type_.attrs.get("property_specific"):
+        type_ = next(iter(query.generals(context.graph, type_)), type_)
     level = context.level(type_)
     if level == "machine":
         return ReferenceType("machine", context.name(type_))
@@ -116,8 +134,12 @@ def _single(context: Context, type_: Element) -> ValueType:
 
 def _enumeration(context: Context, enumeration: Element) -> EnumType:
     owned = context.graph.owned(enumeration)
-    literals = (one.name for one in owned if one.kind is Kind.ENUMERATION_LITERAL)
-    return EnumType(context.name(enumeration), tuple(literals))
+    literals = [one for one in owned if one.kind is Kind.ENUMERATION_LITERAL]
+    values = [one.attrs.get("value") for one in literals]
+    known = tuple(value for value in values if isinstance(value, bool | int | float | str))
+    is_whole = len(known) == len(literals)
+    names = tuple(one.name for one in literals)
+    return EnumType(context.name(enumeration), names, known if is_whole else ())
 
 
 def _local_name(element: Element) -> str:
@@ -135,7 +157,16 @@ def unit(context: Context, element: Element) -> str:
 
 def value(element: Element) -> Scalar | None:
     """Default value, when it is a literal."""
+    found = given(element)
+    return found if isinstance(found, bool | int | float | str) else None
+
+
+def given(element: Element) -> Scalar | tuple[Scalar, ...] | None:
+    """Default value, when it is a literal or a list of literals."""
     found = element.attrs.get("default")
     if element.attrs.get("default_language") is not None:
         return None
+    if isinstance(found, tuple):
+        listed = tuple(one for one in found if isinstance(one, bool | int | float | str))
+        return listed if len(listed) == len(found) else None
     return found if isinstance(found, bool | int | float | str) else None

@@ -1,12 +1,13 @@
 """From an activity to the graph of a task (services) or of a service (machine functions)."""
 
-from collections.abc import Iterator
-from dataclasses import field
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
+from sysmlc.passes.recipe_draft import Draft, add_ends, add_results, close_region, open_region
+from sysmlc.passes.recipe_regions import contents, is_inlined
 from sysmlc.passes.recipe_steps import (
     activity_flows,
     flow_ends,
@@ -17,28 +18,25 @@ from sysmlc.recipe.expression import Apply, Expr, Lit
 from sysmlc.recipe.flow import in_order, reachable
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
-from sysmlc.values import dataclass, replace
-
-
-@dataclass(slots=True)
-class _Draft:
-    """Nodes so far: for each activity node the first and last of the nodes made from it."""
-
-    nodes: list[Node] = field(default_factory=list)
-    edges: list[FlowEdge] = field(default_factory=list)
-    first: dict[str, str] = field(default_factory=dict)
-    last: dict[str, str] = field(default_factory=dict)
+from sysmlc.values import replace
 
 
 def flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:
     """The graph of an activity; ``inside`` is its level, ``task`` or ``service``."""
     data = Data.of(context, activity)
-    draft = _Draft()
-    for node in activity_nodes(context, activity):
+    draft = Draft()
+    nodes = activity_nodes(context, activity)
+    for node in nodes:
         _add_nodes(context, node, step_kind(context, node, inside), data, draft)
+    regions = [node for node in nodes if is_inlined(context.graph, node)]
+    for region in regions:
+        open_region(context, region, draft)
     draft.edges.extend(_control_edges(context, activity, data, draft))
     draft.edges.extend(_object_edges(context, activity, data, draft))
-    _add_ends(context.name(activity), draft)
+    for region in regions:
+        close_region(context, region, draft)
+    add_ends(context, activity, draft)
+    add_results(context, activity, data, draft)
     graph = FlowGraph(
         context.name(activity),
         data.parameters("in", "inout"),
@@ -61,21 +59,25 @@ def _sorted(graph: FlowGraph) -> FlowGraph:
     return replace(graph, nodes=tuple(nodes), edges=tuple(edges))
 
 
-def _add_nodes(context: Context, node: Element, kind: str, data: Data, draft: _Draft) -> None:
+def _add_nodes(context: Context, node: Element, kind: str, data: Data, draft: Draft) -> None:
     if not kind:
         return
     made = nodes_of(context, node, kind, data)
     draft.nodes.extend(made)
     draft.first[node.id], draft.last[node.id] = made[0].id, made[-1].id
-    pairs = pairwise(made)
-    draft.edges.extend(FlowEdge(a.id, b.id, element=node.id) for a, b in pairs)
+    if not is_inlined(context.graph, node):
+        draft.edges.extend(_row(made, node.id))
+
+
+def _row(made: Sequence[Node], element: str) -> list[FlowEdge]:
+    return [FlowEdge(a.id, b.id, element=element) for a, b in pairwise(made)]
 
 
 # -- edges -------------------------------------------------------------------------------------
 
 
 def _control_edges(
-    context: Context, activity: Element, data: Data, draft: _Draft
+    context: Context, activity: Element, data: Data, draft: Draft
 ) -> Iterator[FlowEdge]:
     for flow in activity_flows(context, activity):
         source, target = flow_ends(context, flow)
@@ -86,7 +88,7 @@ def _control_edges(
 
 
 def _object_edges(
-    context: Context, activity: Element, data: Data, draft: _Draft
+    context: Context, activity: Element, data: Data, draft: Draft
 ) -> Iterator[FlowEdge]:
     """Object flows that order nodes which no control flow orders."""
     ordered = [(edge.source, edge.target) for edge in draft.edges]
@@ -100,7 +102,7 @@ def _object_edges(
                 yield edge
 
 
-def _behind(context: Context, flow: Element, draft: _Draft) -> list[Element]:
+def _behind(context: Context, flow: Element, draft: Draft) -> list[Element]:
     """Nodes that an object flow reaches, through buffers of data."""
     found: dict[str, Element] = {}
     seen: set[str] = set()
@@ -119,7 +121,7 @@ def _behind(context: Context, flow: Element, draft: _Draft) -> list[Element]:
 
 
 def _edge(
-    context: Context, flow: Element, source: Element, target: Element, data: Data, draft: _Draft
+    context: Context, flow: Element, source: Element, target: Element, data: Data, draft: Draft
 ) -> FlowEdge:
     text = str(flow.attrs.get("guard", ""))
     is_else = text.strip() == "else"
@@ -161,28 +163,12 @@ def _item(context: Context, flow: Element) -> str:
     return next((context.name(one) for one in types if one is not None), "")
 
 
-# -- ends and bounds ---------------------------------------------------------------------------
+# -- bounds ------------------------------------------------------------------------------------
 
 
-def _add_ends(id: str, draft: _Draft) -> None:
-    """Begin and end as UML does where the model draws neither (UML 2.5.1 clause 15.2.3.2)."""
-    kinds = {node.kind for node in draft.nodes}
-    targets = {edge.target for edge in draft.edges}
-    sources = {edge.source for edge in draft.edges}
-    plain = list(draft.nodes)
-    if "initial" not in kinds:
-        draft.nodes.append(Node(f"{id}::initial", "initial"))
-        first = [node.id for node in plain if node.id not in targets]
-        draft.edges.extend(FlowEdge(f"{id}::initial", one) for one in first)
-    if not kinds & {"final", "flowFinal"}:
-        draft.nodes.append(Node(f"{id}::final", "final"))
-        last = [node.id for node in plain if node.id not in sources]
-        draft.edges.extend(FlowEdge(one, f"{id}::final") for one in last)
-
-
-def _bounds(context: Context, activity: Element, draft: _Draft) -> dict[str, int]:
+def _bounds(context: Context, activity: Element, draft: Draft) -> dict[str, int]:
     found: dict[str, int] = {}
-    for element in context.graph.owned(activity):
+    for element in contents(context.graph, activity):
         bound = context.tags(element, "Loop").integer("maxIterations")
         if bound is not None and bound > 0:
             found[draft.first.get(element.id, element.id)] = bound

@@ -174,6 +174,7 @@ def providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider
     return tuple(found[machine] for machine in sorted(found))
 
 
+_OPC_UA = ("opc ua call", "opc ua variable")
 _OF_SPACE = ("parentNodeId", "nodeId")
 """Tags of other stereotypes for OPC UA calls: the object and its method."""
 
@@ -182,7 +183,7 @@ def _call(context: Context, element: Element) -> Element | None:
     found = context.applied(element, "OpcUaCall")
     for one in query.applications(context.graph, element) if context.levels else ():
         stereotype = context.graph.target(one, Edge.INSTANCE_OF)
-        if stereotype is not None and context.own_level(stereotype) == "opc ua call":
+        if stereotype is not None and context.own_level(stereotype) in _OPC_UA:
             found = found or one
     return found
 
@@ -210,6 +211,14 @@ def opcua(context: Context, element: Element) -> OpcUa | None:
     )
 
 
+def opcua_node(context: Context, variable: Element) -> str:
+    """The OPC UA node of a variable as written, or the empty string."""
+    application = _call(context, variable)
+    tags = Tags({} if application is None else application.attrs)
+    found = (tags.text(name) for name in ("node", _OF_SPACE[1], "object"))
+    return next((text for text in found if text), "")
+
+
 # -- machines and materials --------------------------------------------------------------------
 
 
@@ -227,7 +236,7 @@ def machine(context: Context, element: Element) -> Machine:
         tags.text("amlId"),
         tags.endpoint("endpoint") or "",
         context.reference(plant) if plant else "",
-        element.id,
+        element=element.id,
     )
 
 

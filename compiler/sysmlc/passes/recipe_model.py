@@ -6,18 +6,19 @@ from typing import Protocol, TypeVar
 
 from sysmlc.ir import Element
 from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_machines import machine, material
 from sysmlc.passes.recipe_services import function, service
-from sysmlc.passes.recipe_steps import activity_flows, step_kind
+from sysmlc.passes.recipe_steps import activity_flows, refinement, step_kind
 from sysmlc.passes.recipe_tasks import (
     Step,
     material_of,
     precedence,
-    refinement,
     steps,
     task,
 )
+from sysmlc.passes.recipe_variables import with_variables
 from sysmlc.recipe.derive import derive
 from sysmlc.recipe.model import FlowGraph, Model, Recipe
 from sysmlc.values import dataclass
@@ -53,27 +54,30 @@ def recipe_model(context: Context, activity: Element) -> Model:
     functions = [function(context, *one) for one in closure.functions.values()]
     named = {m for one in recipe.tasks for mode in one.equipment for m in mode.machines}
     named |= {provider.machine for one in services for provider in one.providers}
-    return derive(
-        Model(
-            recipe,
-            _known(context, named, machine, "machine"),
-            _known(context, _materials(context, recipe, activity), material, "material"),
-            _sorted(services),
-            _sorted(functions),
-            _sorted(closure.service_graphs.values()),
-            _sorted(closure.function_graphs.values()),
-        )
+    model = Model(
+        recipe,
+        _known(context, named, machine, "machine"),
+        _known(context, _materials(context, recipe, activity), material, "material"),
+        _sorted(services),
+        _sorted(functions),
+        _sorted(closure.service_graphs.values()),
+        _sorted(closure.function_graphs.values()),
     )
+    return derive(with_variables(context, model))
 
 
 def _recipe(context: Context, activity: Element, found: list[Step]) -> Recipe:
     tags = context.tags(activity, "Recipe")
     product = tags.text("product")
-    tasks = [task(context, activity, step) for step in found]
+    data = Data.of(context, activity)
+    tasks = [task(context, activity, step, data) for step in found]
     return Recipe(
         context.name(activity),
         _sorted(tasks),
         precedence(context, activity, found),
+        data.parameters("in", "inout"),
+        data.parameters("out", "inout", "return"),
+        data.variables(),
         tags.text("version"),
         context.reference(product) if product else "",
         tags.integer("priority"),
@@ -90,6 +94,11 @@ def _refine(context: Context, activity: Element, inside: str, closure: _Closure)
     graphs[activity.id] = flow_graph(context, activity, inside)
     for node in activity_nodes(context, activity):
         kind = step_kind(context, node, inside)
+        if kind == "call":
+            helper = refinement(context, context.definition(node))
+            if helper is not None:
+                _refine(context, helper, "service", closure)
+            continue
         table = {"service": closure.services, "function": closure.functions}.get(kind)
         if table is None:
             continue

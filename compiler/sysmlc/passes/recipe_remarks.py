@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
 from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.passes.recipe_steps import by_position, step_kind
 from sysmlc.passes.recipe_tasks import steps
 from sysmlc.recipe import samples
@@ -107,7 +108,7 @@ def _namesakes(context: Context, node: Element) -> Iterator[Element]:
 
 def _step(context: Context, activity: Element, node: Element, inside: str, sink: Sink) -> None:
     kind = step_kind(context, node, inside)
-    if node.kind is Kind.STRUCTURED:
+    if node.kind is Kind.STRUCTURED and not is_inlined(context.graph, node):
         sink.report(STRUCTURED, context.graph.subject(node), element=context.name(node))
     elif by_position(context, node, kind):
         called = context.definition(node) or node

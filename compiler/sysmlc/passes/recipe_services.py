@@ -15,7 +15,7 @@ from sysmlc.passes.recipe_machines import (
     opcua,
     providers,
 )
-from sysmlc.passes.recipe_tasks import refinement
+from sysmlc.passes.recipe_steps import refinement
 from sysmlc.recipe.model import Function, MaterialUse, Parameter, Range, Resource, Service
 
 _USES = {"in": "consumed", "out": "produced", "return": "produced", "inout": "carried"}

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe_context import SERVICES, Context
+from sysmlc.passes.recipe_context import SERVICES, Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
-from sysmlc.passes.recipe_expressions import assignments, optional, read
+from sysmlc.passes.recipe_expressions import assignments, optional, read_time
+from sysmlc.passes.recipe_regions import contents, is_block, is_for_each
 from sysmlc.recipe.model import Node
 from sysmlc.values import replace
 
@@ -29,19 +30,52 @@ def step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR
     """
     if node.kind is Kind.CONTROL:
         return CONTROL_KINDS.get(node.subkind, "action")
+    if node.kind is Kind.STRUCTURED:
+        return _region_kind(context, node)
     level = context.level(node)
     if level in SERVICES:
         return "service"
     if level == "machine function":
         return "function"
+    if level == "delay":
+        return "delay"
     if node.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER, Kind.PIN):
         return ""
     called = context.definition(node) if node.kind is Kind.ACTION else None
     if called is None or node.subkind not in ("call-behavior", "call-operation"):
         return _plain_kind(context, node)
-    if called.subkind in _HELPERS:
+    if called.subkind in _HELPERS or (inside == "service" and is_helper(context, called)):
         return "call"
     return "service" if inside == "task" else "function"
+
+
+def is_helper(context: Context, called: Element) -> bool:
+    """Whether a behaviour without a level that a service calls only orders other steps.
+
+    In a model that says which behaviours are machine functions, no other is one.
+    """
+    return refinement(context, called) is not None or bool(context.of_level("machine function"))
+
+
+def refinement(context: Context, definition: Element | None) -> Element | None:
+    """The activity that a definition is, that implements it, or that it runs; with content."""
+    if definition is None:
+        return None
+    graph = context.graph
+    candidates = [definition, graph.target(definition, Edge.METHOD)]
+    candidates.append(query.classifier_behavior(graph, definition))
+    candidates += [one for one in graph.owned(definition) if one.kind is Kind.ACTIVITY]
+    candidates += graph.sources(definition, Edge.REFINES)
+    for one in candidates:
+        if one is not None and one.kind is Kind.ACTIVITY and activity_nodes(context, one):
+            return one
+    return None
+
+
+def _region_kind(context: Context, node: Element) -> str:
+    if is_for_each(node):
+        return "forEach"
+    return "block" if is_block(context.graph, node) else "action"
 
 
 def by_position(context: Context, node: Element, kind: str) -> bool:
@@ -78,6 +112,8 @@ def _bare(context: Context, node: Element, made: Node, data: Data) -> list[Node]
 
 def _called(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
     definition = context.definition(node)
+    if made.kind == "call":
+        definition = refinement(context, definition) or definition
     ref = context.name(node if definition is None else definition)
     return [_with(made, ref=ref, bind=data.bind(node), assign=data.assign(node))]
 
@@ -103,10 +139,26 @@ def _wait(context: Context, node: Element, made: Node, data: Data) -> list[Node]
     return [_with(made, expression=optional(condition), text=text, assign=data.assign(node))]
 
 
+def _block(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    """Where a block is entered and where it is left."""
+    return [_with(made, kind="merge"), _with(made, kind="merge", id=f"{made.id}::end")]
+
+
+def _for_each(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    variable = next((one for one in context.graph.owned(node) if one.subkind == "variable"), None)
+    name = "" if variable is None else context.label(variable)
+    collection = data.read(str(node.attrs.get("collection", "")))
+    limit = data.size(collection)
+    return [_with(made, variable=name, expression=collection, max_iterations=limit)]
+
+
 def _delay(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+    given = next((value for _, value in data.bind(node)), None)
+    if given is not None:
+        return [_with(made, expression=given)]
     trigger = next(_triggers(context, node), None)
     when = "" if trigger is None else str(trigger.attrs.get("when", ""))
-    return [_with(made, expression=read(when), text=when)]
+    return [_with(made, expression=read_time(when), text=when)]
 
 
 def _with(node: Node, **changes: object) -> Node:
@@ -122,13 +174,15 @@ _MAKERS: dict[str, _Maker] = {
     "action": _action,
     "wait": _wait,
     "delay": _delay,
+    "block": _block,
+    "forEach": _for_each,
 }
 
 
 def activity_flows(context: Context, activity: Element) -> list[Element]:
-    """Control flows and object flows of the activity."""
+    """Control flows and object flows of the activity, inlined regions included."""
     kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-    return [one for one in context.graph.owned(activity) if one.kind in kinds]
+    return [one for one in contents(context.graph, activity) if one.kind in kinds]
 
 
 def end_node(context: Context, end: Element | None) -> Element | None:

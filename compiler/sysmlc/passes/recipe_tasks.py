@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 
-from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context, activity_nodes, number
+from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import optional
 from sysmlc.passes.recipe_machines import (
     Relation,
@@ -13,7 +14,7 @@ from sysmlc.passes.recipe_machines import (
     machine_of,
     modes,
 )
-from sysmlc.passes.recipe_steps import activity_flows, flow_ends
+from sysmlc.passes.recipe_steps import activity_flows, flow_ends, refinement
 from sysmlc.recipe.model import MaterialUse, Task
 from sysmlc.values import dataclass
 
@@ -39,22 +40,7 @@ def steps(context: Context, recipe: Element) -> list[Step]:
     return found
 
 
-def refinement(context: Context, definition: Element | None) -> Element | None:
-    """The activity that a definition is, that implements it, or that it runs; with content."""
-    if definition is None:
-        return None
-    graph = context.graph
-    candidates = [definition, graph.target(definition, Edge.METHOD)]
-    candidates.append(query.classifier_behavior(graph, definition))
-    candidates += [one for one in graph.owned(definition) if one.kind is Kind.ACTIVITY]
-    candidates += graph.sources(definition, Edge.REFINES)
-    for one in candidates:
-        if one is not None and one.kind is Kind.ACTIVITY and activity_nodes(context, one):
-            return one
-    return None
-
-
-def task(context: Context, recipe: Element, step: Step) -> Task:
+def task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
     """One task node as a value."""
     holder = step.definition or step.node
     source = step.node if context.applied(step.node, "Task") else holder
@@ -68,6 +54,8 @@ def task(context: Context, recipe: Element, step: Step) -> Task:
         "" if step.refinement is None else context.name(step.refinement),
         optional(tags.text("pre")),
         optional(tags.text("post")),
+        data.bind(step.node),
+        data.assign(step.node),
         bool(tags.flag("interruptible")),
         bool(tags.flag("noWait")),
         None,

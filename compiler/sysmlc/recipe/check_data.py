@@ -23,6 +23,7 @@ from sysmlc.recipe.model import (
     Model,
     Node,
     Parameter,
+    ReferenceType,
     Scalar,
     Service,
     Task,
@@ -229,9 +230,12 @@ def _misfit(wanted: Parameter | None, given: Parameter | None) -> str:
 def _fits(given: ValueType, wanted: ValueType) -> bool:
     """Whether values of one type are values of the other.
 
+    What a reference leads to may be more special than what is wanted; the language judges that.
     An enumeration may be one of numbers (SysML v2, 8.3.8): its values are integers then.
     """
     if given == wanted or (given, wanted) == ("integer", "real"):
+        return True
+    if isinstance(given, ReferenceType) and isinstance(wanted, ReferenceType):
         return True
     return "integer" in (given, wanted) and any(isinstance(t, EnumType) for t in (given, wanted))
 

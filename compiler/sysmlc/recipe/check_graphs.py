@@ -79,7 +79,7 @@ def nesting(model: Model, tables: Tables) -> Iterator[Finding]:
 
 
 def _endless(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    loops = {node.id for node in graph.nodes if node.kind == "loop"}
+    loops = {node.id for node in graph.nodes if node.kind in ("loop", "forEach")}
     plain = [node.id for node in graph.nodes if node.id not in loops]
     pairs = [(e.source, e.target) for e in graph.edges if not {e.source, e.target} & loops]
     for part in cycles(plain, pairs):

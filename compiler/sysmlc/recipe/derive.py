@@ -130,9 +130,20 @@ def _resources(graph: FlowGraph, tables: Tables) -> list[str]:
 def functions_of(node: Node, tables: Tables) -> list[Function]:
     """Machine functions of the service that a node calls, in the order of its graph."""
     service = tables.service(node)
-    graph = None if service is None else tables.function_graphs.get(service.implementation)
-    inner = () if graph is None else graph.nodes
-    return [tables.functions[one.ref] for one in inner if one.ref in tables.functions]
+    return [] if service is None else _called(service.implementation, tables, {node.id})
+
+
+def _called(graph: str, tables: Tables, seen: set[str]) -> list[Function]:
+    """Functions that a graph calls, those of the helpers that it calls included."""
+    found = tables.function_graphs.get(graph)
+    called: list[Function] = []
+    seen.add(graph)
+    for node in () if found is None else found.nodes:
+        if node.kind == "call" and node.ref not in seen:
+            called += _called(node.ref, tables, seen)
+        elif node.ref in tables.functions:
+            called.append(tables.functions[node.ref])
+    return called
 
 
 def modes(node: Node, resource: str, tables: Tables) -> set[str]:
@@ -229,6 +240,16 @@ def _function(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | 
     return None if function is None else function.duration
 
 
+def _call(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+    """A helper takes as long as its graph; one that has none is no matter of time."""
+    graph = tables.function_graphs.get(node.ref)
+    if graph is None:
+        return _NO_TIME
+    inner = {key: one for key, one in tables.function_graphs.items() if key != node.ref}
+    rest = replace(tables, function_graphs=inner)
+    return duration(graph, lambda one: node_range(one, rest, machines))
+
+
 def _wait(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     return Range(0, None)
 
@@ -245,6 +266,7 @@ _Cost = Callable[[Node, Tables, tuple[str, ...]], Range | None]
 _COSTS: dict[str, _Cost] = {
     "service": _service,
     "function": _function,
+    "call": _call,
     "wait": _wait,
     "delay": _delay,
 }

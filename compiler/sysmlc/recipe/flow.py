@@ -146,7 +146,7 @@ class _Clock:
         """How often the cycle is closed at most; the loop nodes outside inner cycles say it."""
         nested = {id for one in cycles(part, inner) for id in one}
         loops = [self.nodes[id] for id in part if id not in nested]
-        loops = [node for node in loops if node.kind == "loop"]
+        loops = [node for node in loops if node.kind in ("loop", "forEach")]
         bounds = [node.max_iterations for node in loops if node.max_iterations is not None]
         if not loops or len(bounds) < len(loops):
             return None

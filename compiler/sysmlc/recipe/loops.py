@@ -1,12 +1,13 @@
 """Cycles of decide and merge become loops: the decision that can leave a cycle is its loop node.
 
 The loop node keeps the guards of its edges; ``body`` edges go round again, ``exit`` edges leave.
+A for-each node has such edges as well: once round for each element of its list.
 """
 
 from collections.abc import Mapping
 
 from sysmlc.recipe.expression import Expr, either, negated
-from sysmlc.recipe.flow import cycles, entries
+from sysmlc.recipe.flow import cycles, entries, reachable
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 from sysmlc.values import replace
 
@@ -19,12 +20,26 @@ def with_loops(graph: FlowGraph, bounds: Mapping[str, int]) -> FlowGraph:
     nodes = {node.id: node for node in graph.nodes}
     edges = list(graph.edges)
     active = set(nodes)
-    while (found := _next_loop(graph, active)) is not None:
+    closing = for_each_rounds(graph)
+    once = replace(graph, edges=tuple(edge for edge in edges if edge not in closing))
+    while (found := _next_loop(once, active)) is not None:
         loop, part = found
         edges = [_with_role(edge, loop, part) for edge in edges]
         nodes[loop] = _loop_node(nodes[loop], part, edges, bounds)
         active.discard(loop)
     return replace(graph, nodes=tuple(nodes.values()), edges=tuple(edges))
+
+
+def for_each_rounds(graph: FlowGraph) -> frozenset[FlowEdge]:
+    """The edges that lead back from the body of a for-each node: no decision repeats them."""
+    found: set[FlowEdge] = set()
+    for node in graph.nodes:
+        if node.kind == "forEach":
+            starts = [e.target for e in graph.edges if e.source == node.id and e.role == "body"]
+            inner = [(e.source, e.target) for e in graph.edges if e.source != node.id]
+            body = reachable(starts, inner)
+            found |= {e for e in graph.edges if e.target == node.id and e.source in body}
+    return frozenset(found)
 
 
 def _next_loop(graph: FlowGraph, active: set[str]) -> tuple[str, set[str]] | None:

@@ -23,10 +23,11 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class EnumType:
-    """An enumeration with its literals in order."""
+    """An enumeration with its literals in order, and their values when each has one."""
 
     name: str
     literals: tuple[str, ...]
+    values: tuple[Scalar, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,7 @@ class Parameter:
     name: str
     type: ValueType | None = None
     unit: str = ""
-    value: Scalar | None = None
+    value: Scalar | tuple[Scalar, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,20 @@ class OpcUa:
 
 
 @dataclass(frozen=True, slots=True)
+class MachineVariable:
+    """What a machine shows or is told, with dots for what belongs to it.
+
+    ``node`` is its OPC UA node as written; a variable with ``elements`` is the list of these.
+    """
+
+    name: str
+    type: ValueType | None = None
+    value: Scalar | None = None
+    node: str = ""
+    elements: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Machine:
     """A machine that tasks and services can be allocated to."""
 
@@ -80,6 +95,7 @@ class Machine:
     aml_id: str = ""
     endpoint: str = ""
     plant_element: str = ""
+    variables: tuple[MachineVariable, ...] = ()
     element: str = ""
 
 
@@ -155,6 +171,8 @@ class Task:
     implementation: str = ""
     pre: Expr | None = None
     post: Expr | None = None
+    bind: tuple[tuple[str, Expr], ...] = ()
+    assign: tuple[tuple[str, str], ...] = ()
     interruptible: bool = False
     no_wait: bool = False
     derived: Derived | None = None
@@ -163,11 +181,14 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """Tasks and the order between them."""
+    """Tasks and the order between them; variables carry values from task to task."""
 
     id: str
     tasks: tuple[Task, ...]
     precedence: tuple[tuple[str, str], ...] = ()
+    inputs: tuple[Parameter, ...] = ()
+    outputs: tuple[Parameter, ...] = ()
+    variables: tuple[Parameter, ...] = ()
     version: str = ""
     product: str = ""
     priority: int | None = None
@@ -233,7 +254,8 @@ class Node:
     """A node of a service or function graph; which fields count depends on ``kind``.
 
     Kinds: initial final flowFinal decision merge fork join service function call action assign
-    wait delay loop.
+    wait delay loop forEach. A for-each node takes the elements of ``expression`` one after the
+    other as ``variable``.
     """
 
     id: str
@@ -250,7 +272,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class FlowEdge:
-    """An edge of a graph. ``role`` is body or exit on the edges that leave a loop node."""
+    """An edge of a graph. ``role`` is body or exit on what leaves a loop or for-each node."""
 
     source: str
     target: str

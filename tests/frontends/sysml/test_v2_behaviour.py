@@ -19,11 +19,12 @@ package P {
     }
 }""")
     assert reading.flows("P::Build") == [
-        "start -> pick",
+        "start -> merge",
         "pick -> decision",
-        "decision -> pick [count < 3]",
+        "decision -> merge [count < 3]",
         "decision -> place [else]",
         "place -> done",
+        "merge -> pick",
     ]
     assert reading.to("P::Build::pick", "calls") == ["P::Pick"]
     assert reading.named("P::Build::pick").subkind == "call-behavior"

@@ -13,8 +13,11 @@ LEVELS = """
 recipe = "RecipePrimitives::Recipe"
 task = "RecipePrimitives::Task"
 machine-service = "RecipePrimitives::MachineService"
+machine-function = "RecipePrimitives::MachineFunction"
 machine = "ISA95EquipmentHierarchy::ProductionEquipment"
 opc-ua-call = "OpcUaBinding::OpcUaMethod"
+opc-ua-variable = "OpcUaBinding::OpcUaVariable"
+delay = "RecipePrimitives::Delay"
 """
 
 
@@ -46,12 +49,25 @@ def test_the_recipe_has_its_five_tasks_in_their_order(recipe):
     assert len(only["tasks"]) == 5
 
 
+def test_values_go_from_task_to_task(recipe):
+    (only,) = recipe["recipes"]
+    tasks = {one["name"]: one for one in only["tasks"]}
+    assert tasks["opLD"]["assign"]["palletID2"] == "opLD.palletID2"
+    assert tasks["opQC"]["bind"]["palletID2"] == {"var": "opLD.palletID2"}
+    assert tasks["opDISASSEMBLE"]["bind"]["palletID1"] == {"var": "opRESRVPALLET.palletID1"}
+    names = [one["name"] for one in only["variables"]]
+    assert names[:2] == ["opLD.palletID1", "opLD.palletID2"]
+    assert [one["name"] for one in only["inputs"]] == [
+        "conveyorEquipment",
+        "roboticCellEquipment",
+        "qualityControlEquipment",
+    ]
+
+
 def test_functions_are_bound_down_to_the_nodes_of_opc_ua(recipe):
-    calls = {one["id"].rpartition("::")[2]: one.get("opcua") for one in recipe["functions"]}
-    assert len(calls) == 12
-    waiting = [name for name, call in calls.items() if call is None]
-    assert waiting == ["Delay", "WaitRoboticCellDone"]
-    assert all(call["method"].startswith("ns=") for call in calls.values() if call)
+    calls = {one["id"].rpartition("::")[2]: one["opcua"] for one in recipe["functions"]}
+    assert len(calls) == 11
+    assert all(call["method"].startswith("ns=") for call in calls.values())
     assert calls["clearPartOnPallet"]["object"].startswith("ns=7;g=")
 
 
@@ -60,8 +76,56 @@ def test_results_go_from_step_to_step_and_parameters_into_calls(recipe):
     nodes = graphs["DemoLegoRecipe::TaskRBTC"]["nodes"]
     pick = next(one for one in nodes if one["id"].endswith("::pick"))
     assert pick["bind"]["shape"] == {"var": "shape1"}
-    assert pick["bind"]["posPick"] == {"lit": "pos2"}
+    assert pick["bind"]["posPick"] == {"lit": 2}
+    assert pick["bind"]["equipment"] == {"var": "roboticCellEquipment"}
     assert len([one for one in nodes if one["kind"] == "service"]) == 13
+
+
+def test_outputs_of_a_task_are_computed_before_its_end(recipe):
+    graphs = {one["id"]: one for one in recipe["serviceGraphs"]}
+    nodes = graphs["DemoLegoRecipe::TaskLD"]["nodes"]
+    made = {n["variable"]["name"]: n["value"] for n in nodes if n["kind"] == "assign"}
+    assert made["palletID2"] == {"index": [{"var": "reserve.palletIds"}, {"lit": 2}]}
+
+
+def test_pallets_are_looked_at_one_after_the_other(recipe):
+    graphs = {one["id"]: one for one in recipe["functionGraphs"]}
+    graph = graphs["Conveyor::ReserveFreePalletOfType2"]
+    (each,) = [one for one in graph["nodes"] if one["kind"] == "forEach"]
+    assert (each["in"], each["maxIterations"]) == ({"var": "equipment.pallets"}, 10)
+    assert each["variable"]["name"] == "p"
+    roles = [edge.get("role") for edge in graph["edges"] if edge["from"] == each["id"]]
+    assert sorted(roles) == ["body", "exit"]
+    check = next(one for one in graph["nodes"] if one["kind"] == "call")
+    assert (check["ref"], check["bind"]["pallet"]) == ("Conveyor::CheckPalletMatch", {"var": "p"})
+    assert check["ref"] in graphs
+
+
+def test_machines_are_polled_at_the_nodes_of_their_variables(recipe):
+    graphs = {one["id"]: one for one in recipe["functionGraphs"]}
+    waiting = graphs["RoboticCell::WaitRoboticCellDone"]["nodes"]
+    assert [one["unbounded"] for one in waiting if one["kind"] == "loop"] == [True, True]
+    machines = {one["id"].rpartition("::")[2]: one for one in recipe["machines"]}
+    (done,) = machines["RoboticCellEquipment"]["variables"]
+    assert (done["name"], done["node"]) == (
+        "plcOperationDone",
+        'ns=3;s="DB_ROBOTS"."plcOperationDone"',
+    )
+    pallets = {one["name"]: one for one in machines["ConveyorBeltEquipment"]["variables"]}
+    assert pallets["pallets"]["elements"][:2] == ["pallet1", "pallet2"]
+    assert pallets["pallet2.reserved"]["node"].endswith("/Pallet2/reserved")
+    assert pallets["pallet2.palletNumber"]["value"] == 2
+
+
+def test_a_pause_is_in_milliseconds(recipe):
+    graphs = {one["id"]: one for one in recipe["functionGraphs"]}
+    nodes = graphs["Conveyor::ReserveFreePalletOfType2"]["nodes"]
+    assert [one["time"] for one in nodes if one["kind"] == "delay"] == [{"lit": 1000}]
+
+
+def test_nothing_of_a_service_stays_outside_of_the_recipe(laboratory):
+    codes = {one.rule.code for one in laboratory.diagnostics}
+    assert codes.isdisjoint({"SM453", "SM606", "SM614", "SM615", "SM616"})
 
 
 def test_only_the_names_that_are_known_to_be_missing_are_unresolved(laboratory):

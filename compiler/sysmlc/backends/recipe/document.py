@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from sysmlc.backends.base import InputFile
-from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace
+from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace, value_type
 from sysmlc.recipe.check_bindings import is_complete
 from sysmlc.recipe.model import (
     Derived,
     Function,
     Machine,
+    MachineVariable,
     Material,
     MaterialUse,
     Mode,
@@ -66,6 +67,9 @@ def _recipe(recipe: Recipe) -> Json:
     found = _without_absent(
         {
             "id": recipe.id,
+            "inputs": parameters(recipe.inputs),
+            "outputs": parameters(recipe.outputs),
+            "variables": parameters(recipe.variables),
             "version": recipe.version,
             "product": recipe.product,
             "defaultPriority": recipe.priority,
@@ -89,6 +93,8 @@ def _task(task: Task) -> Json:
         "implementation": task.implementation,
         "pre": expression(task.pre),
         "post": expression(task.post),
+        "bind": {name: expression(value) for name, value in task.bind},
+        "assign": dict(task.assign),
         "interruptible": task.interruptible,
         "noWait": task.no_wait,
         "derived": None if task.derived is None else _derived(task.derived),
@@ -136,8 +142,16 @@ def _machine(machine: Machine) -> Json:
         "amlId": machine.aml_id,
         "endpoint": machine.endpoint,
         "plantElement": machine.plant_element,
+        "variables": _each(_machine_variable, machine.variables),
     }
     return {**_without_absent(found), **trace(machine.element)}
+
+
+def _machine_variable(variable: MachineVariable) -> Json:
+    type_ = {} if variable.type is None else {"type": value_type(variable.type)}
+    value = {} if variable.value is None else {"value": variable.value}
+    rest = _without_absent({"node": variable.node, "elements": list(variable.elements)})
+    return {"name": variable.name, **type_, **value, **rest}
 
 
 def _material(material: Material) -> Json:

@@ -51,15 +51,17 @@ def _parameter(parameter: Parameter) -> Json:
     if parameter.unit:
         found["unit"] = parameter.unit
     if parameter.value is not None:
-        found["value"] = parameter.value
+        value = parameter.value
+        found["value"] = list(value) if isinstance(value, tuple) else value
     return found
 
 
 def value_type(type_: ValueType) -> object:
     """A type: its name, or an object that says what it is made of."""
     match type_:
-        case EnumType(name, literals):
-            return {"enumeration": name, "literals": list(literals)}
+        case EnumType(name, literals, values):
+            given = {"values": list(values)} if values else {}
+            return {"enumeration": name, "literals": list(literals), **given}
         case ReferenceType(to, name):
             return {to: name}
         case ListType(of):
@@ -100,6 +102,13 @@ def _waiting(node: Node, graph: FlowGraph) -> Json:
     return {**until, "text": node.text, **_data(node)}
 
 
+def _repeating(node: Node, graph: FlowGraph) -> Json:
+    known = {one.name: one for one in graph.variables}
+    found = known.get(node.variable, Parameter(node.variable))
+    limit = {} if node.max_iterations is None else {"maxIterations": node.max_iterations}
+    return {"variable": _parameter(found), "in": expression(node.expression), **limit}
+
+
 def _delaying(node: Node, graph: FlowGraph) -> Json:
     return {"time": expression(node.expression, node.text)}
 
@@ -127,6 +136,7 @@ _MEMBERS: dict[str, Callable[[Node, FlowGraph], Json]] = {
     "wait": _waiting,
     "delay": _delaying,
     "loop": _looping,
+    "forEach": _repeating,
 }
 
 

@@ -237,6 +237,10 @@ class Lowering:
         for name, kind in self._scalars.get(known.id, ()):
             self.lead_to(Edge.TYPED_BY, other, name, kind)
 
+    def is_scalar(self, element: Element) -> bool:
+        """Whether a data type of the standard library types the element."""
+        return element.id in self._scalars
+
     def _stub(self, href: str, kind: Kind, name: str) -> str:
         """Id of the element that stands for one of the standard library."""
         found = derived_id(href, "stub")

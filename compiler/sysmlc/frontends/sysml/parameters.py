@@ -27,6 +27,8 @@ def parameter(low: "Lowering", node: Node, owner: Element) -> Element:
     direction = direction_of(node)
     attrs = {"direction": direction} | visibility(node)
     made = low.add(node, Kind.PARAMETER, nodes.name_of(node), owner, **attrs)
+    value = nodes.value_of(node)
+    low.set(made, initial=direction != "in" and value is not None and value.role == ":=")
     describe(low, node, made)
     return made
 
@@ -69,6 +71,7 @@ def _value(low: "Lowering", made: Element, action: Element, value: Node) -> None
         low.later(lambda: _given(low, action, value))
     else:
         values.give(low, made, "value", value)
+        low.set(made, value_unit=values.measure(value))
 
 
 def _given(low: "Lowering", action: Element, value: Node) -> None:

@@ -117,6 +117,31 @@ def _flow(
         low.later(lambda: low.set(made, guard=values.texts(guard, low)))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.last(lambda: _join(low, made, source, target))
+    if guard is not None:
+        low.last(lambda: low.last(lambda: _meet(low, low.graph.target(made, Edge.FLOW_TARGET))))
+
+
+def _meet(low: "Lowering", step: Element | None) -> None:
+    """A merge before a step that more than one succession leads to, one of them guarded.
+
+    A guarded succession that is not taken is none (SysML 2.0, 8.4.13.5); the step waits for those
+    that are. A step of UML would wait for all (UML 2.5.1, 15.2.3.4).
+    """
+    if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
+        return
+    ways = [
+        one for one in low.graph.sources(step, Edge.FLOW_TARGET) if one.kind is Kind.CONTROL_FLOW
+    ]
+    if len(ways) < 2:
+        return
+    merge = low.beside(step, Kind.CONTROL, "")
+    low.set(merge, subkind="merge")
+    for one in ways:
+        low.graph.disconnect(Edge.FLOW_TARGET, one, step)
+        low.graph.connect(Edge.FLOW_TARGET, one, merge)
+    flow = low.beside(step, Kind.CONTROL_FLOW, "")
+    low.graph.connect(Edge.FLOW_SOURCE, flow, merge)
+    low.graph.connect(Edge.FLOW_TARGET, flow, step)
 
 
 def _is_elsewhere(low: "Lowering", point: Reference) -> bool:

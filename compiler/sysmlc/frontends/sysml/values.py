@@ -37,11 +37,10 @@ def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
 def _literal(low: "Lowering", element: Element, key: str, known: Element) -> None:
     """A literal of an enumeration; for a feature of another type the value that it has."""
     types = low.graph.targets(element, Edge.TYPED_BY)
-    value = known.attrs.get("value")
-    if value is not None and types and low.graph.owner(known) not in types:
-        low.graph.set(element, **{key: value})
-    else:
-        low.graph.set(element, **{key: known.name, f"{key}_instance": known.id})
+    is_other = low.is_scalar(element) or (types and low.graph.owner(known) not in types)
+    value = known.attrs.get("value") if is_other else None
+    given = known.name if value is None else value
+    low.graph.set(element, **{key: given, f"{key}_instance": known.id})
 
 
 def _literal_of(node: Node) -> Node | None:
@@ -59,7 +58,7 @@ def constant(node: Node) -> AttrValue:
         return node.facts.get("value")
     if node.kind == "OperatorExpression":
         return _operation(node)
-    return None
+    return () if node.kind == "NullExpression" else None
 
 
 def _operation(node: Node) -> AttrValue:

@@ -1,0 +1,188 @@
+"""Recipes in SysML v2: loops over lists, blocks, helpers, values between tasks and machines."""
+
+from reading_v2 import Reading
+
+from sysmlc.recipe.expression import Lit, Var
+from sysmlc.recipe.model import Model
+
+PASSES = ("resolve", "inherit", "classify", "ports", "behaviours", "recipe")
+_AROUND = """
+package P {{
+    private import RecipeLevels::*;
+    private import ScalarValues::*;
+    enum def Slot :> Integer {{ left = 1; right = 2; }}
+    part def Belt :> Machine {{
+        attribute places : Integer[4];
+        attribute busy : Boolean {{ @OpcUaCall {{ kind = "read"; node = "ns=2;s=Busy"; }} }}
+    }}
+    action def Move :> MachineFunction {{ in to : Integer; }}
+    {}
+    action def Serve :> MachineService {{
+        in ref belt : Belt;
+        {}
+    }}
+    action def Work :> Task {{
+        in ref belt : Belt;
+        out last : Integer = serve.at;
+        action serve : Serve {{ in ref :>> belt = Work::belt; {} }}
+    }}
+    action def All :> Recipe {{
+        in ref belt : Belt;
+        action work : Work {{ in ref :>> belt = All::belt; }}
+    }}
+}}"""
+
+
+def recipe(serving, *, helper="", given="out :>> at;"):
+    text = _AROUND.format(helper, f"out at : Integer; {serving}", given)
+    reading = Reading(text, passes=PASSES)
+    (model,) = reading.graph.derived(Model)
+    return model, [one.rule.code for one in reading.sink]
+
+
+def shown(graph):
+    nodes = {node.id: node.id.rpartition("::")[2] for node in graph.nodes}
+    return [
+        f"{nodes[e.source]} -> {nodes[e.target]}" + (f" {e.role}" if e.role else "")
+        for e in graph.edges
+    ]
+
+
+def test_a_for_loop_is_a_node_with_a_body_and_an_exit():
+    model, _ = recipe("""
+        first start;
+        then for p in belt.places {
+            action go : Move { in :>> to = p; }
+            then action settle;
+        }
+        then done;""")
+    (graph,) = model.function_graphs
+    assert shown(graph) == [
+        "start -> expansion",
+        "expansion -> done exit",
+        "expansion -> go body",
+        "go -> settle",
+        "settle -> expansion",
+    ]
+    (each,) = [node for node in graph.nodes if node.kind == "forEach"]
+    assert (each.variable, each.expression, each.max_iterations) == ("p", Var("belt.places"), 4)
+
+
+def test_a_for_loop_takes_as_long_as_its_list_is_long():
+    model, _ = recipe("""
+        first start;
+        then for p in belt.places { accept after 2 [SI::s]; }
+        then done;""")
+    (task,) = model.recipe.tasks
+    assert (task.derived.duration.min, task.derived.duration.max) == (0, 8000)
+
+
+def test_a_loop_inside_a_for_loop_is_a_loop():
+    model, codes = recipe("""
+        first start;
+        then for p in belt.places {
+            merge again;
+            then action go : Move { in :>> to = p; }
+            then decide;
+                if belt.busy then again;
+                else settle;
+            action settle;
+        }
+        then done;""")
+    (graph,) = model.function_graphs
+    kinds = {node.id.rpartition("::")[2]: node.kind for node in graph.nodes}
+    assert (kinds["expansion"], kinds["decision"]) == ("forEach", "loop")
+    assert "settle -> expansion" in shown(graph)
+    assert "SM604" not in codes
+
+
+def test_steps_of_a_block_are_steps_of_the_service():
+    model, codes = recipe("""
+        first start;
+        then action both { first start; then action go : Move { in :>> to = 1; } then done; }
+        then done;""")
+    (graph,) = model.function_graphs
+    assert shown(graph) == ["start -> both", "both -> go", "go -> end", "end -> done"]
+    assert "SM615" not in codes
+
+
+def test_a_block_with_branches_at_once_stays_one_step():
+    _, codes = recipe("""
+        first start;
+        then action both {
+            first start; then fork f;
+            then a; then b;
+            action a : Move { in :>> to = 1; } action b : Move { in :>> to = 2; }
+        }
+        then done;""")
+    assert "SM615" in codes
+
+
+def test_a_helper_has_a_graph_of_its_own():
+    helper = """
+    action def Wait {
+        in ref belt : Belt;
+        first start;
+        then merge again;
+        then decide;
+            if belt.busy == false then gone;
+            else again;
+        action gone;
+        then done;
+    }"""
+    serving = "first start; then action w : Wait { in ref :>> belt = Serve::belt; } then done;"
+    model, codes = recipe(serving, helper=helper)
+    names = [graph.id for graph in model.function_graphs]
+    assert names == ["P::Serve", "P::Wait"]
+    (call,) = [node for node in model.function_graphs[0].nodes if node.kind == "call"]
+    assert (call.ref, dict(call.bind)) == ("P::Wait", {"belt": Var("belt")})
+    assert model.functions == ()
+    assert "SM614" not in codes
+
+
+def test_a_helper_that_calls_itself_ends():
+    helper = "action def Wait { first start; then action w : Wait; then done; }"
+    model, _ = recipe("first start; then action w : Wait; then done;", helper=helper)
+    assert [graph.id for graph in model.function_graphs] == ["P::Serve", "P::Wait"]
+
+
+def test_variables_of_a_machine_are_those_that_are_spoken_of():
+    model, _ = recipe("""
+        first start;
+        then merge again;
+        then decide;
+            if belt.busy then again;
+            else gone;
+        action gone;
+        then done;""")
+    (machine,) = model.machines
+    (busy,) = machine.variables
+    assert (busy.name, busy.type, busy.node) == ("busy", "boolean", "ns=2;s=Busy")
+
+
+def test_literals_of_numbers_are_numbers_where_numbers_are_meant():
+    model, _ = recipe("first start; then action go : Move { in :>> to = Slot::right; } then done;")
+    (go,) = [node for node in model.function_graphs[0].nodes if node.kind == "function"]
+    assert dict(go.bind) == {"to": Lit(2)}
+
+
+def test_an_output_that_is_an_expression_is_assigned_before_the_end():
+    text = """
+        attribute found : Integer[*] := (1, 2);
+        first start; then action go : Move { in :>> to = 1; } then done;
+        bind at = found;"""
+    model, _ = recipe(text)
+    graph = model.function_graphs[0]
+    made = [(node.variable, node.expression) for node in graph.nodes if node.kind == "assign"]
+    assert made == [("at", Var("found"))]
+    assert shown(graph) == ["start -> go", "go -> at", "at -> done"]
+    assert [one.value for one in graph.variables] == [(1, 2)]
+
+
+def test_the_first_value_of_an_output_is_no_result():
+    serving = "first start; then action go : Move { in :>> to = 1; } then done;"
+    text = f"out list : Integer[*] := (); {serving}"
+    model, _ = recipe(text)
+    graph = model.function_graphs[0]
+    assert "assign" not in {node.kind for node in graph.nodes}
+    assert {one.name: one.value for one in graph.outputs} == {"at": None, "list": ()}
