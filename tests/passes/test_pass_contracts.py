@@ -215,7 +215,7 @@ def test_formulas_of_the_model_are_conjuncts(body, side, class_, formula):
     assert codes(sink) == (["SM503"] if class_ is Class.OTHER else [])
 
 
-def test_a_formula_of_a_requirement_goes_to_what_satisfies_it():
+def test_what_a_requirement_demands_is_a_contract_that_the_behaviour_implements():
     text = machine(arrow("a", "b", "start")) + (
         '  Class q "Answer" role="requirement"\n'
         '    Constraint f "Answer" language="SPIN" body="[](event=start -> <>{state==B})"\n'
@@ -224,11 +224,16 @@ def test_a_formula_of_a_requirement_goes_to_what_satisfies_it():
     text = text.replace(
         "    -> classifier-behavior m\n", "    -> classifier-behavior m\n    -> satisfies q\n", 1
     )
-    _, (contract,), sink = derived(text)
-    assert contract.guarantees[-1].origin == "f"
-    assert contract.guarantees[-1].class_ is Class.OTHER
-    assert print_formula(contract.guarantees[-1].formula) == "G (event=start -> F state=B)"
-    assert "SM503" in codes(sink)
+    _, (behaviour, demanded), _ = derived(text)
+    assert (behaviour.component, demanded.component) == ("Plant::Gate", "Plant::Gate.requirements")
+    assert "f" not in {one.origin for one in behaviour.guarantees}
+    assert [(v.name, v.owner.value) for v in demanded.variables] == [
+        ("event", "env"),
+        ("state", "sys"),
+    ]
+    assert [
+        (one.origin, one.class_, print_formula(one.formula)) for one in demanded.guarantees
+    ] == [("f", Class.OTHER, "G (event=start -> F state=B)")]
 
 
 def test_twice_equals_once_and_the_graph_stays_as_it_is():

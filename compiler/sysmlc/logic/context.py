@@ -1,25 +1,15 @@
 """What names mean inside a classifier: its properties as variables with finite domains."""
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
+from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.context_objects import of_objects
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import contains, describe
-from sysmlc.logic.expression import (
-    Binary,
-    Expression,
-    ExpressionError,
-    Name,
-    Unary,
-    dotted,
-    parse_expression,
-)
-from sysmlc.logic.expression import Literal as Constant
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.names import unique
+from sysmlc.logic.ranges import declared_range, integer
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.values import dataclass
 
@@ -50,8 +40,6 @@ _INTEGER = frozenset(
     ["integer", "int", "natural", "positive", "unlimitednatural", "eint", "short", "long", "byte"]
 )
 _UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])
-_RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
-_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +85,9 @@ def context_of(
         named |= _named(graph, within) | of_objects(graph, within)
     names = sorted(named, key=lambda name: (named[name].ordinal, name))
     variables = unique(names, "value", "event", "none")
+    fixed = {one.name: value for one in named.values() if (value := _fixed(one)) is not None}
     features = {
-        name: _feature(graph, named[name], variable, assumed)
+        name: _feature(graph, named[name], variable, assumed, fixed)
         for name, variable in zip(names, variables, strict=True)
     }
     return Context(classifier.name, features, _literals(graph))
@@ -147,12 +136,23 @@ def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
         sink.report(ASSUMED_RANGE, subject, name=name, range=shown, low=low, high=high)
 
 
-def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, int]) -> Feature:
+def _fixed(element: Element) -> int | None:
+    """The Integer that an element always is."""
+    return integer(element.attrs.get("default")) if element.attrs.get("readonly") else None
+
+
+def _feature(
+    graph: Graph,
+    element: Element,
+    variable: str,
+    assumed: tuple[int, int],
+    fixed: Mapping[str, int],
+) -> Feature:
     type_ = query.type_of(graph, element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
     names = _names(family)
     is_integer = bool(names & _INTEGER) or _untyped_default(element, type_, int)
-    domain = _domain(graph, element, family, names, is_integer)
+    domain = _domain(graph, element, family, names, is_integer, fixed)
     is_assumed = domain is None and is_integer
     if is_assumed:
         domain = _assume(element, names, assumed)
@@ -165,7 +165,12 @@ def _feature(graph: Graph, element: Element, variable: str, assumed: tuple[int, 
 
 
 def _domain(
-    graph: Graph, element: Element, family: list[Element], names: set[str], is_integer: bool
+    graph: Graph,
+    element: Element,
+    family: list[Element],
+    names: set[str],
+    is_integer: bool,
+    fixed: Mapping[str, int],
 ) -> Domain | None:
     type_ = family[0] if family else None
     if type_ is not None and type_.kind is Kind.ENUMERATION:
@@ -173,7 +178,7 @@ def _domain(
         return EnumerationDomain(literals) if literals else None
     if names & _BOOLEAN or _untyped_default(element, type_, bool):
         return BooleanDomain()
-    return _declared_range(graph, element, family) if is_integer else None
+    return declared_range(graph, element, family, fixed) if is_integer else None
 
 
 def _names(family: list[Element]) -> set[str]:
@@ -193,119 +198,6 @@ def _assume(element: Element, names: set[str], assumed: tuple[int, int]) -> Doma
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
     return IntegerDomain(low, high)
-
-
-# -- ranges ------------------------------------------------------------------------------------
-
-
-def _declared_range(graph: Graph, element: Element, types: list[Element]) -> Domain | None:
-    """Range from tagged values, a bounded default, or constraints, in this order."""
-    for one in (element, *types):
-        found = _tagged_range(graph, one)
-        if found is not None:
-            return found
-    bounded = _RANGE.match(str(element.attrs.get("default", "")))
-    if bounded and ".." in bounded[0]:
-        return _range(int(bounded[1]), int(bounded[2]))
-    return _constrained_range(graph, element, types)
-
-
-def _range(low: int, high: int) -> Domain | None:
-    return IntegerDomain(low, high) if low <= high else None
-
-
-def _tagged_range(graph: Graph, element: Element) -> Domain | None:
-    if not query.applications(graph, element):
-        return None
-    found = _RANGE.match(str(query.tag(graph, element, "range") or ""))
-    if found:
-        return _range(int(found[1]), int(found[2]))
-    for least, greatest in (("min", "max"), ("lower", "upper"), ("minimum", "maximum")):
-        low = _integer(query.tag(graph, element, least))
-        high = _integer(query.tag(graph, element, greatest))
-        if low is not None and high is not None:
-            return _range(low, high)
-    return None
-
-
-def _integer(value: AttrValue) -> int | None:
-    text = str(value)
-    return int(text) if re.fullmatch(r"-?\d+", text) else None
-
-
-def _constrained_range(graph: Graph, element: Element, types: list[Element]) -> Domain | None:
-    low: int | None = None
-    high: int | None = None
-    for names, body in _constraints(graph, element, types):
-        for op, bound in _bounds(body, names):
-            least = {">": bound + 1, ">=": bound, "==": bound}.get(op)
-            most = {"<": bound - 1, "<=": bound, "==": bound}.get(op)
-            low = least if low is None else max(low, low if least is None else least)
-            high = most if high is None else min(high, high if most is None else most)
-    return None if low is None or high is None else _range(low, high)
-
-
-def _constraints(
-    graph: Graph, element: Element, types: list[Element]
-) -> Iterator[tuple[frozenset[str], Expression]]:
-    owner = graph.owner(element)
-    if owner is not None:
-        names = frozenset([element.name, f"self.{element.name}"])
-        yield from _bodies(graph, owner, names, element.name)
-    yield from _bodies(graph, element, frozenset([element.name, "self", "value"]))
-    for type_ in types:
-        yield from _bodies(graph, type_, frozenset(["self", "value", "self.value", type_.name]))
-
-
-def _bodies(
-    graph: Graph, owner: Element, names: frozenset[str], word: str = ""
-) -> Iterator[tuple[frozenset[str], Expression]]:
-    """What constrains the owner; all that can hold one of the names, which all have the word."""
-    constraints = {one.id: one for one in graph.owned(owner) if one.kind is Kind.CONSTRAINT}
-    for one in graph.sources(owner, Edge.REFERENCES):
-        if one.kind is Kind.CONSTRAINT:
-            constraints[one.id] = one
-    is_plain = word.isidentifier()
-    for constraint in constraints.values():
-        body = str(constraint.attrs.get("body", ""))
-        if is_plain and word not in body and "'" not in body:
-            continue
-        try:
-            yield names, parse_expression(body)
-        except ExpressionError:
-            continue
-
-
-def _bounds(body: Expression, names: frozenset[str]) -> Iterator[tuple[str, int]]:
-    """Bounds that a conjunction sets: ``x >= 0``, ``7 > x``, ``0 <= x <= 7``."""
-    match body:
-        case Binary("and", left, right):
-            yield from _bounds(left, names)
-            yield from _bounds(right, names)
-        case Binary(op, Binary(first, low, middle), high) if op in _MIRROR and first in _MIRROR:
-            yield from _bound(first, low, middle, names)
-            yield from _bound(op, middle, high, names)
-        case Binary(op, left, right):
-            yield from _bound(op, left, right, names)
-
-
-def _bound(
-    op: str, left: Expression, right: Expression, names: frozenset[str]
-) -> Iterator[tuple[str, int]]:
-    if dotted(left) in names and (value := _constant(right)) is not None:
-        yield op, value
-    elif dotted(right) in names and (value := _constant(left)) is not None:
-        yield _MIRROR.get(op, op), value
-
-
-def _constant(expression: Expression) -> int | None:
-    match expression:
-        case Constant(value) if isinstance(value, int) and not isinstance(value, bool):
-            return value
-        case Unary("-", Constant(value)) if isinstance(value, int):
-            return -value
-        case _:
-            return None
 
 
 # -- defaults ----------------------------------------------------------------------------------
@@ -328,7 +220,7 @@ def _literal_value(
         case BooleanDomain():
             return {"true": True, "false": False}.get(text.lower())
         case IntegerDomain():
-            return _integer(text)
+            return integer(text)
         case EnumerationDomain():
             return None if type_ is None else _enumerated(graph, text, type_)
 
@@ -337,12 +229,3 @@ def _enumerated(graph: Graph, text: str, type_: Element) -> Literal | None:
     named = graph.get(text)
     name = text.replace(".", "::").rpartition("::")[2] if named is None else named.name
     return _enumeration(graph, type_).get(name)
-
-
-def name_of(expression: Expression) -> str | None:
-    """The name of a feature of the context: ``x`` and ``self.x`` are the same."""
-    name = dotted(expression)
-    if name is None or isinstance(expression, Name):
-        return name
-    head, _, rest = name.partition(".")
-    return rest if head in ("self", "this") else name

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.context import name_of
+from sysmlc.logic.context import Context
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expression import (
     Binary,
@@ -15,6 +15,7 @@ from sysmlc.logic.expression import (
     Name,
     Unary,
     dotted,
+    name_of,
     print_expression,
 )
 from sysmlc.logic.expression import Literal as Written
@@ -83,6 +84,15 @@ _CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
     "implies": f.implies,
     "xor": lambda left, right: f.negate(f.iff(left, right)),
 }
+
+
+def literal_of(context: Context, name: str) -> Symbol | None:
+    """An enumeration literal that is named together with its enumeration: ``Mode::auto``."""
+    found = context.literals.get(name)
+    if found is None or ("::" not in name and "." not in name):
+        return None
+    siblings = [made for of, made in context.literals.values() if of == found[0]]
+    return Symbol(f.const(found[1]), EnumerationDomain(tuple(dict.fromkeys(siblings))))
 
 
 def condition(expression: Expression, scope: Scope) -> Formula:

@@ -231,6 +231,15 @@ def dotted(expression: Expression) -> str | None:
             return None
 
 
+def name_of(expression: Expression) -> str | None:
+    """The name of a feature of the context: ``x`` and ``self.x`` are the same."""
+    name = dotted(expression)
+    if name is None or isinstance(expression, Name):
+        return name
+    head, _, rest = name.partition(".")
+    return rest if head in ("self", "this") else name
+
+
 def _print(expression: Expression, strength: int) -> str:
     text, own = _printed(expression)
     return f"({text})" if own < strength else text

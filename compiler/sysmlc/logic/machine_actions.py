@@ -5,10 +5,17 @@ from dataclasses import field
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
-from sysmlc.logic.context import Context, name_of, note_range
+from sysmlc.logic.context import Context, note_range
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
-from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition, meaning
+from sysmlc.logic.elaborate import (
+    ElaborationError,
+    Fault,
+    Symbol,
+    condition,
+    literal_of,
+    meaning,
+)
 from sysmlc.logic.expression import (
     Assignment,
     Expression,
@@ -18,6 +25,7 @@ from sysmlc.logic.expression import (
     Send,
     Statement,
     dotted,
+    name_of,
     parse_effect,
     parse_expression,
     print_expression,
@@ -129,14 +137,7 @@ class Reading:
         for variable in self.made.values():
             if variable.name == name:
                 return Symbol(f.var(name), variable.domain)
-        return self._enumerated(name)
-
-    def _enumerated(self, name: str) -> Symbol | None:
-        found = self.context.literals.get(name)
-        if found is None or ("::" not in name and "." not in name):
-            return None
-        siblings = [made for _, (of, made) in self.context.literals.items() if of == found[0]]
-        return Symbol(f.const(found[1]), EnumerationDomain(tuple(dict.fromkeys(siblings))))
+        return literal_of(self.context, name)
 
     def make(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
         """The name of the variable that stands for ``key``, made when it is asked for first."""

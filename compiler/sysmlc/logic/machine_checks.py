@@ -7,11 +7,10 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import domains, samples
 from sysmlc.logic import formula as f
-from sysmlc.logic.context import name_of
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.elaborate import Scope, condition
 from sysmlc.logic.evaluate import is_true
-from sysmlc.logic.expression import Expression
+from sysmlc.logic.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machine import AfterTicks, Assign, Machine, OnEvent, Transition, Vertex
 from sysmlc.logic.machine_actions import walk

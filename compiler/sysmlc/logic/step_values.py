@@ -5,8 +5,7 @@ Independent of ``elaborate`` and ``evaluate``, which the derivation uses.
 
 from collections.abc import Callable, Mapping
 
-from sysmlc.logic.context import name_of
-from sysmlc.logic.expression import Binary, Conditional, Expression, Member, Name, Unary
+from sysmlc.logic.expression import Binary, Conditional, Expression, Member, Name, Unary, name_of
 from sysmlc.logic.expression import Literal as Written
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machine import Machine

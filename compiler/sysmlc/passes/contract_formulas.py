@@ -86,15 +86,14 @@ def _is_formula(constraint: Element) -> bool:
 
 
 def _components(graph: Graph, constraint: Element) -> Iterator[str]:
-    """Names of the components that a constraint speaks of, each once."""
+    """Names of the components that a constraint speaks of, each once.
+
+    What a requirement demands is no part of a behaviour (``logic.requirements``).
+    """
     owner = graph.owner(constraint)
     subjects = graph.targets(constraint, Edge.REFERENCES) or ([] if owner is None else [owner])
-    names: dict[str, None] = {}
-    for subject in subjects:
-        satisfiers = graph.sources(subject, Edge.SATISFIES) if query.is_requirement(subject) else []
-        for one in satisfiers or [subject]:
-            names[query.component_name(graph, one)] = None
-    yield from names
+    about = (one for one in subjects if not query.is_requirement(one))
+    yield from dict.fromkeys(query.component_name(graph, one) for one in about)
 
 
 def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink) -> None:

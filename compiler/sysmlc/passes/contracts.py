@@ -1,7 +1,8 @@
 """Pass ``contracts``: the contract of every behaviour, with the formulas written in the model.
 
 State machines and activities are derived (design, section 7); constraints written in LTL are
-conjuncts of the contract of the component that they constrain.
+conjuncts of the contract of the component that they constrain; what requirements assume and
+demand of a subject is a contract of its own.
 """
 
 from collections import Counter
@@ -13,6 +14,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import activity_contract, statemachine
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.machine_reader import MachineOptions, read_machine
+from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.contract_formulas import add_formulas
 from sysmlc.values import dataclass, replace
@@ -21,9 +23,9 @@ SAME_COMPONENT = rule(
     "SM500",
     "components-with-one-name",
     Severity.WARNING,
-    "{count} behaviours are the component '{component}'; a number tells their contracts apart",
+    "{count} components have the name '{component}'; a number tells their contracts apart",
     why="A contract is found by the name of its component.",
-    help="give the behaviours or their owners different names",
+    help="give them or their owners different names",
     wrong='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
     '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
     "        -> flow-source ai\n        -> flow-target as\n"
@@ -52,9 +54,11 @@ class Contracts:
     after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store a Contract for each behaviour whose meaning is derived, by component."""
+        """Store a Contract for each behaviour that is derived and for subjects of requirements."""
         found = [*self._of_machines(graph, sink), *_of_activities(graph)]
         found = add_formulas(graph, _told_apart(graph, found, sink), sink)
+        assumed = self.assumed_low, self.assumed_high
+        found = _told_apart(graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink)
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:

@@ -1,0 +1,1 @@
+"""What requirements assume and demand of their subjects, as contracts."""

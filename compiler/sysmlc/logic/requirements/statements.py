@@ -1,0 +1,67 @@
+"""The conditions of requirements, by the element that they are about."""
+
+from collections.abc import Iterator
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.values import dataclass
+
+_SUBJECTS = (*query.CLASSIFIERS, *query.BEHAVIORS)
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """A constraint of a requirement, assumed of the environment or demanded of the subject."""
+
+    constraint: Element
+    requirement: Element
+    is_assumed: bool
+    is_open: bool = False
+    """SysML v1 does not say which it is: what is about inputs alone is assumed."""
+
+
+def statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
+    """Subjects in the order of the model, each with what all its requirements say of it.
+
+    A requirement about a definition is one about all that specialise it; a definition that is
+    abstract, or in no file of the model, has only those.
+    """
+    found: dict[str, dict[str, Statement]] = {}
+    for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
+        said = list(_conditions(graph, requirement))
+        for subject in _subjects(graph, requirement) if said else ():
+            rows = found.setdefault(subject.id, {})
+            rows.update((one.constraint.id, one) for one in said)
+    return [(graph[id], list(rows.values())) for id, rows in found.items()]
+
+
+def _conditions(graph: Graph, requirement: Element) -> Iterator[Statement]:
+    """Its own constraints and those of the requirements that it specialises."""
+    family = (requirement, *query.generals(graph, requirement))
+    is_open = not any(graph.targets(one, Edge.SUBJECT) for one in family)
+    for one in family:
+        assumed = {constraint.id for constraint in graph.targets(one, Edge.ASSUMES)}
+        for constraint in graph.owned(one):
+            if constraint.kind is Kind.CONSTRAINT and constraint.attrs.get("body"):
+                yield Statement(constraint, requirement, constraint.id in assumed, is_open)
+
+
+def _subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
+    """What satisfies it, else what it says it is about, with all that specialises that."""
+    family = (requirement, *query.generals(graph, requirement))
+    stated = graph.sources(requirement, Edge.SATISFIES)
+    if not stated:
+        stated = next(filter(None, (graph.targets(one, Edge.SUBJECT) for one in family)), [])
+    for one in stated:
+        type_ = one if one.kind in _SUBJECTS else query.type_of(graph, one)
+        if type_ is not None:
+            yield from _with_special(graph, type_, set())
+
+
+def _with_special(graph: Graph, type_: Element, seen: set[str]) -> Iterator[Element]:
+    if type_.id in seen:
+        return
+    seen.add(type_.id)
+    if not type_.attrs.get("external") and not type_.attrs.get("abstract"):
+        yield type_
+    for special in graph.sources(type_, Edge.SPECIALIZES):
+        yield from _with_special(graph, special, seen)

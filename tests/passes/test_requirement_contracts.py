@@ -1,0 +1,130 @@
+"""Contracts that requirements make with their subjects: what is assumed, what is demanded."""
+
+import pytest
+
+from sysmlc.diagnostics import Sink, catalogue
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.contract import Contract, IntegerDomain
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+
+pipeline.load("contracts")
+TANK = """\
+Package p "Plant"
+  Class c "Tank" role="block"{tank}
+    -> feature size
+    Property level "level" direction="out" default=0
+      -> typed-by int
+    Property filling "filling" direction="in"
+      -> typed-by bool
+    Property size "size" default=9 readonly=true
+      -> typed-by int
+    Constraint k body="0 <= level <= size"
+{inside}  Class q "Safe" role="requirement" req_id="R1"
+    -> subject c
+    -> assumes a
+    Constraint a {assumed}
+    Constraint f "never full" {body}
+{more}  DataType bool "Boolean"
+  DataType int "Integer"
+"""
+CALM = 'language="LTL" body="G (filling -> X !filling)"'
+
+
+def model(body, assumed=CALM, inside="", more="", tank=""):
+    return TANK.format(body=body, assumed=assumed, inside=inside, more=more, tank=tank)
+
+
+def derived(text):
+    graph, sink = parse_text(text), Sink()
+    pipeline.run(graph, sink, verify_each=True)
+    return list(graph.derived(Contract)), sink
+
+
+def lines(conjuncts):
+    return [f"{one.class_}: {print_formula(one.formula)}" for one in conjuncts]
+
+
+@pytest.mark.parametrize("code", ["SM522", "SM523"])
+def test_rules_report_their_wrong_model_and_not_their_right_one(code):
+    rule = catalogue()[code]
+    assert code in [one.rule.code for one in derived(rule.wrong)[1]]
+    assert code not in [one.rule.code for one in derived(rule.right)[1]]
+
+
+def test_assumptions_and_demands_of_a_requirement_are_a_contract():
+    (contract,), sink = derived(model('language="LTL" body="G (filling -> level' + "'>level)\""))
+    assert contract.component == "Plant::Tank"
+    assert [(one.name, one.owner.value) for one in contract.variables] == [
+        ("filling", "env"),
+        ("level", "sys"),
+    ]
+    assert lines(contract.assumptions) == ["safety: filling -> !filling'"]
+    assert lines(contract.guarantees) == ["init: level=0", "safety: filling -> level'>level"]
+    assert [one.text for one in contract.guarantees] == [
+        "'level' starts with 0.",
+        "'never full' of 'Safe' demands it.",
+    ]
+    assert [one.rule.code for one in sink] == []
+
+
+def test_conditions_without_temporal_operators_hold_at_all_times():
+    (contract,), _ = derived(model('body="level < size"', assumed='body="not filling"'))
+    assert lines(contract.assumptions) == ["init: !filling", "safety: !filling'"]
+    assert lines(contract.guarantees)[-1] == "safety: level<9"
+
+
+def test_a_constant_of_the_model_bounds_a_range():
+    (contract,), _ = derived(model('body="level < size"'))
+    assert contract.variables[-1].domain == IntegerDomain(0, 9)
+
+
+def test_what_specialises_the_subject_has_the_contract_with_constants_of_its_own():
+    small = (
+        '  Class s "Small" role="block"\n    -> specializes c\n    -> feature own\n'
+        '    Property own "size" default=4 readonly=true\n'
+        "      -> typed-by int\n      -> redefines size\n"
+    )
+    text = model('body="level < size"', more=small, tank=" abstract=true")
+    (contract,), _ = derived(text)
+    assert contract.component == "Plant::Small"
+    assert contract.variables[-1].domain == IntegerDomain(0, 4)
+    assert lines(contract.guarantees)[-1] == "safety: level<4"
+
+
+def test_requirements_about_one_subject_are_one_contract():
+    second = (
+        '  Class r "Used" role="requirement"\n    -> subject c\n'
+        '    Constraint g language="LTL" body="G F level=9"\n'
+    )
+    (contract,), _ = derived(model('body="level < 9"', more=second))
+    assert lines(contract.guarantees)[1:] == ["safety: level<9", "liveness: level=9"]
+
+
+def test_a_requirement_that_only_assumes_is_no_contract():
+    text = model("").replace('    Constraint f "never full" \n', "")
+    assert derived(text)[0] == []
+
+
+def test_a_constraint_in_another_language_is_told():
+    sink = derived(model('language="Modelica" body="der(level) > 0"'))[1]
+    (found,) = [one for one in sink if one.rule.code == "SM523"]
+    assert found.message == (
+        "'never full' of requirement 'Safe' is in no contract: it is written in Modelica"
+    )
+
+
+def test_in_v1_what_is_about_inputs_alone_is_assumed():
+    text = model('language="LTL" body="G F !filling"', assumed='body="level < 9"')
+    text = text.replace("    -> subject c\n    -> assumes a\n", "")
+    text = text.replace('role="block"', 'role="block"\n    -> satisfies q', 1)
+    (contract,), _ = derived(text)
+    assert lines(contract.assumptions) == ["liveness: !filling"]
+    assert lines(contract.guarantees) == ["init: level=0", "safety: level<9"]
+
+
+def test_subjects_of_one_name_are_told_apart():
+    twin = '  Class d "Tank" role="block"\n    -> specializes c\n'
+    contracts, sink = derived(model('body="level < 9"', more=twin))
+    assert [one.component for one in contracts] == ["Plant::Tank", "Plant::Tank#2"]
+    assert "SM500" in [one.rule.code for one in sink]
