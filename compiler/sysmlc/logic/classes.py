@@ -12,7 +12,7 @@ _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, 
 def classified(formula: Formula) -> Iterator[tuple[Class, Formula]]:
     """The conjuncts of an LTL formula with their classes.
 
-    ``G p`` is safety (X inside p becomes primes), ``G F p`` liveness, a formula without
+    ``G p`` is safety and ``G F p`` liveness (X inside p becomes primes), a formula without
     temporal operators initial; the rest is ``other`` and keeps its operators.
     """
     match formula:
@@ -22,8 +22,14 @@ def classified(formula: Formula) -> Iterator[tuple[Class, Formula]]:
         case Apply(Op.ALWAYS, (Apply(Op.AND, args),)):
             for arg in args:
                 yield from classified(f.always(arg))
-        case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if not _is_temporal(inner):
-            yield Class.LIVENESS, inner
+        case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if (
+            step := with_primes(inner)
+        ) is not None:
+            yield Class.LIVENESS, step
+        case Apply(Op.NOT, (Apply(Op.EVENTUALLY, (Apply(Op.ALWAYS, (inner,)),)),)) if (
+            step := with_primes(inner)
+        ) is not None:
+            yield Class.LIVENESS, f.negate(step)
         case Apply(Op.ALWAYS, (inner,)) if (step := with_primes(inner)) is not None:
             yield Class.SAFETY, step
         case _:
@@ -54,9 +60,19 @@ def with_primes(formula: Formula) -> Formula | None:
         case Apply(op, args):
             parts = [with_primes(arg) for arg in args]
             known = tuple(part for part in parts if part is not None)
-            return Apply(op, known) if len(known) == len(parts) else None
+            return _applied(op, known) if len(known) == len(parts) else None
         case _:
             return formula
+
+
+def _applied(op: Op, args: tuple[Formula, ...]) -> Formula:
+    match op:
+        case Op.AND:
+            return f.both(*args)
+        case Op.OR:
+            return f.either(*args)
+        case _:
+            return Apply(op, args)
 
 
 def _is_temporal(formula: Formula) -> bool:

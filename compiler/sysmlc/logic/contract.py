@@ -53,9 +53,9 @@ class Class(StrEnum):
     """Class of a conjunct.
 
     ``init`` holds in the first step and has no primes; ``safety`` holds in every step (G) and
-    may prime variables; ``liveness`` holds infinitely often (GF). The temporal operators of
-    safety and liveness are implied, not written in the formula; ``other`` is general LTL,
-    written in full.
+    may prime variables; ``liveness`` holds infinitely often (GF), and is plain GR(1) when it
+    primes none. The temporal operators of safety and liveness are implied, not written in the
+    formula; ``other`` is general LTL, written in full.
     """
 
     INIT = "init"

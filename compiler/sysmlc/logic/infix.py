@@ -51,10 +51,13 @@ class Reader:
         self._syntax = syntax
         self._depth = 0
 
-    def formula(self) -> Formula:
-        """The formula that comes next, which is true or false. Raises FormulaError."""
+    def formula(self, weakest: int = 0) -> Formula:
+        """The formula that comes next, which is true or false, and joined by no weaker operator.
+
+        Raises FormulaError.
+        """
         with room_for(DEEPEST):
-            return self.truth(self.part(0))
+            return self.truth(self.part(weakest))
 
     def truth(self, part: Part) -> Formula:
         """The part's formula, which must be true or false. Raises FormulaError."""

@@ -59,6 +59,7 @@ class Syntax:
     """Further signs that tokens of the language are made of."""
     comment: str = r"(?!)"
     name: str = r"[^\W\d]\w*"
+    string: str = r'"(?:[^"\\\n]|\\.)*"'
     from_the_right: frozenset[Op] = FROM_THE_RIGHT
 
 
@@ -87,7 +88,7 @@ NEUTRAL = Syntax(
 
 def tokens(text: str, syntax: Syntax) -> list[Token]:
     """The text in tokens, with one of kind ``end`` behind them."""
-    pattern = _pattern(syntax.name, syntax.comment, _signs(syntax))
+    pattern = _pattern(syntax.name, syntax.comment, syntax.string, _signs(syntax))
     found = [
         Token(match.lastgroup, match.group(), match.start())
         for match in pattern.finditer(text)
@@ -103,11 +104,11 @@ def _signs(syntax: Syntax) -> tuple[str, ...]:
 
 
 @cache
-def _pattern(name: str, comment: str, signs: tuple[str, ...]) -> re.Pattern[str]:
+def _pattern(name: str, comment: str, string: str, signs: tuple[str, ...]) -> re.Pattern[str]:
     known = "|".join(map(re.escape, signs))
     return re.compile(
         rf"\s+|{comment}|(?P<name>{name})|(?P<number>\d+)"
-        rf'|(?P<string>"(?:[^"\\\n]|\\.)*")|(?P<sign>{known})|(?P<unknown>.)'
+        rf"|(?P<string>{string})|(?P<sign>{known})|(?P<unknown>.)"
     )
 
 
@@ -127,6 +128,14 @@ class Cursor:
     def after_next(self) -> Token:
         """The token behind the next one."""
         return self._tokens[min(self._index + 1, len(self._tokens) - 1)]
+
+    def mark(self) -> int:
+        """Where the cursor stands, for ``back_to``."""
+        return self._index
+
+    def back_to(self, mark: int) -> None:
+        """Go back to where the cursor stood, or on to where it will stand."""
+        self._index = mark
 
     def has(self, *texts: str) -> bool:
         """Whether one of the texts comes next."""
@@ -161,6 +170,11 @@ class Cursor:
         if len(token.text) > _DIGITS:
             raise FormulaError(f"a number has at most {_DIGITS} digits", token.at)
         return -int(token.text) if is_negative else int(token.text)
+
+    def skip_to(self, *texts: str) -> None:
+        """Go on to the next of the texts, or to the end."""
+        while self.next.kind != "end" and not self.has(*texts):
+            self.take()
 
     def skip_behind(self, *texts: str) -> None:
         """Go on behind the next of the texts, or to the end."""

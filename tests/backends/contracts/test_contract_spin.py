@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sysmlc.backends.contracts.spin import spin, spin_conjunct
+from sysmlc.logic.formats.spin_text import spin, spin_conjunct
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,

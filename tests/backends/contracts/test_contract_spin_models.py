@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from sysmlc.backends.contracts.spin import spin, spin_conjunct
+from sysmlc.logic.formats.spin_text import spin, spin_conjunct
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir.text import parse_text

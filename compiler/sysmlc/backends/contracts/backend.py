@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.contracts.document import text
+from sysmlc.logic.formats.document_text import text
 from sysmlc.backends.contracts.explain import explain
-from sysmlc.backends.contracts.spin import TooLargeError, spin
+from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.logic.contract import Contract

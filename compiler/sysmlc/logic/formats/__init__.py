@@ -10,7 +10,7 @@ from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import NotExpressibleError, opened
 from sysmlc.values import dataclass
 
-__all__ = ["FORMS", "Form", "NotExpressibleError", "form_of", "read", "write"]
+__all__ = ["FORMS", "Form", "NotExpressibleError", "form_of", "plain", "read", "write"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,15 @@ class Form:
 FORMS = {
     "contract": Form("documents", (".contract.json",), r'"format"\s*:\s*"sysmlc-contract/1"'),
     "neutral": Form("documents", (".gr1.json",), r'^\s*\{[\s\S]*"variables"\s*:'),
+    "slugsin": Form("slugsin", (".slugsin",)),
+    "structured": Form("slugs", (".structuredslugs",), r"^\s*\[(INPUT|OUTPUT)\]"),
+    "chase": Form("chase", (), r"^\s*CONTRACT\s+\w+\s*:"),
+    "chasejson": Form("chasejson", (".chase.json",), r'^\s*\{[\s\S]*"(inputs|outputs)"\s*:'),
+    "smv": Form("smv", (".smv",), r"^\s*MODULE\s+main\b"),
+    "spot": Form("spot", (".spot.ltl",), r"^\.(inputs|outputs)\b"),
+    "tlsf": Form("tlsf", (".tlsf",), r"^\s*INFO\s*\{"),
+    "gr1c": Form("gr1c", (".spc",), r"^\s*(ENV|SYS)\s*:"),
+    "spin": Form("spin", (".spin.ltl",), r"^[^\n]*(\[\]|<>)"),
 }
 """The forms by name. What a file is, is asked of the endings first, then of the signs, in order."""
 
@@ -68,6 +77,14 @@ def write(contract: Contract, form: str) -> str:
     if form not in FORMS or not FORMS[form].is_written:
         raise ValueError(f"form {form!r} is not written")
     return _of(form).write(contract, form)  # type: ignore[no-any-return]
+
+
+def plain(contract: Contract, form: str) -> Contract:
+    """The contract that a form has words for: what reading gives when it was written.
+
+    Raises NotExpressibleError.
+    """
+    return _of(form).plain(contract, form)  # type: ignore[no-any-return]
 
 
 def _of(form: str) -> Any:  # noqa: ANN401 - a module

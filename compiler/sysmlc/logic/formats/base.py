@@ -1,10 +1,14 @@
 """What readers and writers of all forms share: the file that is read, and what cannot be said."""
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formats.spelt import Spelling
+from sysmlc.logic.formula import Formula, variables
+from sysmlc.logic.lower import TooManyValuesError
 from sysmlc.logic.printing import print_formula
 from sysmlc.values import dataclass
 
@@ -58,7 +62,7 @@ def _printable(text: str) -> str:
 
 
 SECTIONS = {
-    (side, class_): f"{class_} {side}" if class_ is not Class.OTHER else f"{side} of other classes"
+    (side, class_): side if class_ is Class.OTHER else f"{class_} {side}"
     for side in ("assumptions", "guarantees")
     for class_ in Class
 }
@@ -69,6 +73,56 @@ def of_class(contract: Contract, side: str, class_: Class) -> Iterator[Conjunct]
     """The conjuncts of one side (``assumptions``, ``guarantees``) and class."""
     found = contract.assumptions if side == "assumptions" else contract.guarantees
     return (one for one in found if one.class_ is class_)
+
+
+def conjuncts_of(contract: Contract, owner: Owner, class_: Class) -> Iterator[Conjunct]:
+    """The conjuncts that one side promises: the environment assumptions, the system guarantees."""
+    side = "assumptions" if owner is Owner.ENVIRONMENT else "guarantees"
+    return of_class(contract, side, class_)
+
+
+def only_gr1(
+    contract: Contract, form: str, *, primed_liveness: bool = False, apart: bool = False
+) -> None:
+    """Raise NotExpressibleError for the first conjunct that is not of GR(1) as games know it.
+
+    ``apart`` lets each side's initial conditions speak of its own variables alone.
+    """
+    owners = {variable.name: variable.owner for variable in contract.variables}
+    for one in (*contract.assumptions, *contract.guarantees):
+        if one.class_ is Class.OTHER:
+            raise NotExpressibleError(form, "it is outside GR(1)", one)
+        if one.class_ is Class.LIVENESS and has_primes(one.formula) and not primed_liveness:
+            raise NotExpressibleError(form, "what holds again and again has no next step", one)
+    for owner in Owner if apart else ():
+        for one in conjuncts_of(contract, owner, Class.INIT):
+            if any(owners[variable.name] is not owner for variable in variables(one.formula)):
+                raise NotExpressibleError(form, "at the start each side speaks of its own", one)
+    for one in contract.assumptions:
+        ahead = [v.name for v in variables(one.formula) if v.primed]
+        if one.class_ is Class.SAFETY and any(owners[name] is Owner.SYSTEM for name in ahead):
+            raise NotExpressibleError(form, "it assumes what the system does next", one)
+
+
+def said(form: str, text: Callable[[Formula], str], conjunct: Conjunct) -> str:
+    """The conjunct's formula as text. Raises NotExpressibleError."""
+    try:
+        return text(conjunct.formula)
+    except KeyError as error:
+        raise NotExpressibleError(form, f"there is no word for {error}", conjunct) from None
+
+
+def said_ltl(form: str, spelling: Spelling, conjunct: Conjunct) -> str:
+    """The conjunct with the temporal operators of its class. Raises NotExpressibleError."""
+    return said(form, lambda formula: spelling.ltl(formula, conjunct.class_), conjunct)
+
+
+def lowered(contract: Contract, form: str, steps: Callable[[Contract], Contract]) -> Contract:
+    """The contract with fewer words (``logic.lower``). Raises NotExpressibleError."""
+    try:
+        return steps(contract)
+    except TooManyValuesError as error:
+        raise NotExpressibleError(form, str(error), error.conjunct) from None
 
 
 OWNERS = {"env": Owner.ENVIRONMENT, "sys": Owner.SYSTEM}

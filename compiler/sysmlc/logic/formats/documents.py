@@ -185,3 +185,15 @@ def _conjunct(
 
 def _no_formula(section: str, at: int) -> NoReturn:
     raise ShapeError(f"one of the {section} is neither a formula nor an object with one", at)
+
+
+def write(contract: Contract, form: str) -> str:
+    """The contract in the neutral form, or in ours."""
+    from sysmlc.logic.formats.document_text import neutral, text
+
+    return f"{text(contract) if form == 'contract' else neutral(contract)}\n"
+
+
+def plain(contract: Contract, form: str) -> Contract:
+    """The contract: JSON has words for all of it."""
+    return contract

@@ -73,3 +73,13 @@ WRONG_CLASS = rule(
     right='{"variables": {"go": {"owner": "env", "type": "bool"}},'
     ' "assumptions": {"safety": ["go\'"]}}',
 )
+OWNER_NOT_SAID = rule(
+    "SM587",
+    "contract-owner-not-said",
+    Severity.WARNING,
+    "it is not said who decides {names}; all are taken as outputs",
+    why="A formula alone does not say what is an input.",
+    help="add lines '.inputs a b' and '.outputs c d' below the formula",
+    wrong="[](req -> <>(ack))\n",
+    right="[](req -> <>(ack))\n.inputs req\n.outputs ack\n",
+)

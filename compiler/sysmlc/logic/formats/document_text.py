@@ -67,3 +67,22 @@ def _type(domain: Domain) -> str | list[int] | list[str]:
             return [low, high]
         case EnumerationDomain(literals):
             return list(literals)
+
+
+def neutral(contract: Contract) -> str:
+    """JSON of the contract in the form of corpus/gr1, indented by one."""
+    variables = {
+        one.name: {"owner": str(one.owner), "type": _type(one.domain)} for one in contract.variables
+    }
+    sides = {
+        side: {
+            str(class_): [print_formula(one.formula) for one in conjuncts if one.class_ is class_]
+            for class_ in Class
+            if class_ is not Class.OTHER or any(one.class_ is class_ for one in conjuncts)
+        }
+        for side, conjuncts in (
+            ("assumptions", contract.assumptions),
+            ("guarantees", contract.guarantees),
+        )
+    }
+    return json_text({"name": contract.component, "variables": variables} | sides, 1)
