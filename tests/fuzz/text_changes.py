@@ -210,7 +210,7 @@ def _empty_a_body(parts: Pieces, random: Random) -> Pieces:
 def _crowd(parts: Pieces, random: Random) -> Pieces:
     """Many copies of one member, with one name or with names of their own."""
     start, end = _member(parts, random)
-    if end - start > _LARGE // 10:
+    if not 0 < end - start <= _LARGE // 10:
         return parts
     name = next((at for at in range(start, end) if is_name(parts[at])), start)
     copies: Pieces = []
