@@ -54,6 +54,29 @@ def test_satisfactions_verifications_and_derivations_are_dependencies():
     assert reading.named("P::Weigh").role == "test case"
 
 
+def test_a_part_that_satisfies_may_be_called_as_the_subject():
+    reading = classified("""
+package P {
+    part def Pump { part motor; }
+    requirement quiet { subject pump : Pump; }
+    part plant { part pump : Pump; satisfy quiet by pump; satisfy quiet by pump.motor; }
+}""")
+    assert reading.codes() == []
+    assert reading.to("P::plant::pump", "satisfies") == ["P::quiet"]
+    assert reading.to("P::Pump::motor", "satisfies") == ["P::quiet"]
+
+
+def test_a_satisfaction_of_a_special_requirement_is_one_of_what_it_subsets():
+    reading = classified("""
+package P {
+    requirement def Quiet;
+    requirement quiet : Quiet;
+    part pump;
+    satisfy requirement here : Quiet subsets quiet by pump;
+}""")
+    assert reading.to("P::pump", "satisfies") == ["P::quiet"]
+
+
 def test_use_cases_have_subjects_inclusions_and_actors():
     reading = read(MODEL)
     assert reading.to("P::Drive", "includes") == ["P::StartEngine"]

@@ -8,7 +8,7 @@ from sysmlc.frontends.sysml.constraints import constraint
 from sysmlc.frontends.sysml.definitions import flags, generalize
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Reference
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -59,13 +59,27 @@ def satisfy(low: "Lowering", node: Node, owner: Element | None) -> None:
     attrs: dict[str, AttrValue] = {"role": "satisfy", "subkind": "abstraction"}
     made = low.add(node, Kind.DEPENDENCY, node.name or "", _package(low, owner), **attrs)
     annotations.texts(low, node, made, "a satisfaction")
-    found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    low.refer(Edge.SUPPLIER, made, found)
+    kinds = ("ReferenceSubsetting", "Subsetting", "FeatureTyping")
+    found = next((one for kind in kinds if (one := nodes.reference(node, kind))), None)
+    low.later(lambda: low.lead(Edge.SUPPLIER, made, _satisfied(found)))
     by = next(nodes.held(node, "SubjectMembership"), None)
     value = None if by is None else nodes.value_of(by)
     low.later(lambda: _client(low, made, owner, value))
     if node.facts.get("isNegated"):
         low.approximated(node, "'not satisfy'", "'satisfy'")
+
+
+def _satisfied(found: Reference | None) -> Node | None:
+    """The requirement that a satisfaction names; a satisfaction beside it has the same name."""
+    target, seen = None if found is None else found.target, set[int]()
+    while target is not None and target.kind == _SATISFY and id(target) not in seen:
+        seen.add(id(target))
+        following = nodes.target(target, "ReferenceSubsetting")
+        target = target if following is None else following
+    return target
+
+
+_SATISFY = "SatisfyRequirementUsage"
 
 
 def _client(low: "Lowering", made: Element, owner: Element | None, value: Node | None) -> None:

@@ -61,6 +61,8 @@ class Start(NamedTuple):
     redefines what its owner inherits (KerML 8.2.3.5.2). ``without`` is not found by its
     effective name, which the search is to give. ``before`` is the link of a chain that the
     name follows. ``everything`` looks at private members too, as ``import all`` does.
+    ``past_subjects`` passes subjects over: what a requirement is satisfied by is not its subject,
+    which may have the same name.
     """
 
     scope: Node | None
@@ -70,6 +72,7 @@ class Start(NamedTuple):
     before: Relation | None = None
     everything: bool = False
     reference: Reference | None = None
+    past_subjects: bool = False
 
 
 def start(node: Node, relation: Relation) -> Start:
@@ -114,7 +117,9 @@ def _membership(node: Node) -> Start:
         operand = _assigned(node)
         return Start(None, operand=operand) if operand else Start(node)
     if node.kind in _SKIPPED:
-        return Start(beyond_expressions(node))
+        scope = beyond_expressions(node)
+        is_by = scope is not None and scope.kind == "SatisfyRequirementUsage"
+        return Start(scope, past_subjects=is_by)
     return Start(namespace(node)) if node.kind == "TransitionUsage" else Start(node)
 
 

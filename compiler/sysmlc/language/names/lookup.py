@@ -97,6 +97,8 @@ class Lookup(Imports):
                 stages = self._stages(scope, first, start.without)
             inherited = False
             for hits in stages:
+                if start.past_subjects:
+                    hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
                 found = self.among(hits, names, 0, kinds, start.everything)
                 if found is not None:
                     return found
