@@ -1,7 +1,5 @@
 """The node of the graph."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.ir.kinds import Kind
 
 AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
@@ -16,8 +14,6 @@ class Element:
     """
 
     __slots__ = ("attrs", "id", "kind", "name", "ordinal", "owner", "source")
-
-    attrs: dict[str, AttrValue]
 
     def __init__(
         self,
@@ -35,17 +31,7 @@ class Element:
         self.owner = owner
         self.ordinal = ordinal
         self.source = source
-        if attrs is not None:
-            self.attrs = attrs
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> dict[str, AttrValue]:
-            # Most elements of a large model have no attributes: they get a dict when asked.
-            if name != "attrs":
-                raise AttributeError(name, name=name, obj=self)
-            self.attrs = {}
-            return self.attrs
+        self.attrs = {} if attrs is None else attrs
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or self.id}>"

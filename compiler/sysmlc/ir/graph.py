@@ -188,8 +188,7 @@ class Graph:
         made.owner = owner
         made.ordinal = ordinal
         made.source = source
-        if attrs:
-            made.attrs = attrs.copy()
+        made.attrs = attrs.copy() if attrs else {}
         self._fresh.append(made)
         if owner is not None:
             known = self._owned.get(owner)
@@ -218,6 +217,7 @@ class Graph:
             one.owner = owner
             one.ordinal = ordinal
             one.source = source
+            one.attrs = {}
             add(one)
         self._fresh += made
         put_all_new(self._owned, owner, made)
