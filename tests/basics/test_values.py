@@ -186,7 +186,7 @@ def test_replaced(build, name):
     value = build(MADE[name])(1)
     assert ours_replace(value, one=2) == replace(value, one=2)
     assert ours_replace(value, one=2).two == value.two
-    with pytest.raises(TypeError, match="unexpected keyword argument 'none'"):
+    with pytest.raises(TypeError, match="'none'"):
         ours_replace(value, none=2)
 
 

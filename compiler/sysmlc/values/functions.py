@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, Field, FrozenInstanceError
 from functools import cache
+from operator import attrgetter
 from reprlib import recursive_repr
 from types import CodeType, FunctionType
 from typing import Any, NoReturn
@@ -25,12 +26,11 @@ def __hash__(self):
 def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
     """All that a dataclass has beside ``__init__``, as the standard library has it."""
     names = tuple(fields)
-    shown = tuple(name for name, one in fields.items() if one.repr)
-    made: dict[str, object] = {"__match_args__": names, "__repr__": _repr(shown)}
+    made: dict[str, object] = {"__match_args__": names, "__repr__": _shown}
     made["__replace__"] = _replacement(names)
     if frozen:
         made |= {"__setattr__": _refuse_setting, "__delattr__": _refuse_deleting}
-        made |= _states(names)
+        made |= {"__getstate__": _state, "__setstate__": _set_state}
     if eq:
         compared = tuple(name for name, one in fields.items() if one.compare)
         hashed = tuple(name for name, one in fields.items() if _is_hashed(one))
@@ -126,36 +126,35 @@ def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
 
 def _replacement(names: Sequence[str]) -> Callable[..., object]:
     """What Python has from 3.13 on, for ``copy.replace``."""
+    get = attrgetter(*names) if len(names) > 1 else None
+    places = {name: at for at, name in enumerate(names)}
 
     def __replace__(self: object, /, **changes: object) -> object:  # noqa: N807
-        for name in names:
-            if name not in changes:
-                changes[name] = getattr(self, name)
-        return self.__class__(**changes)
+        values = [*get(self)] if get else [getattr(self, name) for name in names]
+        for name, value in changes.items():
+            if name not in places:
+                raise TypeError(f"{type(self).__qualname__} has no field {name!r}")
+            values[places[name]] = value
+        return self.__class__(*values)
 
     return __replace__
 
 
-def _repr(names: Sequence[str]) -> Callable[[object], str]:
-    @recursive_repr("...")
-    def __repr__(self: object) -> str:  # noqa: N807
-        values = ", ".join(f"{name}={getattr(self, name)!r}" for name in names)
-        return f"{type(self).__qualname__}({values})"
-
-    return __repr__
+@recursive_repr("...")
+def _shown(self: Any) -> str:  # noqa: ANN401 - every class of values
+    fields = self.__dataclass_fields__
+    values = ", ".join(f"{name}={getattr(self, name)!r}" for name in fields if fields[name].repr)
+    return f"{type(self).__qualname__}({values})"
 
 
-def _states(names: Sequence[str]) -> dict[str, object]:
+def _state(self: Any) -> list[object]:  # noqa: ANN401
     """How frozen values with slots are pickled and copied."""
+    return [getattr(self, name) for name in self.__match_args__]
 
-    def __getstate__(self: object) -> list[object]:  # noqa: N807
-        return [getattr(self, name) for name in names]
 
-    def __setstate__(self: object, state: Sequence[object]) -> None:  # noqa: N807
-        for name, value in zip(names, state, strict=True):
-            object.__setattr__(self, name, value)
-
-    return {"__getstate__": __getstate__, "__setstate__": __setstate__}
+def _set_state(self: Any, state: Sequence[object]) -> None:  # noqa: ANN401
+    for name, value in zip(self.__match_args__, state, strict=True):
+        object.__setattr__(self, name, value)
 
 
 def _refuse_setting(_self: object, name: str, _value: object) -> NoReturn:

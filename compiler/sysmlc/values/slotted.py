@@ -45,7 +45,7 @@ def dataclass(
 
 def replace(value: _T, /, **changes: object) -> _T:
     """``dataclasses.replace``."""
-    make = getattr(type(value), "__replace__", None)
+    make = type(value).__dict__.get("__replace__")
     if make is None:
         return cast("_T", dataclasses.replace(cast("Any", value), **changes))
     return cast("_T", make(value, **changes))
