@@ -58,7 +58,9 @@ class Contracts:
         found = [*self._of_machines(graph, sink), *_of_activities(graph)]
         found = add_formulas(graph, _told_apart(graph, found, sink), sink)
         assumed = self.assumed_low, self.assumed_high
-        found = _told_apart(graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink)
+        found = _told_apart(
+            graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink
+        )
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
