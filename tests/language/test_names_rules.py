@@ -1,7 +1,7 @@
 """The examples of the rules about names: the wrong model has the finding, the right one has not."""
 
 import pytest
-from resolving import documents, library
+from resolving import documents, library, told
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.names import resolve
@@ -46,4 +46,24 @@ def test_an_import_of_what_no_input_has_asks_for_its_file():
     resolve(documents("package P { private import Elsewhere::*; }"), library(), sink)
     assert [found.help for found in sink] == [
         "give the file that has it as an input too, or the folder of all files"
+    ]
+
+
+def test_what_is_in_the_library_is_said_with_the_package_to_import():
+    assert told("""
+        package Plant {
+            private import ScalarValues;
+            attribute way = 5 [km];
+            attribute mass : MassValue;
+            attribute count : Real;
+            attribute a = b;
+            part x : A;
+        }
+    """) == [
+        "4: 'km' is not known here: 'km' is in 'SI', which is not imported here",
+        "5: 'MassValue' is not known here: 'MassValue' is in 'ISQ', which is not imported here",
+        "6: 'Real' is not known here: 'Real' is in 'ScalarValues': import ScalarValues::*, "
+        "not it alone",
+        "7: 'b' is not known here: known: Plant, a, count, mass, way, x",
+        "8: 'A' is not known here: did you mean 'a'?",
     ]

@@ -167,6 +167,11 @@ def test_parameters_in_parentheses_of_kerml_get_the_words_that_are_right():
     ]
 
 
+@pytest.mark.parametrize("text", ["action def A (", "action def A (in", "private import A as"])
+def test_a_slip_at_the_end_of_a_text_is_told_too(text):
+    assert advised(text)
+
+
 def test_words_that_are_right_elsewhere_are_no_slips():
     assert "no keyword" not in "".join(advised("class Gate { value : Real ; ] }", "kerml"))
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.language.metaclasses import is_a
+from sysmlc.language.metaclasses import is_a, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.tree import Node, Relation
@@ -28,12 +28,13 @@ _WANTED = {
 
 def advice(
     model: "Model",
-    relation: Relation,
+    user: tuple[Node, Relation],
     names: tuple[str, ...],
     start: contexts.Start,
     within: Node | None,
 ) -> str:
     """One sentence for the help of the message; ``within`` is the element before a dot."""
+    relation = user[1]
     lookup = model.lookup
     other = _search(lookup, names, start, within, everything=False)
     if other is not None and relation.kind in _WANTED:
@@ -44,9 +45,9 @@ def advice(
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
     if hidden is not None and other is None:
         return f"'{names[-1]}' is there by a private import only"
-    package = _elsewhere(model, relation, names, start) if within is None else None
+    package = _elsewhere(model, user, names, start) if within is None else None
     if package is not None:
-        return f"'{names[0]}' is in '{package.name}', which is not imported here"
+        return _not_imported(names[0], package, lookup, start)
     if relation.kind in _IMPORTED and lookup.search(start, names[:1], None) is None:
         around = _around(start)
         near = [p.name for p in model.packages() if p.name and p not in around]
@@ -62,23 +63,79 @@ _NOT_GIVEN = "give the file that has it as an input too, or the folder of all fi
 _UNNAMED = "declare it, or import the package that has it"
 
 
-def _elsewhere(
-    model: "Model", relation: Relation, names: tuple[str, ...], start: contexts.Start
-) -> Node | None:
-    """A package of the model or of a library file in use that has the name.
+_TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
+_UNITS_OF_LIBRARY = ("SI",)
+_CLASSIFIERS = kinds_of("Classifier")
 
-    What a connector joins or a usage references is never in the library: a unit 'b' is not meant.
+
+def _elsewhere(
+    model: "Model", user: tuple[Node, Relation], names: tuple[str, ...], start: contexts.Start
+) -> Node | None:
+    """A package of the model or of the library that has the name, and something of that kind.
+
+    In the library only types and units are looked for: no step or part 'b' means the unit bel.
     """
     if len(names) > 1:
         return None
-    is_own = relation.kind == "ReferenceSubsetting"
+    node, relation = user
     around = _around(start)
-    for package in model.own_packages() if is_own else model.packages():
-        if package not in around and any(
-            h.visibility in ("", "public") for h in model.lookup.owned(package).get(names[0], ())
-        ):
+    wanted = contexts.WANTED.get(relation.kind)
+    for package in model.own_packages():
+        if package not in around and _has(model.lookup, package, names[0], wanted):
+            return package
+    if relation.kind == "FeatureTyping":
+        return _of_library(model, names[0], _TYPES_OF_LIBRARY, _CLASSIFIERS)
+    if relation.kind == "Membership" and _is_unit(node):
+        return _of_library(model, names[0], _UNITS_OF_LIBRARY, None)
+    return None
+
+
+def _is_unit(node: Node) -> bool:
+    """Whether an expression stands in the brackets of a quantity."""
+    while node.owner is not None and node.owner.kind in _OPERATORS:
+        if node.owner.facts.get("operator") == "[":
+            return node is not node.owner.members[0]
+        node = node.owner
+    return False
+
+
+_OPERATORS = frozenset({"OperatorExpression"})
+
+
+def _of_library(
+    model: "Model", name: str, packages: tuple[str, ...], wanted: frozenset[str] | None
+) -> Node | None:
+    """A package of the library that gives the name: first those through which others are seen."""
+    for through in packages:
+        package, found = model.find(through), model.find(f"{through}::{name}")
+        if found is not None and (wanted is None or found.kind in wanted):
+            return package
+    for package in model.packages():
+        if package.name and wanted is not None and _has(model.lookup, package, name, wanted):
             return package
     return None
+
+
+def _has(lookup: Lookup, package: Node, name: str, wanted: frozenset[str] | None) -> bool:
+    """Whether a package owns something by the name that others see."""
+    for hit in lookup.owned(package).get(name, ()):
+        element = lookup.element(hit)
+        is_wanted = element is not None and (wanted is None or element.kind in wanted)
+        if is_wanted and hit.visibility in ("", "public"):
+            return True
+    return False
+
+
+def _not_imported(name: str, package: Node, lookup: Lookup, start: contexts.Start) -> str:
+    """How to come by a name of a package; one imported itself does not bring its members."""
+    for scope in _around(start):
+        for one in lookup.imports(scope):
+            if any(r.reference.target is package for r in one.relations) and one.kind in _MEMBERS:
+                return f"'{name}' is in '{package.name}': import {package.name}::*, not it alone"
+    return f"'{name}' is in '{package.name}', which is not imported here"
+
+
+_MEMBERS = kinds_of("MembershipImport")
 
 
 def _search(

@@ -39,7 +39,7 @@ def report(model: "Model", document: Document, node: Node, relation: Relation, s
         subject(document, node, _place(document, reference, index)),
         name=name,
         inside=inside,
-        advice=advice(model, relation, reference.chain[index], start, before),
+        advice=advice(model, (node, relation), reference.chain[index], start, before),
     )
 
 

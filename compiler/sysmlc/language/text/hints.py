@@ -94,10 +94,15 @@ def _parameters(tokens: Tokens, at: int, expected: Collection[str]) -> str:
     """A list in parentheses behind the name that is declared."""
     before = _member(tokens, at)
     if tokens[at] == "(" and {";", "{"} <= set(expected):
-        first = at + 2 if tokens[at + 1] in _DIRECTIONS else at + 1
-        return _PARAMETERS.format(tokens[first] if tokens[first].isidentifier() else "x")
+        names = [word for word in _following(tokens, at) if word not in _DIRECTIONS]
+        return _PARAMETERS.format(names[0] if names and names[0].isidentifier() else "x")
     is_list = tokens[at] in (")", ",", ":") and before[2:3] == ["("] and "," in expected
     return _PARAMETERS.format(before[3]) if is_list and len(before) > 3 else ""
+
+
+def _following(tokens: Tokens, at: int) -> list[str]:
+    """The two tokens after one, as far as there are so many."""
+    return [tokens[index] for index in range(at + 1, min(at + 3, len(tokens.types)))]
 
 
 def _multiplicity(tokens: Tokens, at: int, expected: Collection[str]) -> str:
@@ -110,7 +115,7 @@ def _import(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
         return ""
     if tokens[at] == ".":
         return "names of packages are joined by '::'"
-    name = tokens[at + 1]
+    name = "".join(_following(tokens, at)[:1])
     return f"another name is an alias: alias {name} for ...;" if tokens[at] == "as" else ""
 
 
