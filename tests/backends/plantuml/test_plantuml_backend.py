@@ -302,3 +302,12 @@ Interaction sd "Serve"
 """)
     )["Serve.sd.puml"]
     assert "\nalt in time\nelse\nelse t <U+003E> 5\nend\n" in made
+
+
+def test_states_are_drawn_however_deep_they_are_in_one_another():
+    rows = ['StateMachine m "Gate"']
+    for level in range(400):
+        rows.append(f"{'  ' * (2 * level + 1)}Region r{level}")
+        rows.append(f'{"  " * (2 * level + 2)}State s{level} "S{level}"')
+    (drawn,) = texts(parse_text("\n".join(rows) + "\n")).values()
+    assert 'state "S399" as s399_1 <<state>>' in drawn

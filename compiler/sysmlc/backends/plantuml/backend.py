@@ -20,6 +20,7 @@ from sysmlc.backends.plantuml import (
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
+from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.output import Output
@@ -58,6 +59,10 @@ class PlantUml:
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""
+        with room_for(stm.depth(graph)):
+            self._emit(graph, output, sink, options)
+
+    def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
             found = [diagram for kind in KINDS for diagram in kind(graph)]
             missing.report(graph, found, sink)

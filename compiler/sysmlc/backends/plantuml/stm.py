@@ -76,6 +76,17 @@ def whole(graph: Graph, machine: Element) -> GraphView:
     return GraphView(nodes, flows, notes(graph, machine, aliases))
 
 
+def depth(graph: Graph) -> int:
+    """How deep states are within one another, over all state machines."""
+    level = list(graph.of_kind(Kind.STATE_MACHINE))
+    levels = 0
+    while level:
+        levels += 1
+        regions = [region for one in level for region in _regions(graph, one)]
+        level = [v for one in regions for v in graph.owned(one) if v.kind in VERTICES]
+    return levels
+
+
 def _inside(graph: Graph, owner: Element, aliases: Aliases) -> tuple[Node, ...]:
     """What a state or state machine holds: one region directly, several in dashed boxes."""
     regions = _regions(graph, owner)
