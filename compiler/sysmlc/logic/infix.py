@@ -45,6 +45,9 @@ class Reader:
     counts_literals: ClassVar[bool] = False
     """Whether a number names the literal of an enumeration in that place, from 0."""
 
+    negates_operands: ClassVar[bool] = False
+    """Whether ``a = !b`` needs no parentheses."""
+
     def __init__(self, cursor: Cursor, syntax: Syntax, variables: Mapping[str, Domain]) -> None:
         self.cursor = cursor
         self.variables = variables
@@ -127,6 +130,8 @@ class Reader:
         left, right = self._as_literal(left, right), self._as_literal(right, left)
         if op in ORDERS:
             return Part(f.compare(op, self.number(left), self.number(right)), TRUTH, left.at)
+        if isinstance(left.kind, EnumerationDomain) and isinstance(right.kind, EnumerationDomain):
+            return Part(_of_enumerations(op, left, right), TRUTH, left.at)
         if left.kind != right.kind or left.kind == WORD:
             self._mismatch(left, right, at)
         return Part(f.compare(op, left.formula, right.formula), TRUTH, left.at)
@@ -170,10 +175,10 @@ class Reader:
 
     def _prefixed(self, op: Op, weakest: int) -> Part:
         own = self._syntax.strength[op]
-        if own < weakest:
+        if own < weakest and not (op is Op.NOT and self.negates_operands):
             self.cursor.fail()
         at = self.cursor.take().at
-        inner = self.truth(self.part(own))
+        inner = self.truth(self.part(max(own, weakest)))
         return Part(f.negate(inner) if op is Op.NOT else Apply(op, (inner,)), TRUTH, at)
 
     def operand(self) -> Part:
@@ -214,6 +219,21 @@ def kind_of(domain: Domain) -> Kind:
     if isinstance(domain, EnumerationDomain):
         return domain
     return TRUTH if isinstance(domain, BooleanDomain) else NUMBER
+
+
+def _of_enumerations(op: Op, left: Part, right: Part) -> Formula:
+    """A comparison of two; when they have different literals, by those that both have."""
+    literals = [getattr(part.kind, "literals", ()) for part in (left, right)]
+    if literals[0] == literals[1]:
+        return f.compare(op, left.formula, right.formula)
+    same = f.either(
+        *(
+            f.both(f.eq(left.formula, Const(one)), f.eq(right.formula, Const(one)))
+            for one in literals[0]
+            if one in literals[1]
+        )
+    )
+    return same if op is Op.EQ else f.negate(same)
 
 
 _GATHERED: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}

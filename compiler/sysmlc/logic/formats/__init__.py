@@ -36,6 +36,7 @@ FORMS = {
     "spot": Form("spot", (".spot.ltl",), r"^\.(inputs|outputs)\b"),
     "tlsf": Form("tlsf", (".tlsf",), r"^\s*INFO\s*\{"),
     "gr1c": Form("gr1c", (".spc",), r"^\s*(ENV|SYS)\s*:"),
+    "spectra": Form("spectra", (".spectra",), r"^\s*(module|spec)\s+\w+\s", is_written=False),
     "spin": Form("spin", (".spin.ltl",), r"^[^\n]*(\[\]|<>)"),
 }
 """The forms by name. What a file is, is asked of the endings first, then of the signs, in order."""

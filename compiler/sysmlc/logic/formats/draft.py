@@ -85,6 +85,10 @@ class Draft:
             if part != f.TRUE:
                 self._sides[owner].append(Conjunct(part, class_, self.file.origin(at)))
 
+    def add_made(self, owner: Owner, conjunct: Conjunct) -> None:
+        """Add a conjunct that is made for another one."""
+        self._sides[owner].append(conjunct)
+
     def contracts(self, name: str, origin: str = "") -> tuple[Contract, ...]:
         """The contract, or nothing when something was wrong with it."""
         if self.is_broken:
