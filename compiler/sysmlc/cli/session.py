@@ -166,19 +166,19 @@ def outcome_of(
 
     Without ``has_files`` the findings are enough.
     """
-    from sysmlc.driver import key_of, open_unit, outcome, recall, remember
+    from sysmlc.driver import depends_on, keep, kept, open_unit, outcome
 
     request = _request(unit.files, config, settings)
     store = request.cache
     if store is None:
         return outcome(_compile(_with_backends(request, unit.emit), settings), has_files)
     opened = open_unit(request)
-    key = key_of(opened, request, unit.emit, has_files)
-    found = recall(store, key, opened.root)
+    on = depends_on(opened, request, unit.emit, has_files)
+    found = kept(store, on, opened)
     if found is None:
-        made = _compile(_with_backends(request, unit.emit), settings, opened)
-        found = outcome(made, has_files)
-        remember(store, key, found)
+        request = _with_backends(request, unit.emit)
+        found = outcome(_compile(request, settings, opened), has_files)
+        keep(store, on, opened, found, [backend.name for backend in request.backends])
     return found
 
 

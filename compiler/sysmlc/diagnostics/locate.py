@@ -160,7 +160,7 @@ class _Text:
         self._offset = mark
         self._before = 0
         self._text = self._decode(source.data[mark:])
-        self._starts = _line_starts(self._text)
+        self._starts = line_starts(self._text)
 
     def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
@@ -196,7 +196,8 @@ class _Text:
         return self._starts[line - 1], end
 
 
-def _line_starts(text: str) -> list[int]:
+def line_starts(text: str) -> list[int]:
+    """The characters at which the lines of a text start."""
     if "\r" in text:
         return [0, *(found.end() for found in _NEWLINE.finditer(text))]
     return [0, *accumulate(len(line) + 1 for line in text.split("\n")[:-1])]

@@ -8,11 +8,11 @@ from sysmlc.driver.compilation import (
     compile_model,
     open_unit,
 )
-from sysmlc.driver.dependencies import key_of
+from sysmlc.driver.dependencies import depends_on
+from sysmlc.driver.keeping import keep, kept
 from sysmlc.driver.manifest import manifest_text
 from sysmlc.driver.outcome import Outcome, outcome
 from sysmlc.driver.publish import OutputError, Plan, apply, plan
-from sysmlc.driver.recall import recall, remember
 from sysmlc.driver.registry import (
     BackendError,
     backend_names,
@@ -34,15 +34,15 @@ __all__ = [
     "apply",
     "backend_names",
     "compile_model",
+    "depends_on",
     "full_catalogue",
-    "key_of",
+    "keep",
+    "kept",
     "load_backends",
     "manifest_text",
     "open_unit",
     "outcome",
     "plan",
-    "recall",
-    "remember",
     "select_backends",
     "trace_text",
 ]

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,26 +11,45 @@ from typing import TYPE_CHECKING
 from sysmlc import __version__, resources
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import Opened, Request
+from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+EMPTY: Mapping[str, str] = {}
 _RESOURCES = ("grammars", "metamodels", "templates")
 
 
-def key_of(opened: Opened, request: Request, wanted: Sequence[str], has_files: bool) -> str:
-    """Digest of everything that the outcome depends on.
+@dataclass(frozen=True, slots=True)
+class Dependencies:
+    """All that an outcome depends on; ``inputs`` are name, digest and front end of each one."""
+
+    others: tuple[str, ...]
+    inputs: tuple[tuple[str, str, str], ...]
+
+    def key(self, wordings: Mapping[str, str] = EMPTY) -> str:
+        """Digest of it all, by file with what its text says instead of its bytes."""
+        said = [(name, wordings.get(name, digest), by) for name, digest, by in self.inputs]
+        hashed = sha256()
+        for part in (*self.others, *map(repr, said)):
+            hashed.update(f"{len(part)}:{part}".encode("utf-8", "surrogatepass"))
+        return hashed.hexdigest()
+
+
+def depends_on(
+    opened: Opened, request: Request, wanted: Sequence[str], has_files: bool
+) -> Dependencies:
+    """What the outcome depends on.
 
     ``wanted`` is what ``--emit`` says, which is known before a back end is loaded; without
     ``has_files`` the outcome holds the findings only.
     """
-    digest = sha256()
-    for part in _parts(opened, request, wanted, has_files):
-        digest.update(f"{len(part)}:{part}".encode("utf-8", "surrogatepass"))
-    return digest.hexdigest()
+    inputs = [(r.source.name, r.source.sha256, r.frontend.name) for r in opened.reading.recognised]
+    others = tuple(_others(opened, request, wanted, has_files))
+    return Dependencies(others, tuple(inputs))
 
 
-def _parts(
+def _others(
     opened: Opened, request: Request, wanted: Sequence[str], has_files: bool
 ) -> Iterator[str]:
     config = request.config
@@ -40,8 +59,6 @@ def _parts(
         (has_files, tuple(wanted), request.strict_input, request.diagrams, len(config.models))
     )
     yield repr((sorted(config.rules.items()), config.suppress, _sorted(config.passes)))
-    for found in opened.reading.recognised:
-        yield repr((found.source.name, found.source.sha256, found.frontend.name))
     if any(found.frontend.name == "sysml" for found in opened.reading.recognised):
         yield from _library(request.library)
     for laid in opened.reading.overlays:

@@ -56,6 +56,17 @@ class Mentioning(Protocol):
 
 
 @runtime_checkable
+class Worded(Protocol):
+    """A front end of texts (in UTF-8) that mean the same wherever their words stand."""
+
+    def wording(self, source: Source) -> str:
+        """Digest of all that the text says; empty where more than its words matters."""
+
+    def words(self, source: Source) -> Sequence[tuple[int, int]]:
+        """Where its words start and end, in characters; the last one is the end of the text."""
+
+
+@runtime_checkable
 class DiagramReader(Protocol):
     """A front end that can also read the diagrams of authors."""
 

@@ -36,6 +36,7 @@ class Library:
         self._sources = {source.name: source for source in sources}
         self._cache = cache
         self._documents: dict[str, Document] = {}
+        self._indexing: dict[str, Document] = {}
         self._stems: dict[str, list[str]] = {}
         for path in self._sources:
             self._stems.setdefault(_stem(path), []).append(path)
@@ -60,9 +61,14 @@ class Library:
         """One file of the library. Raises KeyError for one that it has not."""
         document = self._documents.get(path)
         if document is None:
+            document = self._documents[path] = self._read(path)
+        return document
+
+    def _read(self, path: str) -> Document:
+        document = self._documents.get(path) or self._indexing.get(path)
+        if document is None:
             source = self._sources[path]
             document = read(source, path, _SUFFIXES[_suffix(path)], Sink(), self._cache)
-            self._documents[path] = document
         return document
 
     def paths(self) -> list[str]:
@@ -70,7 +76,10 @@ class Library:
         return sorted(self._sources)
 
     def loaded(self) -> list[Document]:
-        """The documents read so far, by path."""
+        """The documents that were asked for so far, by path.
+
+        Those that only the index was made of are not among them: it may have come from the cache.
+        """
         return [self._documents[path] for path in sorted(self._documents)]
 
     def _indexed(self) -> dict[str, list[str]]:
@@ -81,7 +90,8 @@ class Library:
             return _index_of(kept)
         index: dict[str, list[str]] = {}
         for path in self.paths():
-            for member in self.document(path).root.members:
+            document = self._indexing[path] = self._read(path)
+            for member in document.root.members:
                 for name in {member.name, member.short} - {None}:
                     index.setdefault(str(name), []).append(path)
         if self._cache:

@@ -93,7 +93,7 @@ def unpack(data: bytes) -> Node | None:
 def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | None) -> Document:
     """The document of a textual file, from the cache when it was parsed without a finding."""
     text = source.data.decode("utf-8-sig", "replace")
-    key = f"{source.sha256}-{language}-{_code()}" if cache else ""
+    key = f"{source.sha256}-{language}-{code()}" if cache else ""
     entry = cache.get(key) if cache else None
     root = unpack(entry) if entry else None
     if root is not None:
@@ -110,8 +110,8 @@ def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | No
 
 
 @lru_cache(maxsize=1)
-def _code() -> str:
-    """What a stored tree depends on beside the text: Python, our version, the parser's code."""
+def code() -> str:
+    """What is kept of a text depends on beside it: Python, our version, the parser's code."""
     here = Path(__file__).parent
     files = [here / "tree.py", here / "stored.py", *sorted((here / "text").rglob("*.py"))]
     files += sorted(resources.path("grammars").glob("*.lark"))

@@ -185,7 +185,9 @@ def assign(low: "Lowering", node: Node, owner: Element) -> Element:
     if found is not None:
         low.set(made, body=print_statement(found))
     elif (document := low.document(node)) is not None and node.end > node.start >= 0:
-        low.set(made, body=" ".join(document.text[node.start : node.end].split()))
+        from sysmlc.language.text.words import said
+
+        low.set(made, body=said(document.text, node.start, node.end))
     _inside(low, node, made)
     return made
 

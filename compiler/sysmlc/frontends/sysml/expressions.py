@@ -50,7 +50,9 @@ def text(node: Node, source: str = "") -> str:
         from sysmlc.language.notation import expression
 
         return expression(node)
-    return " ".join(source[node.start : node.end].split()) if 0 <= node.start < node.end else ""
+    from sysmlc.language.text.words import said
+
+    return said(source, node.start, node.end) if 0 <= node.start < node.end else ""
 
 
 def _printed(expression: Expression) -> str | None:

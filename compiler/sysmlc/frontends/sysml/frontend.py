@@ -41,6 +41,18 @@ class SysmlFrontend:
         """Files of a model do not name one another: a folder is a unit."""
         return ()
 
+    def wording(self, source: Source) -> str:
+        """Digest of the tokens of a text; empty for what is no text that can be read."""
+        from sysmlc.frontends.sysml.wording import digest
+
+        return digest(source, self.cache)
+
+    def words(self, source: Source) -> Sequence[tuple[int, int]]:
+        """Where the tokens of a text are."""
+        from sysmlc.frontends.sysml.wording import spans
+
+        return spans(source)
+
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Parse, resolve and lower all files of the unit."""
         from sysmlc.collecting import uncollected

@@ -16,10 +16,12 @@ _SYMBOLS = (
 _QUOTED = r"'(?:[^'\\\r\n]|\\.)*'"
 _STRING = r'"(?:[^"\\]|\\(?s:.))*"'
 _NUMBER = r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?"
-_TOKEN = re.compile(
+TOKEN = re.compile(
     rf"{_SKIPPED}(?:({_WORD}|{_SYMBOLS})|({_NUMBER})|({_BODY})|({_QUOTED})|({_STRING})|(.)|\Z)"
 )
-_BAD = 6
+"""Blanks and notes, then a token; the number of the group that matched tells its kind."""
+BAD = 6
+"""The group of what is no token; the end of the text is no group."""
 _HEAD = 64
 """Characters in which a file of another encoding, UTF-16 or a binary one, has a zero."""
 _REST = re.compile(r"[\w ]*")
@@ -119,10 +121,10 @@ def _scan(tokens: Tokens, types: Types, position: int) -> int:
     kinds, starts, ends = tokens.types, tokens.starts, tokens.ends
     words, name = types.words, types.name
     by_group = (types.end, name, types.number, types.body, name, types.string)
-    for found in _TOKEN.finditer(tokens.text, position):
+    for found in TOKEN.finditer(tokens.text, position):
         group = found.lastindex or 0
-        if group == _BAD:
-            return _fault(tokens, types, found.start(_BAD))
+        if group == BAD:
+            return _fault(tokens, types, found.start(BAD))
         start, end = found.span(group) if group else (found.end(), found.end())
         kinds.append(words.get(found[1], name) if group == 1 else by_group[group])
         starts.append(start)

@@ -1,0 +1,81 @@
+"""Outcomes of earlier runs for the same bytes, or for texts that say the same in other places."""
+
+import json
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from sysmlc.cache import Cache
+from sysmlc.driver.compilation import Opened
+from sysmlc.driver.dependencies import Dependencies
+from sysmlc.driver.outcome import Outcome
+from sysmlc.driver.recall import recall, remember
+from sysmlc.driver.tracing import COVERAGE, TRACE
+from sysmlc.frontends.base import Worded
+from sysmlc.sources import Source
+
+STILL = frozenset({"contracts", "plantuml", "recipe"})
+"""Back ends whose files state no places in the inputs."""
+
+
+def kept(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
+    """The outcome that an earlier run came to, or None."""
+    return recall(cache, on.key(), opened.root) or _moved(cache, on, opened)
+
+
+def keep(
+    cache: Cache, on: Dependencies, opened: Opened, outcome: Outcome, backends: Iterable[str]
+) -> None:
+    """Keep an outcome that back ends made; where no places matter to them, by its words too."""
+    remember(cache, on.key(), outcome)
+    wordings = dict(_wordings(opened)) if _is_still(outcome, backends) else {}
+    if wordings:
+        sources = opened.reading.sources()
+        texts = {one.name: one.data.decode() for one in sources if one.name in wordings}
+        entry = {"key": on.key(), "digests": _digests(on, wordings), "texts": texts}
+        cache.put(on.key(wordings), zlib.compress(json.dumps(entry).encode(), 1))
+
+
+def _is_still(outcome: Outcome, backends: Iterable[str]) -> bool:
+    """Whether no place is in what the back ends say; that of the platform names lines."""
+    made = {file.backend for file in outcome.files if file.path not in (COVERAGE, TRACE)}
+    return made <= STILL and {*backends} <= STILL | {"platform"}
+
+
+def _moved(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
+    wordings = dict(_wordings(opened))
+    entry = cache.get(on.key(wordings)) if wordings else None
+    if entry is None:
+        return None
+    known = json.loads(zlib.decompress(entry))
+    found = recall(cache, known["key"], opened.root)
+    return found and _adapted(found, known, opened, _digests(on, wordings))
+
+
+def _adapted(
+    found: Outcome, known: dict[str, Any], opened: Opened, digests: Mapping[str, str]
+) -> Outcome | None:
+    from sysmlc.driver.moving import LostError, Move, moved
+
+    moves, sources = {}, []
+    for one in opened.reading.recognised:
+        name, frontend = one.source.name, one.frontend
+        if digests.get(name) != known["digests"].get(name) and isinstance(frontend, Worded):
+            moves[name] = Move(frontend, Source(name, known["texts"][name].encode()), one.source)
+            sources.append(one.source)
+    try:
+        return moved(found, moves, sources, known["digests"])
+    except LostError:
+        return None
+
+
+def _wordings(opened: Opened) -> Iterator[tuple[str, str]]:
+    """What each text says, by the name of its file; others are known by their bytes."""
+    for one in opened.reading.recognised:
+        said = one.frontend.wording(one.source) if isinstance(one.frontend, Worded) else ""
+        if said:
+            yield one.source.name, said
+
+
+def _digests(on: Dependencies, names: Iterable[str]) -> dict[str, str]:
+    return {name: digest for name, digest, _ in on.inputs if name in names}
