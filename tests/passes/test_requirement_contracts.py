@@ -128,3 +128,16 @@ def test_subjects_of_one_name_are_told_apart():
     contracts, sink = derived(model('body="level < 9"', more=twin))
     assert [one.component for one in contracts] == ["Plant::Tank", "Plant::Tank#2"]
     assert "SM500" in [one.rule.code for one in sink]
+
+
+def test_an_operation_has_the_contract_of_its_method():
+    inside = '    Operation o "fill"\n      -> method m\n'
+    more = (
+        '  Activity m "Fill" external=true\n'
+        '    Parameter full "full" direction="out" default=false\n      -> typed-by bool\n'
+        '  Class w "Done" role="requirement" req_id="R2"\n    -> subject m\n'
+        '    Constraint g language="LTL" body="G F full"\n'
+    )
+    contracts, _ = derived(model('body="level < 9"', inside=inside, more=more))
+    (fill,) = [one for one in contracts if one.component == "Plant::Tank.fill"]
+    assert lines(fill.guarantees) == ["init: !full", "liveness: full"]

@@ -25,6 +25,8 @@ _FRAME = 60
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All activity diagrams, in the order of the model."""
     for activity in graph.of_kind(Kind.ACTIVITY):
+        if activity.attrs.get("external"):
+            continue
         drawing = _Drawing(graph, activity)
         view = drawing.view()
         if view.nodes:

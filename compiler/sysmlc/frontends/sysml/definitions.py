@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS, MARKED
 from sysmlc.frontends.sysml.levels import give_levels, is_of_recipes
-from sysmlc.frontends.sysml.libraries import FILES
+from sysmlc.frontends.sysml.libraries import FILES, READ
 from sysmlc.frontends.sysml.measures import give_measures, is_measured
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
@@ -18,7 +18,8 @@ _GENERALS = ("Subclassification", "Specialization", "Subsetting", "FeatureTyping
 
 def package(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A package with its members; our own libraries and stand-ins are no part of the model."""
-    if owner is None and (node.name in FILES and node.kind == "LibraryPackage"):
+    is_ours = node.name in FILES and node.kind == "LibraryPackage"
+    if owner is None and is_ours and node.name not in READ:
         low.external(node)
         return
     inside = [one for one in node.members if not one.kind.endswith("Import")]

@@ -6,5 +6,11 @@ RECIPES = "RecipeLevels"
 """The levels of a recipe, to be specialised by models."""
 PROFILE = "urn:sysmlc:profile:1"
 """Namespace of the profile that has the same levels for SysML v1."""
-FILES = {OUR_LIBRARY: "SysMLC.sysml", RECIPES: "RecipeLevels.sysml"}
+ACTIONS = "DIN8580"
+"""Elementary actions of machines with their contracts."""
+FILES = {OUR_LIBRARY: "SysMLC.sysml", RECIPES: "RecipeLevels.sysml", ACTIONS: "DIN8580.sysml"}
 """Their files in ``metamodels``."""
+SHIPPED = "sysmlc:"
+"""Before the name of a file that comes with us."""
+READ = frozenset({ACTIONS})
+"""Those whose elements are in the graph, as external ones: what they demand counts."""

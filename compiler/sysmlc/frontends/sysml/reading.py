@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
-from sysmlc.frontends.sysml.libraries import FILES
+from sysmlc.frontends.sysml.libraries import FILES, READ, SHIPPED
 from sysmlc.frontends.sysml.rules import NO_LIBRARY
 from sysmlc.frontends.sysml.settled import settle
 from sysmlc.frontends.sysml.unit import lower
@@ -56,7 +56,19 @@ def read(
     check(model, sink)
     settle(own, sink)
     graph.store(Model, [*graph.derived(Model), model])
-    lower(own, model, graph, sink, coverage)
+    shared = [one for one in ours if one.root.members[0].name in READ]
+    settle(shared, sink)
+    lower([*own, *shared], model, graph, sink, coverage)
+    _mark(graph, shared)
+
+
+def _mark(graph: Graph, libraries: Sequence[Document]) -> None:
+    """Say of the elements of libraries that they are in no file of the model."""
+    paths = {one.path for one in libraries}
+    for root in graph.roots() if paths else ():
+        if root.source in paths:
+            for one in graph.subtree(root):
+                graph.set(one, external=True)
 
 
 def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document:
@@ -87,7 +99,7 @@ def _missing(
     for name, file in FILES.items():
         is_named = any(name in one.text or not one.text for one in documents)
         if is_named and name not in there:
-            source = Source(f"sysmlc:{file}", resources.text("metamodels", file).encode())
+            source = Source(f"{SHIPPED}{file}", resources.text("metamodels", file).encode())
             found.append(read_stored(source, source.name, "sysml", Sink(), cache))
     return found
 

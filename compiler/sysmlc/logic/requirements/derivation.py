@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Element, Graph, query
+from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.classes import classified
 from sysmlc.logic.context import context_of
@@ -12,7 +12,12 @@ from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.requirements.meaning import is_temporal, meaning
 from sysmlc.logic.requirements.scope import Scope, scope_of
-from sysmlc.logic.requirements.statements import Statement, statements
+from sysmlc.logic.requirements.statements import (
+    Statement,
+    component_of,
+    definition_of,
+    statements,
+)
 
 
 def derive(
@@ -26,9 +31,9 @@ def derive(
     """
     known = {one.component: one for one in behaviours}
     for subject, said in statements(graph):
-        component = query.component_name(graph, subject)
+        component = component_of(graph, subject)
         behaviour = known.get(component)
-        scope = scope_of(context_of(graph, subject, assumed), behaviour)
+        scope = scope_of(context_of(graph, definition_of(graph, subject), assumed), behaviour)
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
         for statement in said:

@@ -22,8 +22,8 @@ class Statement:
 def statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
     """Subjects in the order of the model, each with what all its requirements say of it.
 
-    A requirement about a definition is one about all that specialise it; a definition that is
-    abstract, or in no file of the model, has only those.
+    A requirement about a definition is one about all that specialise it, and about operations that
+    it is the method of; a definition that is abstract, or in no file of the model, has only those.
     """
     found: dict[str, dict[str, Statement]] = {}
     for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
@@ -63,5 +63,20 @@ def _with_special(graph: Graph, type_: Element, seen: set[str]) -> Iterator[Elem
     seen.add(type_.id)
     if not type_.attrs.get("external") and not type_.attrs.get("abstract"):
         yield type_
+    yield from graph.sources(type_, Edge.METHOD)
     for special in graph.sources(type_, Edge.SPECIALIZES):
         yield from _with_special(graph, special, seen)
+
+
+def definition_of(graph: Graph, subject: Element) -> Element:
+    """What has the features that formulas name: of an operation that is its method."""
+    method = graph.target(subject, Edge.METHOD) if subject.kind is Kind.OPERATION else None
+    return method or subject
+
+
+def component_of(graph: Graph, subject: Element) -> str:
+    """Name of the component that a subject is: an operation is one of what owns it."""
+    owner = graph.owner(subject) if subject.kind is Kind.OPERATION else None
+    if owner is None:
+        return query.component_name(graph, subject)
+    return f"{query.component_name(graph, owner)}.{subject.name}"
