@@ -20,6 +20,7 @@ COMMANDS = (
     "diff",
     "format",
     "simulate",
+    "synth",
     "watch",
 )
 """Command words; each is a module of this package with a click command ``command``."""

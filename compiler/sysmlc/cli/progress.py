@@ -44,6 +44,13 @@ class Progress(Observer):
             click.echo(f"\r[{bar}] {what:<30}", nl=False, err=True)
             self._drawn = True
 
+    def note(self, what: str) -> None:
+        """Say what is being done of a work whose length nobody knows."""
+        passed = self._clock() - self._start
+        if self._on_terminal and passed > _PATIENCE:
+            click.echo(f"\r{passed:7.0f} s  {what:<50}", nl=False, err=True)
+            self._drawn = True
+
     def after(self, what: str, graph: "Graph") -> None:
         """Print the graph when it was asked for."""
         if what in self._print_after:

@@ -52,6 +52,7 @@ _RULE_PACKAGES = (
     "recipe",
     "overlay",
     "simulation",
+    "synthesis",
     "passes",
     "backends",
     "driver",

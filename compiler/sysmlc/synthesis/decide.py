@@ -1,0 +1,135 @@
+"""Whether a contract can be kept: verdict, figures, and findings for what cannot be decided."""
+
+from collections.abc import Callable
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis import rules
+from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
+from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
+from sysmlc.synthesis.solve import Solution, solve
+from sysmlc.values import dataclass
+
+Place = Callable[[str], Subject]
+"""From the origin of a contract or of a conjunct to what findings are about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a contract is decided."""
+
+    engine: str = ""
+    limits: Limits = Limits()
+    progress: Progress | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """What a decision took."""
+
+    variables: int
+    bits: int
+    """Bits of one step."""
+    conjuncts: int
+    rounds: int
+    """Times a goal was computed."""
+    steps: int
+    """Predecessors computed."""
+    nodes: int
+    """Most nodes of decision diagrams alive at once."""
+    seconds: float
+    """CPU time."""
+
+    def text(self) -> str:
+        """The figures on one line."""
+        return (
+            f"{self.variables} variables, {self.bits} bits, {self.conjuncts} conjuncts; "
+            f"{self.rounds} rounds, {self.steps} steps, {self.nodes:,} nodes, {self.seconds:.2f} s"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether a contract can be kept; None when that is not decided."""
+
+    component: str
+    is_realizable: bool | None
+    figures: Figures | None = None
+
+    @property
+    def exit_code(self) -> int:
+        """0 realizable, 1 unrealizable, 2 not decided."""
+        return 2 if self.is_realizable is None else int(not self.is_realizable)
+
+    def text(self) -> str:
+        """The verdict on one line, with figures."""
+        words = {None: "not decided", True: "realizable", False: "unrealizable"}
+        figures = f" ({self.figures.text()})" if self.figures else ""
+        return f"{self.component}: {words[self.is_realizable]}{figures}"
+
+
+def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
+    """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported."""
+    doing = ["translating the contract"]
+
+    def progress(step: str) -> None:
+        doing[0] = step
+        if options.progress is not None:
+            options.progress(step)
+
+    manager = Manager(options.engine, options.limits, progress)
+    try:
+        game = make_game(contract, manager)
+        solution = solve(game, is_complete=False)
+    except OutsideGr1Error as problem:
+        _report_outside(contract, problem, place, sink)
+        return Verdict(contract.component, None)
+    except LimitError as problem:
+        _report_limit(contract, problem, manager, doing[0], place, sink)
+        return Verdict(contract.component, None)
+    if not solution.is_realizable:
+        sink.report(rules.UNREALIZABLE, place(contract.origin), component=contract.component)
+    figures = _figures(contract, game, solution)
+    return Verdict(contract.component, solution.is_realizable, figures)
+
+
+def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
+    conjunct = problem.conjunct
+    sink.report(
+        rules.OUTSIDE_GR1,
+        place(conjunct.origin or contract.origin),
+        component=contract.component,
+        formula=_said(conjunct),
+        why=problem.why,
+    )
+
+
+def _report_limit(
+    contract: Contract, problem: LimitError, manager: Manager, doing: str, place: Place, sink: Sink
+) -> None:
+    sink.report(
+        rules.LIMIT,
+        place(contract.origin),
+        component=contract.component,
+        reached=str(problem),
+        seconds=f"{manager.usage().seconds:.1f}",
+        doing=doing,
+    )
+
+
+def _said(conjunct: Conjunct) -> str:
+    return print_formula(conjunct.formula)
+
+
+def _figures(contract: Contract, game: Game, solution: Solution) -> Figures:
+    used = game.manager.usage()
+    return Figures(
+        variables=len(contract.variables),
+        bits=len(game.inputs) + len(game.outputs),
+        conjuncts=len(contract.assumptions) + len(contract.guarantees),
+        rounds=solution.rounds,
+        steps=solution.steps,
+        nodes=used.peak,
+        seconds=used.seconds,
+    )

@@ -1,0 +1,43 @@
+"""Rules about contracts that are decided (SM530 to SM549; lints have codes of theirs)."""
+
+from sysmlc.diagnostics import Severity, rule
+
+_LAMP = (
+    '{"variables": {"go": {"owner": "env", "type": "bool"},'
+    ' "lamp": {"owner": "sys", "type": "bool"}},\n "guarantees": '
+)
+
+
+OUTSIDE_GR1 = rule(
+    "SM530",
+    "conjunct-outside-gr1",
+    Severity.ERROR,
+    "'{formula}' of '{component}' is outside GR(1): {why}",
+    why="Controllers are made of contracts in GR(1): conditions for the start, for every step with "
+    "the next one, and for what happens again and again.",
+    help="say it with conditions of these three kinds, or with a variable that remembers",
+    wrong=_LAMP + '{"liveness": ["go -> lamp\'"]}}',
+    right=_LAMP + '{"safety": ["go -> lamp\'"]}}',
+)
+LIMIT = rule(
+    "SM531",
+    "synthesis-limit",
+    Severity.ERROR,
+    "'{component}' is not decided: {reached} after {seconds} s, {doing}",
+    why="Whether a contract can be kept takes time and memory that grow with the ranges and the "
+    "number of its variables, sometimes without measure.",
+    help="give more (--time-limit, --memory, --nodes), or decide the contracts of parts",
+    wrong="sysmlc synth large.contract.json --realizable --nodes 10",
+    right="sysmlc synth large.contract.json --realizable",
+)
+UNREALIZABLE = rule(
+    "SM532",
+    "contract-unrealizable",
+    Severity.ERROR,
+    "no system can keep the contract of '{component}'",
+    why="Whatever the system does, the environment can keep its promises and make one of the "
+    "guarantees fail.",
+    help="promise less, or assume more of the environment",
+    wrong=_LAMP + '{"safety": ["lamp <-> go\'"]}}',
+    right=_LAMP + '{"safety": ["lamp\' <-> go\'"]}}',
+)

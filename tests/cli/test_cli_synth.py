@@ -1,0 +1,107 @@
+"""``sysmlc synth``: verdicts, figures, what is said when there is no verdict."""
+
+import json
+import re
+
+import pytest
+
+from sysmlc.synthesis import rules
+
+MACHINE = """
+StateMachine gate "Gate"
+  Region r
+    Pseudostate i subkind="initial"
+    State open "Open"
+    Transition t
+      -> flow-source i
+      -> flow-target open
+"""
+
+
+def test_a_contract_is_decided_with_figures(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
+    assert made.exit_code == 0
+    figures = r"lamp: realizable \(2 variables, 2 bits, 1 conjuncts; .* nodes, .* s\)\n"
+    assert re.fullmatch(figures, made.stdout)
+
+
+def test_unrealizable_is_an_error_and_exit_code_1(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
+    assert made.exit_code == 1
+    assert "error[SM532 contract-unrealizable]: no system can keep the contract" in made.stderr
+    assert made.stdout.startswith("lamp: unrealizable (")
+
+
+def test_what_is_outside_gr1_has_its_place_and_exit_code_2(here):
+    here.write("lamp.gr1.json", rules.OUTSIDE_GR1.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
+    assert [made.exit_code, made.stdout] == [2, "lamp: not decided\n"]
+    assert "error[SM530 conjunct-outside-gr1]: 'go -> lamp'' of 'lamp' is outside" in made.stderr
+    assert "--> lamp.gr1.json:2:" in made.stderr
+
+
+def test_the_right_example_of_each_rule_is_decided(here):
+    for rule in (rules.OUTSIDE_GR1, rules.UNREALIZABLE):
+        here.write("right.gr1.json", rule.right)
+        assert here.sysmlc("synth", "right.gr1.json", "--realizable").exit_code == 0
+
+
+WIDE = {
+    "variables": {
+        **{f"a{n}": {"owner": "env", "type": [0, 30]} for n in range(4)},
+        **{f"x{n}": {"owner": "sys", "type": [0, 30]} for n in range(4)},
+    },
+    "guarantees": {"safety": [f"x{n}' * x{n}' > a{n}' * a{3 - n}'" for n in range(4)]},
+}
+
+
+def test_a_limit_says_what_was_reached(here):
+    here.write("wide.gr1.json", json.dumps(WIDE))
+    made = here.sysmlc("synth", "wide.gr1.json", "--realizable", "--nodes", "10")
+    assert [made.exit_code, made.stdout] == [2, "wide: not decided\n"]
+    assert (
+        "error[SM531 synthesis-limit]: 'wide' is not decided: the limit of 10 nodes" in made.stderr
+    )
+
+
+def test_contracts_of_a_model_are_decided_by_component(here, monkeypatch):
+    from sysmlc.driver import registry
+    from sysmlc.passes import pipeline
+
+    monkeypatch.setattr(
+        registry, "passes", lambda options: [pipeline.load(name) for name in pipeline.NAMES]
+    )
+    here.write("gate.ir", MACHINE)
+    made = here.sysmlc("synth", "gate.ir", "--realizable", "-c", "Gate")
+    assert [made.exit_code, made.stdout.split(" (")[0]] == [0, "Gate: realizable"]
+    wrong = here.sysmlc("synth", "gate.ir", "--realizable", "-c", "Gat")
+    assert [wrong.exit_code, "did you mean 'Gate'" in wrong.stderr] == [2, True]
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["none.gr1.json", "--realizable"], "cannot read 'none.gr1.json'"),
+        (["plant.ir", "--realizable", "--from", "cobol"], "'cobol' is no form that is read"),
+        (["plant.ir", "--realizable"], "no behaviour and no requirement that gives a contract"),
+    ],
+)
+def test_what_cannot_be_done_is_a_sentence_and_exit_code_2(here, args, words):
+    made = here.sysmlc("synth", *args)
+    assert made.exit_code == 2
+    assert words in made.stderr
+
+
+def test_findings_as_json_leave_standard_output_to_them(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--realizable", "--format", "json")
+    assert [one["code"] for one in json.loads(made.stdout)["diagnostics"]] == ["SM532"]
+
+
+def test_the_engine_can_be_chosen(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    assert (
+        here.sysmlc("synth", "lamp.gr1.json", "--realizable", "--engine", "autoref").exit_code == 0
+    )
