@@ -6,7 +6,7 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import Index, drop, every, first, put, put_all_new, put_new
+from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new
 from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
@@ -194,33 +194,10 @@ class Graph:
             known = self._owned.get(owner)
             if known is None:
                 self._owned[owner] = made
+            elif isinstance(known, list) and len(known) < MANY:
+                known.append(made)
             else:
                 put_new(self._owned, owner, made)
-        return made
-
-    def new_below(
-        self, owner: str, kind: Kind, source: str, rows: Iterable[tuple[str, str, int]]
-    ) -> list[Element]:
-        """Add new elements below one that is there: as ``new`` of id, name and ordinal each.
-
-        They end before the first whose id is empty or taken.
-        """
-        made: list[Element] = []
-        known, add = self._elements.setdefault, made.append
-        for id, name, ordinal in rows:
-            one = _bare(Element)
-            if not id or known(id, one) is not one:
-                break
-            one.id = id
-            one.kind = kind
-            one.name = name
-            one.owner = owner
-            one.ordinal = ordinal
-            one.source = source
-            one.attrs = {}
-            add(one)
-        self._fresh += made
-        put_all_new(self._owned, owner, made)
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:

@@ -8,7 +8,7 @@ Neighbours = Element | list[Element] | dict[Element, None]
 Index = dict[str, Neighbours]
 """Neighbours by the id of the element that they belong to; no entry where there is none."""
 
-_MANY = 16
+MANY = 16
 """From here on a dict, so that neither a search nor a removal looks at all neighbours."""
 
 
@@ -25,7 +25,7 @@ def put(index: Index, id: str, neighbour: Element) -> bool:
         return False
     elif isinstance(known, dict):
         known[neighbour] = None
-    elif len(known) < _MANY:
+    elif len(known) < MANY:
         known.append(neighbour)
     else:
         index[id] = dict.fromkeys((*known, neighbour))
@@ -39,24 +39,12 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
         index[id] = neighbour
     elif isinstance(known, list):
         known.append(neighbour)
-        if len(known) > _MANY:
+        if len(known) > MANY:
             index[id] = dict.fromkeys(known)
     elif isinstance(known, dict):
         known[neighbour] = None
     else:
         index[id] = [known, neighbour]
-
-
-def put_all_new(index: Index, id: str, neighbours: list[Element]) -> None:
-    """Add neighbours that cannot be there."""
-    known = index.get(id)
-    if known is not None or len(neighbours) > _MANY:
-        for one in neighbours:
-            put_new(index, id, one)
-    elif len(neighbours) > 1:
-        index[id] = neighbours[:]
-    elif neighbours:
-        index[id] = neighbours[0]
 
 
 def drop(index: Index, id: str, neighbour: Element) -> bool:

@@ -115,9 +115,9 @@ def _decimal(text: str) -> AttrValue:
 def _integer(least: int | None, largest: int | None) -> Reader:
     def read(text: str) -> AttrValue:
         value = int(text)
-        _demand("_" not in text)
-        _demand(least is None or value >= least)
-        _demand(largest is None or value <= largest)
+        is_small = least is not None and value < least
+        if is_small or (largest is not None and value > largest) or "_" in text:
+            raise ValueError
         return value
 
     return read
@@ -125,7 +125,8 @@ def _integer(least: int | None, largest: int | None) -> Reader:
 
 def _boolean(text: str) -> AttrValue:
     found = _TRUTH.get(text.strip())
-    _demand(found is not None)
+    if found is None:
+        raise ValueError
     return found
 
 

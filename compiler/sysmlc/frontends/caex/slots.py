@@ -3,71 +3,52 @@
 from sysmlc.frontends.caex import fitting
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.plans import Known
-from sysmlc.frontends.caex.site import Site
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-
-_Given = tuple[int, Known, str, tuple[Element, ...]]
-"""A row, the attribute that it repeats, its value, and the features that this one lies in."""
 
 # To look a member of an enumeration up takes ten times as long as to look this up.
 _SLOT = Kind.SLOT
 
 
 class Slots:
-    """Makes the slots of one file, those of an internal element in one go."""
+    """Makes the slots of one file."""
 
     def __init__(self, context: Context, document: Document) -> None:
         self._context = context
         self._document = document
-        self.waiting: list[_Given] = []
-        """Values of the internal element that is read now."""
+        self._new = context.graph.new
+        self._ids = document.ids
+        self._ordinals = document.ordinals
         self._slots: list[Element] = []
         self._features: list[Element] = []
         self._inner: list[Element] = []
         self._outer: list[Element] = []
 
-    def place(self, site: Site) -> None:
-        """Add the slots of the values that wait."""
-        waiting = self.waiting
-        if not waiting:
-            return
-        owner = site.instance or instance(self._context, site)
-        while waiting:
-            made = self._alike(owner)
-            if not made:
-                made.append(self._context.add_at(_SLOT, self._document, waiting[0][0], owner))
-            self._fill(made)
-            del waiting[: len(made)]
+    def add(self, owner: str, row: int, known: Known, text: str) -> Element:
+        """Add the slot of a value, named by its attribute, or with an ID of its own."""
+        value: AttrValue = text
+        if known.read is not None:
+            try:
+                value = known.read(text)
+            except ValueError:
+                value = self._unfit(row, known, text)
+        made, document = None, self._document
+        if not self._ids[row]:
+            id, ordinal = owner + known.suffix, self._ordinals[row]
+            made = self._new(id, _SLOT, known.name, owner, ordinal, document.name)
+        if made is None:
+            made = self._context.add_at(_SLOT, document, row, owner)
+        if value != "":
+            made.attrs = {"value": value}
+        document.elements[row] = made.id
+        self._slots.append(made)
+        self._features.append(known.element)
+        return made
 
-    def _alike(self, owner: str) -> list[Element]:
-        """Slots named by their attributes, up to the first that has an ID, or no free one."""
-        ids, ordinals = self._document.ids, self._document.ordinals
-        rows = [
-            ("" if ids[row] else owner + known.suffix, known.name, ordinals[row])
-            for row, known, _, _ in self.waiting
-        ]
-        return self._context.graph.new_below(owner, _SLOT, self._document.name, rows)
-
-    def _fill(self, slots: list[Element]) -> None:
-        """Give the first slots that wait their values."""
-        elements, inner = self._document.elements, self._inner
-        for slot, (row, known, text, path) in zip(slots, self.waiting, strict=False):
-            value: AttrValue = text
-            if known.read is not None:
-                try:
-                    value = known.read(text)
-                except ValueError:
-                    value = self._unfit(row, known, text)
-            if value != "":
-                slot.attrs = {"value": value}
-            elements[row] = slot.id
-            if path:
-                inner += [slot] * len(path)
-                self._outer += path
-        self._slots += slots
-        self._features += [known.element for _, known, _, _ in self.waiting[: len(slots)]]
+    def lead(self, slot: Element, path: tuple[Element, ...]) -> None:
+        """Say which features the slot of an inner one lies in, outermost first."""
+        self._inner += [slot] * len(path)
+        self._outer += path
 
     def _unfit(self, row: int, known: Known, text: str) -> AttrValue:
         data_type = fitting.data_type_of(known.stated, known.member.type)

@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import members
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.holders import own
+from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.plans import Known, Plan
 from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
@@ -41,7 +41,7 @@ class Swift:
         steps = (self._plans.get(declared) or self._plan(declared)).steps
         alike, ends, odd, verdicts = document.alike, document.ends, self._odd, document.verdicts
         value_of, ids, elements = document.texts["Value"].get, document.ids, document.elements
-        wait = self._slots.waiting.append
+        add = self._slots.add
         for row in site.members:
             known = steps.get(alike[row])
             if known is None or ends[row] > row + 1 or row in odd:
@@ -55,12 +55,10 @@ class Swift:
             else:
                 text = value_of(row)
                 if text is not None and text != known.text:
-                    wait((row, known, text, ()))
-        self._slots.place(site)
+                    add(site.instance or instance(self._context, site), row, known, text)
 
     def _otherwise(self, site: Site, row: int) -> None:
         """A row that says more, or what no row of its class said before."""
-        self._slots.place(site)
         document, context = self._document, self._context
         plan, tag = self._plans[site.declared], document.tags[row]
         name, is_read = document.attributes[row].get("Name", ""), False
@@ -69,7 +67,7 @@ class Swift:
             if known is None:
                 is_read = self._plain.attribute(site.own or own(context, site), row)
             else:
-                is_read = self._structure(row, known)
+                is_read = self._structure(site, row, known)
                 if is_read and document.ends[row] == row + 1:
                     plan.steps[document.alike[row]] = known
         elif tag == "ExternalInterface":
@@ -121,7 +119,7 @@ class Swift:
             known.alike.add(alike)
         return True
 
-    def _structure(self, top: int, known: Known) -> bool:
+    def _structure(self, site: Site, top: int, known: Known) -> bool:
         """An attribute with attributes; False when there is more to it."""
         document = self._document
         tags, attributes = document.tags, document.attributes
@@ -142,7 +140,8 @@ class Swift:
             document.verdicts[row] = _MAPPED
             text = document.texts["Value"].get(row)
             if text is not None and text != one.text:
-                self._slots.waiting.append((row, one, text, path))
+                owner = site.instance or instance(self._context, site)
+                self._slots.lead(self._slots.add(owner, row, one, text), path)
         return True
 
     def finish(self) -> None:
