@@ -14,6 +14,7 @@ from sysmlc.sources import Source
 
 _Packed = tuple[Any, ...]
 _SIZE = 12
+_PACKAGES = frozenset({"Package", "LibraryPackage"})
 
 
 class StoredNode(Node):
@@ -39,7 +40,9 @@ class StoredNode(Node):
     def __getattr__(self, name: str) -> object:
         made: object
         if name == "members":
-            made = [StoredNode(packed, self) for packed in self._packed[9]]
+            packed = self._packed[9]
+            within = marshal.loads(packed) if isinstance(packed, bytes) else packed
+            made = [StoredNode(one, self) for one in within]
         elif name == "relations":
             made = [Relation(k, Reference(c, s, e)) for k, c, s, e in self._packed[10]]
         elif name == "facts":
@@ -51,33 +54,42 @@ class StoredNode(Node):
 
 
 def pack(root: Node) -> bytes | None:
-    """The tree as bytes without its text; None for one that is too deep to be kept."""
+    """The tree as bytes without its text; None for one that is too deep to be kept.
+
+    Members of what is directly in a package are bytes of their own: of a library most are
+    never asked for.
+    """
     packed: dict[Node, _Packed] = {}
-    for node in reversed(list(root.walk())):
-        packed[node] = (
-            node.kind,
-            node.name,
-            node.short,
-            node.membership,
-            node.role,
-            node.visibility,
-            node.start,
-            node.end,
-            node.name_start,
-            tuple([packed.pop(member) for member in node.members]),
-            tuple(
-                [
-                    (r.kind, r.reference.chain, r.reference.start, r.reference.end)
-                    for r in node.relations
-                    if not r.implied
-                ]
-            ),
-            tuple(node.facts.items()),
-        )
     try:
+        for node in reversed(list(root.walk())):
+            packed[node] = _packed(node, tuple([packed.pop(one) for one in node.members]))
         return marshal.dumps(packed[root])
     except ValueError:
         return None
+
+
+def _packed(node: Node, members: tuple[_Packed, ...]) -> _Packed:
+    is_apart = bool(members) and node.owner is not None and node.owner.kind in _PACKAGES
+    return (
+        node.kind,
+        node.name,
+        node.short,
+        node.membership,
+        node.role,
+        node.visibility,
+        node.start,
+        node.end,
+        node.name_start,
+        marshal.dumps(members) if is_apart else members,
+        tuple(
+            [
+                (r.kind, r.reference.chain, r.reference.start, r.reference.end)
+                for r in node.relations
+                if not r.implied
+            ]
+        ),
+        tuple(node.facts.items()),
+    )
 
 
 def unpack(data: bytes) -> Node | None:

@@ -22,8 +22,9 @@ class Members(Generals):
         self._owned: dict[Node, Owned] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._inheriting: set[Node] = set()
-        self._inheritable: dict[Node, frozenset[str] | None] = {}
-        self._names_of: dict[tuple[Node, ...], frozenset[str] | None] = {}
+        self._inheritable: dict[Node, tuple[frozenset[str], ...] | None] = {}
+        self._names_of: dict[tuple[Node, ...], tuple[frozenset[str], ...] | None] = {}
+        self._names_above: dict[Node, frozenset[str]] = {}
 
     def abandon(self) -> None:
         """Give up what is being looked for, after an error in the midst of it."""
@@ -95,7 +96,7 @@ class Members(Generals):
         if hits is not None:
             return hits
         names = self._inheritable.get(scope)
-        if names is not None and name not in names:
+        if names is not None and not any([name in some for some in names]):
             return NONE
         if scope in self._inheriting:
             self.cuts += 1
@@ -113,29 +114,38 @@ class Members(Generals):
                 self._inheritable[scope] = self._learnt(scope)
         return hits
 
-    def _learnt(self, scope: Node) -> frozenset[str] | None:
+    def _learnt(self, scope: Node) -> tuple[frozenset[str], ...] | None:
         """The names of all that ``scope`` may inherit, found when all was searched in vain.
 
-        None where generals import some, or are not known for good.
+        None where generals import some, are not known for good, or lead in a circle.
         """
         key = tuple(self.all_generals(scope))
         if key not in self._names_of:
-            self._names_of[key] = self._names_below(key)
+            each = [self._names_from(general, {}) for general in key]
+            known = tuple([names for names in each if names is not None])
+            self._names_of[key] = known if len(known) == len(each) else None
         return self._names_of[key]
 
-    def _names_below(self, generals: tuple[Node, ...]) -> frozenset[str] | None:
-        seen = dict.fromkeys(generals)
-        waiting = list(generals)
-        while waiting:
-            node = waiting.pop()
-            written, silent = self._generals.get(node), self._silently.get(node)
-            is_known = written is not None and silent is not None
-            if not is_known or any(one.visibility == "public" for one in self.imports(node)):
+    def _names_from(self, general: Node, below: dict[Node, None]) -> frozenset[str] | None:
+        """The names that ``general`` owns or inherits; ``below`` are those that it was asked for."""
+        names = self._names_above.get(general)
+        if names is not None:
+            return names
+        written, silent = self._generals.get(general), self._silently.get(general)
+        if written is None or silent is None or general in below:
+            return None
+        if any(one.visibility == "public" for one in self.imports(general)):
+            return None
+        below[general] = None
+        found = set(self.owned(general))
+        for one in (*written, *silent):
+            inherited = self._names_from(one, below)
+            if inherited is None:
                 return None
-            found = [one for one in (*(written or ()), *(silent or ())) if one not in seen]
-            seen.update(dict.fromkeys(found))
-            waiting += found
-        return frozenset(name for node in seen for name in self.owned(node))
+            found |= inherited
+        del below[general]
+        names = self._names_above[general] = frozenset(found)
+        return names
 
     def _general_hits(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
