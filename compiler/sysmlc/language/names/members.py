@@ -96,7 +96,7 @@ class Members(Generals):
         if hits is not None:
             return hits
         names = self._inheritable.get(scope)
-        if names is not None and not any([name in some for some in names]):
+        if names is not None and not any(name in some for some in names):
             return NONE
         if scope in self._inheriting:
             self.cuts += 1
@@ -127,7 +127,7 @@ class Members(Generals):
         return self._names_of[key]
 
     def _names_from(self, general: Node, below: dict[Node, None]) -> frozenset[str] | None:
-        """The names that ``general`` owns or inherits; ``below`` are those that it was asked for."""
+        """The names that ``general`` owns or inherits; ``below`` are those that asked for it."""
         names = self._names_above.get(general)
         if names is not None:
             return names
