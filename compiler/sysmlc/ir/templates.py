@@ -5,6 +5,9 @@ from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.values import dataclass
 
+_PARAMETER = Kind.TEMPLATE_PARAMETER
+"""By a name of the module: in Python 3.11 members of a class take ten times as long."""
+
 
 @dataclass(frozen=True, slots=True)
 class Substitution:
@@ -26,7 +29,7 @@ class Binding:
 
 def parameters(graph: Graph, template: Element) -> list[Element]:
     """Formal parameters of the template, in order; none for what is no template."""
-    return [item for item in graph.owned(template) if item.kind is Kind.TEMPLATE_PARAMETER]
+    return [item for item in graph.owned(template) if item.kind is _PARAMETER]
 
 
 def bindings(graph: Graph, bound: Element) -> list[Binding]:

@@ -47,7 +47,8 @@ class StandIn:
 class _Library:
     name: str
     uri: str
-    files: re.Pattern[str]
+    files: str
+    """A regular expression, compiled when somebody asks for a file."""
     others: str
 
 
@@ -112,7 +113,7 @@ class Libraries:
 
     def _of_file(self, file: str) -> Iterator[_Library]:
         plain = unquote(file)
-        return (one for one in self._libraries.values() if one.files.fullmatch(plain))
+        return (one for one in self._libraries.values() if re.fullmatch(one.files, plain))
 
     def _named(self, library: _Library, fragment: str, path: str, kinds: Iterable[Kind]) -> str:
         for names in (names_in(fragment), [part for part in path.split("::") if part]):
@@ -156,9 +157,7 @@ def libraries() -> Libraries:
 
 def _library(entry: dict[str, object]) -> _Library:
     files = "|".join(f"(?:{pattern})" for pattern in entry["files"])  # type: ignore[attr-defined]
-    return _Library(
-        str(entry["name"]), str(entry["uri"]), re.compile(files), str(entry.get("others", ""))
-    )
+    return _Library(str(entry["name"]), str(entry["uri"]), files, str(entry.get("others", "")))
 
 
 def _is_root(fragment: str) -> bool:

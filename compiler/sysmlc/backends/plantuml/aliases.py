@@ -3,6 +3,10 @@
 import re
 from collections import Counter
 from collections.abc import KeysView
+from functools import lru_cache
+
+_REMEMBERED = 1 << 12
+"""Names whose words are kept: those of states and actions come again and again."""
 
 
 class Aliases:
@@ -35,5 +39,6 @@ class Aliases:
         return self._of.keys()
 
 
+@lru_cache(_REMEMBERED)
 def _words(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", name.lower())[:24].strip("_")

@@ -98,11 +98,12 @@ def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
     template stands for is named behind the template's name.
     """
     shown = {id for diagram in found for id in diagram.trace()}
-    missed = [item for item in graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS) if _is_ours(item)]
+    known = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
+    missed = [item for item in known if item.id not in shown and _is_ours(item)]
     formal = {
         item.id for one in graph.of_kind(Kind.TEMPLATE_PARAMETER) for item in graph.owned(one)
     }
-    missed = [item for item in missed if item.id not in shown and item.id not in formal]
+    missed = [item for item in missed if item.id not in formal]
     gone = {item.id for item in missed}
     groups: dict[tuple[str, Kind], list[Element]] = {}
     for item in missed:

@@ -3,11 +3,15 @@
 import re
 from collections.abc import Iterator
 from dataclasses import field
+from functools import lru_cache
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
 from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, family, mangled, parents
 from sysmlc.values import dataclass
+
+_REMEMBERED = 1 << 10
+"""Stereotypes whose lineage is kept: a model applies a few of them thousands of times."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +60,8 @@ class Profiles:
         """
         stereotype = self.stereotype(application)
         if stereotype is None:
-            namespace = str(application.attrs.get("namespace", ""))
-            start = Ancestor(str(application.attrs.get("stereotype", "")), family(namespace))
-            return tuple(dict.fromkeys(_known_above(start)))
+            attrs = application.attrs
+            return _said(str(attrs.get("namespace", "")), str(attrs.get("stereotype", "")))
         above = (one for up in self._family_tree(stereotype) for one in _known_above(up))
         return tuple(dict.fromkeys(above))
 
@@ -132,6 +135,12 @@ class Profiles:
         # MagicDraw: http://www.magicdraw.com/schemas/Arrowhead.xmi of the profile "Arrowhead".
         last = re.sub(r"\.xmi$", "", namespace.rpartition("/")[2])
         return any(mangled(one.name) == last for one in self._profiles(stereotype))
+
+
+@lru_cache(_REMEMBERED)
+def _said(namespace: str, name: str) -> tuple[Ancestor, ...]:
+    """The lineage of a stereotype that only SysML can say something of."""
+    return tuple(dict.fromkeys(_known_above(Ancestor(name, family(namespace)))))
 
 
 def _known_above(start: Ancestor) -> Iterator[Ancestor]:

@@ -214,6 +214,7 @@ def family(namespace: str) -> Family:
     return Family.CUSTOM
 
 
+@cache
 def mangled(name: str) -> str:
     """A stereotype's name as XML tags show it: ``SD-DD`` becomes ``SD_DD``."""
     return re.sub(r"\W", "_", name)
