@@ -8,9 +8,16 @@ PROFILE = "urn:sysmlc:profile:1"
 """Namespace of the profile that has the same levels for SysML v1."""
 ACTIONS = "DIN8580"
 """Elementary actions of machines with their contracts."""
-FILES = {OUR_LIBRARY: "SysMLC.sysml", RECIPES: "RecipeLevels.sysml", ACTIONS: "DIN8580.sysml"}
+MACHINES = "LineMachines"
+"""Other machines of a production line with their contracts."""
+FILES = {
+    OUR_LIBRARY: "SysMLC.sysml",
+    RECIPES: "RecipeLevels.sysml",
+    ACTIONS: "DIN8580.sysml",
+    MACHINES: "LineMachines.sysml",
+}
 """Their files in ``metamodels``."""
 SHIPPED = "sysmlc:"
 """Before the name of a file that comes with us."""
-READ = frozenset({ACTIONS})
+READ = frozenset({ACTIONS, MACHINES})
 """Those whose elements are in the graph, as external ones: what they demand counts."""

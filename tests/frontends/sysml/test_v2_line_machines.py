@@ -1,0 +1,67 @@
+"""The library LineMachines: what conveyor, printer, quality check and mill promise can be kept."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.logic.contract import Contract, IntegerDomain
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+from sysmlc.synthesis.game import make_game
+from sysmlc.synthesis.manager import Manager
+from sysmlc.synthesis.solve import solve
+from sysmlc.values import replace
+
+LINE = """
+package Lines {
+    private import LineMachines::*;
+    part def Line {
+        action carry : Convey;
+        action print : Print;
+        action inspect : Check;
+        action mill : Mill { constant attribute :>> depths = 5; }
+    }
+}
+"""
+NEEDED = {
+    "carry": "occupied | loaded",
+    "print": "busy | start",
+    "inspect": "busy | start",
+    "mill": "busy | start",
+}
+"""What must happen again and again for the machine to do something again and again."""
+
+
+def contracts():
+    reading = read(LINE)
+    pipeline.run(reading.graph, reading.sink)
+    assert [one.rule.code for one in reading.sink] == []
+    found = reading.graph.derived(Contract)
+    return {one.component.removeprefix("Lines::Line."): one for one in found}
+
+
+def is_realizable(contract):
+    return solve(make_game(contract, Manager())).is_realizable
+
+
+def without(contract, text):
+    left = tuple(one for one in contract.assumptions if print_formula(one.formula) != text)
+    assert len(left) == len(contract.assumptions) - 1
+    return replace(contract, assumptions=left)
+
+
+@pytest.mark.parametrize("action", sorted(NEEDED))
+def test_the_contract_of_a_machine_can_be_kept_and_not_by_doing_nothing(action):
+    contract = contracts()[action]
+    assert is_realizable(contract)
+    assert not is_realizable(without(contract, NEEDED[action]))
+
+
+def test_the_constants_of_a_general_action_hold_for_the_special_one():
+    domains = {one.name: one.domain for one in contracts()["mill"].variables}
+    assert domains["depth"] == domains["wanted"] == IntegerDomain(0, 5)
+    assert domains["column"] == IntegerDomain(0, 2)
+
+
+def test_what_two_requirements_say_is_one_contract():
+    said = {one.text.partition(" of ")[2] for one in contracts()["print"].guarantees}
+    assert {"'GridContract' demands it.", "'PrintContract' demands it."} <= said
