@@ -88,6 +88,19 @@ def _replaced(conjunct: Conjunct, make: Leaf) -> Conjunct:
         raise TooManyValuesError(conjunct) from None
 
 
+def without_weak_until(formula: Formula) -> Formula:
+    """The formula with ``b R (a | b)`` for ``a W b``."""
+    match formula:
+        case Apply(Op.WEAK_UNTIL, (left, right)):
+            stay, goal = without_weak_until(left), without_weak_until(right)
+            return Apply(Op.RELEASE, (goal, f.either(stay, goal)))
+        case Apply(op, args):
+            parts = tuple(map(without_weak_until, args))
+            return _BUILD[op](*parts) if op in _BUILD else Apply(op, parts)
+        case _:
+            return formula
+
+
 # -- names ---------------------------------------------------------------------------------------
 
 

@@ -24,7 +24,7 @@ from sysmlc.logic.formats.draft import Draft, joined
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.formula import Op
 from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.lower import renamed
+from sysmlc.logic.lower import each_formula, renamed, without_weak_until
 from sysmlc.logic.spelling import (
     COMPARING,
     CONNECTIVES,
@@ -190,9 +190,8 @@ class _Reader(Reader):
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract as CHASE has words for it. Raises NotExpressibleError."""
-    return lowered(
-        renamed(contract, _RESERVED), form, lambda one: counted(one, is_flat=False, from_zero=False)
-    )
+    words = each_formula(renamed(contract, _RESERVED), without_weak_until)
+    return lowered(words, form, lambda one: counted(one, is_flat=False, from_zero=False))
 
 
 def write(contract: Contract, form: str) -> str:

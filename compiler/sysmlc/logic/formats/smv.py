@@ -25,7 +25,14 @@ from sysmlc.logic.formats.spelt import LTL, Spelling
 from sysmlc.logic.formats.spot import implication, sides
 from sysmlc.logic.formula import Apply, Formula, Op, Var
 from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.lower import each_conjunct, known, renamed, written_out
+from sysmlc.logic.lower import (
+    each_conjunct,
+    each_formula,
+    known,
+    renamed,
+    without_weak_until,
+    written_out,
+)
 from sysmlc.logic.spelling import (
     COMPARING,
     CONNECTIVES,
@@ -140,7 +147,8 @@ class _Reader(Reader):
 def plain(contract: Contract, form: str) -> Contract:
     """The contract as NuSMV's LTL has words for it. Raises NotExpressibleError."""
     words = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *TRUTHS, *_RULES, *_KEYWORDS})
-    return lowered(renamed(contract, words), form, _apart)
+    plain_words = each_formula(renamed(contract, words), without_weak_until)
+    return lowered(plain_words, form, _apart)
 
 
 def _apart(contract: Contract) -> Contract:

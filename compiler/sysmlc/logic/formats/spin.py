@@ -82,20 +82,20 @@ def _domain(given: list[str]) -> Domain:
 class _Reader(Reader):
     """Refuses what SPIN and everybody else read differently."""
 
-    def part(self, weakest: int) -> Part:
-        start = self.cursor.next.at
-        self._seen: list[Op] = getattr(self, "_seen", [])
-        outer, self._seen = self._seen, []
-        made = super().part(weakest)
+    _seen: tuple[Op, ...] = ()
+
+    def _bracketed(self) -> Part:
+        outer, self._seen = self._seen, ()
+        made = super()._bracketed()
         self._seen = outer
-        return replace(made, at=start)
+        return made
 
     def _applied(self, op: Op, left: Part) -> Part:
         at = self.cursor.next.at
         if op in _MIXED:
             if any(seen is not op for seen in self._seen):
                 raise FormulaError("parentheses must say what belongs together here", at)
-            self._seen.append(op)
+            self._seen = (op,)
         return super()._applied(op, left)
 
 

@@ -1,0 +1,111 @@
+"""Random contracts over Booleans, ranges and enumerations."""
+
+from hypothesis import strategies as st
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.classes import classified
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
+from sysmlc.logic.counting import in_order
+from sysmlc.logic.formula import Apply, Const, Op, Var
+
+VARIABLES = (
+    Variable("go", Owner.ENVIRONMENT, BooleanDomain()),
+    Variable("n", Owner.ENVIRONMENT, IntegerDomain(0, 3)),
+    Variable("low", Owner.ENVIRONMENT, IntegerDomain(-2, 1)),
+    Variable("done", Owner.SYSTEM, BooleanDomain()),
+    Variable("m", Owner.SYSTEM, IntegerDomain(2, 4)),
+    Variable("mode", Owner.SYSTEM, EnumerationDomain(("idle", "busy", "stop"))),
+)
+
+
+def numbers(primes):
+    names = st.sampled_from(["n", "low", "m"])
+    variables = st.builds(Var, names, primes)
+    constants = st.integers(-3, 5).map(Const)
+    sums = st.builds(
+        lambda op, a, b: Apply(op, (a, b)), st.sampled_from([Op.ADD, Op.SUB]), variables, constants
+    )
+    products = st.builds(lambda a: Apply(Op.MUL, (a, Const(2))), variables)
+    return st.one_of(variables, constants, sums, products)
+
+
+def atoms(primes):
+    orders = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
+    return st.one_of(
+        st.builds(Var, st.sampled_from(["go", "done"]), primes),
+        st.builds(lambda op, a, b: Apply(op, (a, b)), orders, numbers(primes), numbers(primes)),
+        st.builds(
+            lambda op, primed, value: Apply(op, (Var("mode", primed), Const(value))),
+            st.sampled_from([Op.EQ, Op.NE]),
+            primes,
+            st.sampled_from(["idle", "busy", "stop"]),
+        ),
+    )
+
+
+def conditions(primes):
+    return st.recursive(
+        atoms(primes),
+        lambda inner: st.one_of(
+            st.builds(f.negate, inner),
+            st.builds(f.both, inner, inner),
+            st.builds(f.either, inner, inner, inner),
+            st.builds(f.implies, inner, inner),
+            st.builds(f.iff, inner, inner),
+        ),
+        max_leaves=5,
+    )
+
+
+def conjuncts(class_, primes):
+    return st.builds(lambda formula: Conjunct(formula, class_, ""), conditions(primes))
+
+
+only_now, then_or_now = st.just(False), st.booleans()
+guarantees = st.lists(
+    st.one_of(
+        conjuncts(Class.INIT, only_now),
+        conjuncts(Class.SAFETY, then_or_now),
+        conjuncts(Class.LIVENESS, only_now),
+    ),
+    max_size=4,
+)
+assumptions = st.lists(
+    st.one_of(conjuncts(Class.INIT, only_now), conjuncts(Class.LIVENESS, only_now)), max_size=2
+)
+contracts = st.builds(
+    lambda assumed, promised: Contract("Gate", "", VARIABLES, tuple(assumed), tuple(promised)),
+    assumptions,
+    guarantees,
+)
+
+
+def canonical(contract):
+    """The conjuncts by class, split as far as they can be, without places and words."""
+
+    def side(found):
+        whole = f.both(*map(ltl, found))
+        parts = {Conjunct(part, class_, ""): None for class_, part in classified(whole)}
+        return in_order(one for one in parts if one.formula != f.TRUE)
+
+    return (
+        sorted(contract.variables, key=lambda one: (one.owner, one.name)),
+        side(contract.assumptions),
+        side(contract.guarantees),
+    )
+
+
+def ltl(conjunct):
+    formula = conjunct.formula
+    if conjunct.class_ is Class.LIVENESS:
+        formula = f.eventually(formula)
+    return f.always(formula) if conjunct.class_ in (Class.SAFETY, Class.LIVENESS) else formula

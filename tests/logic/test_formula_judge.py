@@ -1,0 +1,66 @@
+"""The reader of formulas understands what grammars/ltl.lark does, and nothing else."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lark.exceptions import UnexpectedInput
+from ltl_judge import judge
+
+from sysmlc.logic.contract import BooleanDomain, IntegerDomain
+from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
+
+TRUTHS = ("p", "q", "r'", "true", "false")
+SIGNS = ("&", "&&", "|", "||", "->", "<->", "!", "(", ")", "G", "F", "X", "[]", "<>", "U", "W", "V")
+NUMBERS = ("n=1", "n<m + 2", "n' != -1", "m*2 >= n - 1", "{n==3}", "n mod 2=0", "=", "+", "n")
+DOMAINS = {name: BooleanDomain() for name in "pqr"} | {n: IntegerDomain(0, 9) for n in "nm"}
+
+MEANING = ("is not Boolean", "is not a number", "be compared", "neither a variable")
+"""What the grammar does not know: kinds of values, and which names there are."""
+
+
+@given(st.lists(st.sampled_from((*TRUTHS, *TRUTHS, *SIGNS, *NUMBERS)), min_size=1, max_size=9))
+@settings(max_examples=1500, deadline=None)
+def test_the_reader_and_the_grammar_agree(words):
+    text = " ".join(words)
+    try:
+        expected = judge(text)
+    except UnexpectedInput:
+        with pytest.raises(FormulaError):
+            parse_formula(text, DOMAINS)
+        return
+    try:
+        assert parse_formula(text, DOMAINS) == expected
+    except FormulaError as error:
+        assert any(reason in str(error) for reason in MEANING), str(error)  # noqa: PT017
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "reason"),
+    [
+        ("p &", (1, 4), "the end is not expected here"),
+        ("p ->\n  (q &\n   nn=1)", (3, 4), "'nn' is neither a variable nor a literal"),
+        ("p & n", (1, 5), "'n' is not Boolean"),
+        ("p & (q | r", (1, 11), "')' is expected, not the end"),
+        ("n=p", (1, 2), "'n' and 'p' cannot be compared"),
+        ("p q", (1, 3), "'q' is not expected here"),
+        ("p + 1 = n", (1, 1), "'p' is not a number"),
+        ("!" * 300 + "p", (1, 201), "it is nested more than 200 deep"),
+        ("n = " + "9" * 40, (1, 5), "a number has at most 18 digits"),
+    ],
+)
+def test_every_fault_has_its_place(text, place, reason):
+    with pytest.raises(FormulaError) as caught:
+        parse_formula(text, DOMAINS)
+    assert (line_and_column(text, caught.value.at), str(caught.value)) == (place, reason)
+
+
+def test_a_variable_may_be_called_like_an_operator():
+    domains = {"X": IntegerDomain(0, 3), "U": BooleanDomain(), "p": BooleanDomain()}
+    assert str(parse_formula("X = 3 -> X X=1 & U", domains)) == str(
+        parse_formula("(X=3) -> ((X (X=1)) & (U))", domains)
+    )
+
+
+def test_long_chains_are_read_in_one_go():
+    text = " & ".join(["(p | q)"] * 5_000)
+    assert parse_formula(text, DOMAINS) == parse_formula("p | q", DOMAINS)
