@@ -41,6 +41,12 @@ _BACKENDS = {
         "sysml",
         "aml",
         "sysmlx",
+        "gr1c",
+        "slugs",
+        "tlsf",
+        "smv",
+        "chase",
+        "spot",
     )
 }
 _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})

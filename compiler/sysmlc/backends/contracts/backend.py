@@ -1,14 +1,13 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
-from collections.abc import Iterator
-
 from sysmlc.backends.base import EmitOptions
-from sysmlc.logic.formats.document_text import text
 from sysmlc.backends.contracts.explain import explain
-from sysmlc.logic.formats.spin_text import TooLargeError, spin
+from sysmlc.backends.contracts.trace import trace as trace_of
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
-from sysmlc.ir import Edge, Graph, Kind
+from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract
+from sysmlc.logic.formats.document_text import text
+from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.naming import file_names
 from sysmlc.output import Output
 from sysmlc.values import dataclass
@@ -50,7 +49,7 @@ class ContractsBackend:
         names = file_names(contract.component for contract in contracts)
         for contract in contracts:
             path = f"contracts/{names[contract.component]}"
-            trace = tuple(_trace(graph, contract))
+            trace = tuple(trace_of(graph, contract))
             output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, self.name)
             _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
             _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
@@ -87,18 +86,3 @@ def _add_page(
     except TemplateError as error:
         fault = f"{type(error).__name__}: {error}"
         sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)
-
-
-def _trace(graph: Graph, contract: Contract) -> Iterator[str]:
-    """Ids of the behaviour with all its parts, of what its variables stand for, and of the
-    constraints on its owner: an error in any of them may be missing from the contract."""
-    behaviour = graph[contract.origin]
-    yield from (element.id for element in graph.subtree(behaviour))
-    owner = graph.owner(behaviour)
-    if owner is not None:
-        around = [*graph.owned(owner), *graph.sources(owner, Edge.REFERENCES)]
-        yield from (one.id for one in around if one.kind is Kind.CONSTRAINT)
-    yield from (variable.origin for variable in contract.variables if variable.origin in graph)
-    for conjunct in (*contract.assumptions, *contract.guarantees):
-        if conjunct.origin in graph:
-            yield conjunct.origin
