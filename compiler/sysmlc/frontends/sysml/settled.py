@@ -10,7 +10,8 @@ _JUDGED = """
 """
 """Names, specialisation, types and relations are judged by the checks of the language itself, by
 its own rules. Requirements, ports and flows need no short name, type or payload there, an action
-without steps is complete, and a usage has the parameters that it does not repeat."""
+without steps is complete, and a usage has the parameters that it does not repeat: SM248 and SM249
+tell the arguments and parameters that are too many. Types of a redefinition are all of them."""
 _POSSIBLE = "SM412 SM413 SM414 SM415 SM421"
 """Valid SysML v2 of which a contract holds less: names and types of expressions are resolved by
 the language, values need not be finite, a state with substates needs no entry transition."""

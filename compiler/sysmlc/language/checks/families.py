@@ -21,6 +21,7 @@ from sysmlc.language.checks import (
     metadata,
     multiplicity,
     owned,
+    passing,
     references,
     single,
     steps,
@@ -56,6 +57,7 @@ _CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
     *expressions.CHECKS,
     *duplicates.CHECKS,
     *binding.CHECKS,
+    *passing.CHECKS,
 )
 _RELATED: tuple[tuple[frozenset[str], Check], ...] = (
     *conformance.BY_RELATION,

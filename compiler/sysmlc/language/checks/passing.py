@@ -1,0 +1,101 @@
+"""What is called or performed is given no more than it takes (KerML 8.4.4.1, SysML 8.4.12)."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.language.checks.found import Found, name_of
+from sysmlc.language.checks.values import arguments
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.positions import gather, own
+from sysmlc.language.names.results import named
+from sysmlc.language.tree import Node
+
+
+def _warning(
+    code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str
+) -> Rule:
+    return rule(code, name, Severity.WARNING, phrase, why=why, help=help, wrong=wrong, right=right)
+
+
+TOO_MANY = _warning(
+    "SM248",
+    "extra-argument",
+    "'{called}' takes {takes}, and {given} values are given",
+    "Arguments by position are for the parameters in their order (KerML 1.0, 8.4.4.9.4): those "
+    "that are left over go nowhere.",
+    "leave the argument out, or give the definition another parameter",
+    "calc def Half { in x; return y; }\npart gate { attribute a = Half(3, 4); }\n",
+    "calc def Half { in x; return y; }\npart gate { attribute a = Half(3); }\n",
+)
+NO_PARAMETER = _warning(
+    "SM249",
+    "extra-parameter",
+    "'{name}' of '{step}' is no parameter of '{called}'",
+    "A step may have parameters that its definition has not (KerML 1.0, 8.4.4.7), but what is "
+    "given to them goes nowhere, and what they give comes from nowhere.",
+    "give it the name of the parameter that is meant, or declare it in the definition",
+    "action def Move { in speed; }\n"
+    "part belt { action move : Move { in speed = 1; in way = 2; } }\n",
+    "action def Move { in speed; in way; }\n"
+    "part belt { action move : Move { in speed = 1; in way = 2; } }\n",
+)
+
+_TYPES = frozenset({"FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition"})
+_STEPS = kinds_of("ActionUsage") - kinds_of("CaseUsage") - kinds_of("TransitionUsage")
+_CALLED = kinds_of("Behavior") | kinds_of("Step")
+_IN = frozenset({"in", "inout"})
+_ROLES = ("subject", "parameter")
+"""How a feature is an input: the subject of a requirement or case is one too."""
+
+
+def check_arguments(model: Model, node: Node) -> Iterator[Found]:
+    """Report an invocation with more arguments by position than what it calls has inputs."""
+    given = arguments(node)
+    called = named(node, model.lookup)
+    if called is None or called.kind not in _CALLED:
+        return
+    takes = [one for role in _ROLES for one in gather(called, role, model.lookup)]
+    inputs = [one for one in takes if _direction(one) in _IN]
+    if len(given) > len(inputs):
+        said = {0: "no value", 1: "one value"}.get(len(inputs), f"{len(inputs)} values")
+        facts = {"called": name_of(model, called), "takes": said, "given": str(len(given))}
+        yield Found(TOO_MANY, given[len(inputs)].start, facts)
+
+
+def check_parameters(model: Model, node: Node) -> Iterator[Found]:
+    """Report parameters of a step that are none of what it performs, where that has some."""
+    given = own(node, "parameter")
+    called = _called(node) if given else None
+    if called is None:
+        return
+    wanted = gather(called, "parameter", model.lookup)
+    for place, one in enumerate(given):
+        is_said = any(r.kind == "Redefinition" and not r.implied for r in one.relations)
+        namesakes = [other for other in wanted if model.name(other) == model.name(one)]
+        meant = [*wanted[place : place + 1], *namesakes]
+        if wanted and not (is_said or any(_may_be(one, other) for other in meant)):
+            step, name = name_of(model, node), name_of(model, one)
+            facts = {"name": name, "step": step, "called": name_of(model, called)}
+            yield Found(NO_PARAMETER, one.name_start, facts)
+
+
+def _called(step: Node) -> Node | None:
+    """The only behaviour that the text says the step is one of."""
+    found = [r.reference.target for r in step.relations if r.kind in _TYPES and not r.implied]
+    behaviours = [one for one in found if one is not None and one.kind in _CALLED]
+    return behaviours[0] if len(behaviours) == 1 else None
+
+
+def _may_be(parameter: Node, other: Node) -> bool:
+    return _direction(other) in (_direction(parameter), "inout")
+
+
+def _direction(parameter: Node) -> str:
+    return str(parameter.facts.get("direction", "in"))
+
+
+CHECKS = (
+    (frozenset({"InvocationExpression"}), check_arguments),
+    (_STEPS, check_parameters),
+)
