@@ -20,7 +20,8 @@ def withheld_artefacts(
     by_id, by_file = _indexed(found for found in diagnostics if found.is_error)
     if not by_id and not by_file:
         return {}
-    found = {a.path: _reasons(a, graph, by_id, by_file) for a in artefacts}
+    clean: set[str] = set()
+    found = {a.path: _reasons(a, graph, by_id, by_file, clean) for a in artefacts}
     return {path: reasons for path, reasons in found.items() if reasons}
 
 
@@ -36,25 +37,29 @@ def _indexed(errors: Iterable[Diagnostic]) -> tuple[_Errors, _Errors]:
 
 
 def _reasons(
-    artefact: Artefact, graph: Graph, by_id: _Errors, by_file: _Errors
+    artefact: Artefact, graph: Graph, by_id: _Errors, by_file: _Errors, clean: set[str]
 ) -> tuple[Diagnostic, ...]:
+    """The errors that concern an artefact; of ``clean`` ids it is known that none does."""
     reasons: dict[Diagnostic, None] = {}
-    for id in _closure(artefact.trace, graph):
+    reached = _closure(artefact.trace, graph, clean)
+    for id in reached:
         reasons |= dict.fromkeys(by_id.get(id, ()))
         element = graph.get(id)
         if element is not None:
             reasons |= dict.fromkeys(by_file.get(element.source, ()))
+    if not reasons:
+        clean.update(reached)
     return tuple(reasons)
 
 
-def _closure(trace: Iterable[str], graph: Graph) -> list[str]:
-    """The traced ids with their owners and origins."""
+def _closure(trace: Iterable[str], graph: Graph, clean: set[str]) -> list[str]:
+    """The traced ids with their owners and origins, without those that are clean."""
     reached: dict[str, None] = {}
     waiting = list(trace)
     while waiting:
         id = waiting.pop()
         element = graph.get(id)
-        if id in reached:
+        if id in reached or id in clean:
             continue
         reached[id] = None
         if element is not None:
