@@ -74,6 +74,9 @@ def _retype(site: Site, own: Type) -> None:
 
 def instance(context: Context, site: Site) -> str:
     """Id of the Instance that holds the values of an internal element."""
+    if site.parent is not None and site.parent.instance and not site.instance:
+        _add_instance(context, site)
+        return site.instance
     waiting = []
     one: Site | None = site
     while one is not None and not one.instance and one.parent is not None:

@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Iterator
+from itertools import compress
 
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.paths import plain
@@ -57,6 +58,8 @@ class Identifiers:
     def without(self, document: Document, tag: str) -> list[int]:
         """Rows of a file with this tag that have no ID."""
         tags = document.tags
+        if all(compress(document.ids, map(tag.__eq__, tags))):
+            return []
         return [row for row, id in enumerate(document.ids) if not id and tags[row] == tag]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:

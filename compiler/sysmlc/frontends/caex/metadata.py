@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from html import escape
+from itertools import compress
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
@@ -41,8 +42,7 @@ def lower(context: Context, document: Document) -> None:
 
 def _holders(document: Document) -> list[int]:
     """Rows that something is said about: few of a large file."""
-    tags, parents = document.tags, document.parents
-    rows = {parents[row] for row, tag in enumerate(tags) if tag in _SAID}
+    rows = set(compress(document.parents, map(_SAID.__contains__, document.tags)))
     if document.has_changes:
         rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
     rows.update(document.texts["Description"], document.texts["Version"])

@@ -47,26 +47,27 @@ class Site:
         self.is_known = False
         self.is_mirror = False
         self.interface_ids: list[tuple[AttrValue, ...]] = []
-        self._sort()
+        self._sort(document.tags, document.ends)
 
-    def _sort(self) -> None:
+    def _sort(self, tags: list[str], ends: list[int]) -> None:
         """One look at the rows below it for all who ask for them."""
-        tags, ends = self.document.tags, self.document.ends
         self.inner: list[int] = []
         self.roles: list[int] = []
         self.members: list[int] = []
-        row, end = self.row + 1, ends[self.row]
+        row, end, add = self.row + 1, ends[self.row], self.members.append
         while row < end:
-            tag = tags[row]
-            if tag == "InternalElement":
+            tag, after = tags[row], ends[row]
+            if tag == "Attribute" or tag == "ExternalInterface":
+                add(row)
+            elif tag == "InternalElement":
                 self.inner.append(row)
             elif tag in ROLE_REFERENCES:
                 self.roles.append(row)
-                if ends[row] > row + 1:
-                    self.members.append(row)
+                if after > row + 1:
+                    add(row)
             elif tag != "InternalLink":
-                self.members.append(row)
-            row = ends[row]
+                add(row)
+            row = after
 
     @property
     def node(self) -> Node:

@@ -89,7 +89,7 @@ class Sites:
 
     def _shows(self, site: Site) -> bool:
         """Whether the element is a facet or a group: it is no part, and shows others."""
-        kind = groups.kind_of(self._context, site) if site.roles else None
+        kind = groups.kind_of(self._context, site)
         if kind is None:
             return False
         groups.lower(self._context, site, kind)
@@ -113,12 +113,12 @@ class Sites:
         while waiting:
             site = waiting.pop()
             if site.inner and not site.is_mirror:
-                placed = (self._place(row, site) for row in site.inner)
-                waiting.extend(reversed([one for one in placed if one is not None]))
+                placed = [self._place(row, site) for row in site.inner]
+                waiting += [one for one in reversed(placed) if one is not None]
 
     def _place(self, row: int, parent: Site) -> Site | None:
         site = self._site(parent.document, row, parent)
-        if self._shows(site):
+        if site.roles and self._shows(site):
             return None
         site.declared = self._declared(site)
         known = None if site.is_mirror else self._known(site, parent)
@@ -134,24 +134,27 @@ class Sites:
         if not path:
             return None
         context, document = self._context, site.document
-        site.is_mirror = mirrors.is_reference(context, path)
-        if site.is_mirror:
-            return None
         found = context.known(path, _SYSTEM_UNIT, document)
-        return found or context.type(path, Family.SYSTEM_UNIT, document, site.node)
+        if found is not None:
+            return found
+        site.is_mirror = mirrors.is_reference(context, path)
+        return None if site.is_mirror else context.type(path, _SYSTEM_UNIT, document, site.node)
 
     def _known(self, site: Site, parent: Site) -> Member | None:
         """The part of the class above that the element stands for, where it is an instance."""
+        declared = parent.declared
+        if declared is None:
+            return None
         is_class = parent.own is not None and parent.row == parent.own.row
         if parent.parent is None and is_class and not parent.instance:
             return None
-        return parent.declared.find("InternalElement", site.name) if parent.declared else None
+        return declared.find("InternalElement", site.name)
 
     def _match(self, site: Site, known: Member) -> None:
         site.is_known = True
         site.part = known.id
-        type = known.type
-        if type is not None and not _specialises(site.declared, type):
+        type, stated = known.type, site.declared
+        if type is not None and type is not stated and not _specialises(stated, type):
             site.declared = type
         site.document.verdicts[site.row] = _MAPPED
         if site.root.instance:
