@@ -22,18 +22,18 @@ _RESOURCES = ("grammars", "metamodels", "templates")
 
 @dataclass(frozen=True, slots=True)
 class Dependencies:
-    """All that an outcome depends on; ``inputs`` are name, digest and front end of each one."""
+    """All that an outcome depends on; ``inputs`` are name, digest and front end of each one.
 
-    others: tuple[str, ...]
+    ``others`` is a digest of everything else.
+    """
+
+    others: str
     inputs: tuple[tuple[str, str, str], ...]
 
     def key(self, wordings: Mapping[str, str] = EMPTY) -> str:
         """Digest of it all, by file with what its text says instead of its bytes."""
         said = [(name, wordings.get(name, digest), by) for name, digest, by in self.inputs]
-        hashed = sha256()
-        for part in (*self.others, *map(repr, said)):
-            hashed.update(f"{len(part)}:{part}".encode("utf-8", "surrogatepass"))
-        return hashed.hexdigest()
+        return _digest([self.others, *map(repr, said)])
 
 
 def depends_on(
@@ -45,8 +45,12 @@ def depends_on(
     ``has_files`` the outcome holds the findings only.
     """
     inputs = [(r.source.name, r.source.sha256, r.frontend.name) for r in opened.reading.recognised]
-    others = tuple(_others(opened, request, wanted, has_files))
-    return Dependencies(others, tuple(inputs))
+    return Dependencies(_digest(_others(opened, request, wanted, has_files)), tuple(inputs))
+
+
+def _digest(parts: Iterable[str]) -> str:
+    text = "".join([f"{len(part)}:{part}" for part in parts])
+    return sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _others(

@@ -3,7 +3,7 @@
 import json
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, fields
+from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -48,24 +48,25 @@ def _unpacked(data: bytes) -> Any:  # noqa: ANN401 - JSON
 def _form(outcome: Outcome) -> dict[str, object]:
     withheld = [error for file in outcome.withheld for error in file.because]
     found = [finding.diagnostic for finding in outcome.findings]
+    rules = {one.rule.code: one.rule for one in (*found, *withheld)}
     return {
-        "inputs": [asdict(file) for file in outcome.inputs],
-        "rules": {one.rule.code: asdict(one.rule) for one in (*found, *withheld)},
+        "inputs": [_shallow(file) for file in outcome.inputs],
+        "rules": {code: _shallow(rule) for code, rule in rules.items()},
         "findings": [_finding(finding) for finding in outcome.findings],
-        "files": [asdict(file) for file in outcome.files],
+        "files": [_shallow(file) for file in outcome.files],
         "withheld": [[w.path, [_diagnostic(e) for e in w.because]] for w in outcome.withheld],
         "complete": outcome.is_complete,
     }
 
 
-_FIELDS = {
+_FIELDS: dict[type[object], tuple[str, ...]] = {
     made: tuple(field.name for field in fields(made))
-    for made in (Finding, Diagnostic, Subject, Place)
+    for made in (Finding, Diagnostic, Subject, Place, Rule, InputFile, OutputFile)
 }
 
 
-def _shallow(value: Finding | Diagnostic | Subject | Place) -> dict[str, object]:
-    """The fields of a value; ``asdict`` would copy the rule anew for each of many findings."""
+def _shallow(value: object) -> dict[str, object]:
+    """The fields of a value of one of those types; ``asdict`` would copy what is in them."""
     return {name: getattr(value, name) for name in _FIELDS[type(value)]}
 
 
