@@ -22,6 +22,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Const, Formula, Op, Var, compare
 from sysmlc.synthesis import Manager, make_game, solve
+from sysmlc.synthesis.derived import without_derived
+from sysmlc.synthesis.shift import shifted
+from sysmlc.synthesis.solve import solve_arena
 
 DOMAINS = (
     BooleanDomain(),
@@ -56,6 +59,63 @@ def contract(seed: int) -> Contract:
         *conjuncts(die, Class.LIVENESS, 3, variables, []),
     ]
     return Contract(f"g{seed}", "", tuple(variables), tuple(assumptions), tuple(guarantees))
+
+
+def plant(seed: int) -> Contract:
+    """A random contract with a plant, an input that follows from others, and a command.
+
+    Some have a second command, an initial value, or something that spoils the structure.
+    """
+    die = random.Random(seed)
+    a, p = Variable("a", Owner.ENVIRONMENT, BooleanDomain()), numbered("p", Owner.ENVIRONMENT)
+    d = Variable("d", Owner.ENVIRONMENT, BooleanDomain())
+    x, y = variable(die, "x", Owner.SYSTEM), variable(die, "y", Owner.SYSTEM)
+    variables = [a, p, d, x, *([y] if die.random() < 0.4 else [])]
+    inputs, outputs = [a, p], variables[3:]
+    known = {one.name: one.domain for one in variables}
+    meaning = truth(die, [Var("a"), Var("p")], known, 1)
+    assumptions = [
+        Conjunct(f.iff(Var("d"), meaning), Class.INIT, ""),
+        Conjunct(f.primed(f.iff(Var("d"), meaning)), Class.SAFETY, ""),
+        *obedient(die, p, [a, p, *outputs]),
+        *conjuncts(die, Class.SAFETY, 1, variables, [a]),
+        *conjuncts(die, Class.LIVENESS, 1, variables[:3], []),
+        *(conjuncts(die, Class.SAFETY, 1, variables, inputs) if die.random() < 0.2 else ()),
+    ]
+    guarantees = [
+        *conjuncts(die, Class.INIT, 1, variables, []),
+        *(after for one in conjuncts(die, Class.INIT, 2, variables, []) for after in [later(one)]),
+        *conjuncts(die, Class.SAFETY, 1, variables[:3], []),
+        *conjuncts(die, Class.LIVENESS, 2, variables[:3], []),
+        *(conjuncts(die, Class.SAFETY, 1, variables, variables) if die.random() < 0.3 else ()),
+    ]
+    return Contract(f"p{seed}", "", tuple(variables), tuple(assumptions), tuple(guarantees))
+
+
+def numbered(name: str, owner: Owner) -> Variable:
+    return Variable(name, owner, IntegerDomain(0, 2))
+
+
+def later(conjunct: Conjunct) -> Conjunct:
+    """The same about the next step, always."""
+    return Conjunct(f.primed(conjunct.formula), Class.SAFETY, "")
+
+
+def obedient(die: random.Random, moved: Variable, about: list[Variable]):
+    """A next value for some conditions, for the first one that holds; mostly for all states."""
+    known = {one.name: one.domain for one in about}
+    pool = [Var(one.name) for one in about]
+    left: Formula = f.TRUE
+    for _ in range(die.randint(1, 4)):
+        case = truth(die, pool, known, 1)
+        yield Conjunct(f.implies(f.both(left, case), step(die, moved)), Class.SAFETY, "")
+        left = f.both(left, f.negate(case))
+    if die.random() < 0.9:
+        yield Conjunct(f.implies(left, step(die, moved)), Class.SAFETY, "")
+
+
+def step(die: random.Random, moved: Variable) -> Formula:
+    return f.eq(Var(moved.name, True), Const(die.choice(domains.values(moved.domain))))
 
 
 def variable(die: random.Random, name: str, owner: Owner) -> Variable:
@@ -113,7 +173,22 @@ def disagreement(seed: int, engine: str = "") -> str:
     return "" if solution.is_realizable == verdict else f"game {seed}: realizable is {verdict}"
 
 
+def encoded_disagreement(made: Contract, engine: str = "") -> str:
+    """What is said of the encoded game when the verdict is not the one of the listed states."""
+    arena = encoded(made, engine)
+    verdict = Explicit(made).is_realizable()
+    found = [solve_arena(arena, is_complete).is_realizable for is_complete in (True, False)]
+    return "" if found == [verdict] * 2 else f"{made.component}: realizable is {verdict}"
+
+
+def encoded(made: Contract, engine: str = ""):
+    return shifted(without_derived(make_game(made, Manager(engine))))
+
+
 if __name__ == "__main__":
-    wrong = [text for seed in range(int(sys.argv[1])) if (text := disagreement(seed))]
+    seeds = range(int(sys.argv[1]))
+    wrong = [text for seed in seeds if (text := disagreement(seed))]
+    wrong += [text for seed in seeds if (text := encoded_disagreement(contract(seed)))]
+    wrong += [text for seed in seeds if (text := encoded_disagreement(plant(seed)))]
     print(*wrong, f"{sys.argv[1]} games, {len(wrong)} disagreements", sep="\n")
     sys.exit(bool(wrong))

@@ -6,9 +6,11 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import rules
+from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
-from sysmlc.synthesis.solve import Solution, solve
+from sysmlc.synthesis.shift import shifted
+from sysmlc.synthesis.solve import Solution, solve_arena
 from sysmlc.values import dataclass
 
 Place = Callable[[str], Subject]
@@ -81,7 +83,9 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
     manager = Manager(options.engine, options.limits, progress)
     try:
         game = make_game(contract, manager)
-        solution = solve(game, is_complete=False)
+        with manager.guard():
+            arena = shifted(without_derived(game))
+        solution = solve_arena(arena, is_complete=False)
     except OutsideGr1Error as problem:
         _report_outside(contract, problem, place, sink)
         return Verdict(contract.component, None)

@@ -4,7 +4,8 @@ In every step the environment gives its variables first, then the system answers
 system is obliged by its guarantees until an assumption is broken (docs/synthesis.md).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import field
 
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula, variables
@@ -53,26 +54,35 @@ class Game:
     """Liveness assumptions, over inputs and outputs."""
     goals: tuple[Part, ...]
     """Liveness guarantees, over inputs and outputs."""
+    definitions: Mapping[str, Mapping[str, Node]] = field(default_factory=dict)
+    """Variables that are no longer played, with the diagram of each of their bits over others."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
         """Bits of the environment."""
-        return self.symbols.owned(Owner.ENVIRONMENT)
+        return self.symbols.all_bits(self.names(Owner.ENVIRONMENT))
 
     @property
     def outputs(self) -> tuple[str, ...]:
         """Bits of the system."""
-        return self.symbols.owned(Owner.SYSTEM)
+        return self.symbols.all_bits(self.names(Owner.SYSTEM))
 
     @property
     def next_inputs(self) -> tuple[str, ...]:
         """Bits of the environment in the next step."""
-        return self.symbols.owned(Owner.ENVIRONMENT, primed=True)
+        return self.symbols.all_bits(self.names(Owner.ENVIRONMENT), primed=True)
 
     @property
     def next_outputs(self) -> tuple[str, ...]:
         """Bits of the system in the next step."""
-        return self.symbols.owned(Owner.SYSTEM, primed=True)
+        return self.symbols.all_bits(self.names(Owner.SYSTEM), primed=True)
+
+    def names(self, owner: Owner) -> tuple[str, ...]:
+        """The variables that one side plays."""
+        variables = self.symbols.variables.values()
+        return tuple(
+            one.name for one in variables if one.owner is owner and one.name not in self.definitions
+        )
 
 
 def make_game(contract: Contract, manager: Manager) -> Game:

@@ -1,13 +1,12 @@
 """Steps over relations in parts: conjunction and quantification, each bit as early as it can go.
 
-``Product`` is the general one (``exist bits: start & all parts``); ``Steps`` has the predecessors
-of a game that fixpoints need, ``successors`` its next states.
+``Product`` is the general one (``exist bits: start & all parts``), ``successors`` the one that
+leads to next states; the predecessors of a game are in ``arena``.
 """
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import field
 
-from sysmlc.synthesis.game import Game, Part
+from sysmlc.synthesis.game import Game
 from sysmlc.synthesis.manager import Manager, Node
 from sysmlc.values import dataclass
 
@@ -114,42 +113,7 @@ def _dying(one: _Cluster, rest: Sequence[_Cluster]) -> int:
     return len(one.support - others)
 
 
-@dataclass(slots=True)
-class Steps:
-    """What can be reached and forced in one step of a game."""
-
-    game: Game
-    count: int = 0
-    """Predecessors computed so far."""
-    _answers: Product = field(init=False)
-    _moves: Product = field(init=False)
-
-    def __post_init__(self) -> None:
-        game, nodes = self.game, _nodes
-        self._answers = Product(game.manager, nodes(game.guarantees), game.next_outputs)
-        self._moves = Product(game.manager, nodes(game.assumptions), game.next_inputs)
-
-    def controllable(self, target: Node) -> Node:
-        """Where the system can answer every next input so that the target holds then.
-
-        Where the environment has no next input, that is so.
-        """
-        return ~self._not_answered(self.game.symbols.prime(target))
-
-    def escapable(self, target: Node) -> Node:
-        """Where some next input leaves the system no answer outside of the target."""
-        return self._not_answered(~self.game.symbols.prime(target))
-
-    def _not_answered(self, target: Node) -> Node:
-        self.count += 1
-        return self._moves(~self._answers(target))
-
-
-def _nodes(parts: Iterable[Part]) -> list[Node]:
-    return [part.node for part in parts]
-
-
 def successors(game: Game) -> Product:
     """Product that takes states to their possible next ones, primed (see ``Symbols.unprime``)."""
-    parts = _nodes((*game.assumptions, *game.guarantees))
+    parts = [part.node for part in (*game.assumptions, *game.guarantees)]
     return Product(game.manager, parts, (*game.inputs, *game.outputs))

@@ -6,12 +6,12 @@ again, the middle (least) ones the layers on the way to one goal, the inner (gre
 in which the system may stay since an assumption does not recur.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import field
 from itertools import cycle
 
-from sysmlc.synthesis.game import Game, Part
-from sysmlc.synthesis.image import Product, Steps
+from sysmlc.synthesis.arena import Arena, Steps, plain
+from sysmlc.synthesis.game import Game
 from sysmlc.synthesis.manager import Node
 from sysmlc.values import dataclass
 
@@ -35,7 +35,7 @@ class Layer:
 class Solution:
     """The outcome of a game."""
 
-    game: Game
+    arena: Arena
     is_realizable: bool
     winning: Node
     """States from which the system wins; with ``is_complete`` false those that may still be."""
@@ -50,55 +50,53 @@ class Solution:
 
 
 def solve(game: Game, is_complete: bool = True) -> Solution:
-    """Decide a game; without ``is_complete`` stop as soon as it is lost.
+    """Decide a game as it is written; without ``is_complete`` stop as soon as it is lost.
 
     Raises LimitError when a limit of the manager is reached.
     """
-    with game.manager.guard():
-        return _Solver(game).run(is_complete)
+    return solve_arena(plain(game), is_complete)
 
 
-def is_won(game: Game, winning: Node) -> bool:
-    """Whether every initial input has an initial output in these states."""
-    manager = game.manager
-    answer = Product(manager, _nodes(game.init_guarantees), game.outputs)
-    lost = Product(manager, _nodes(game.init_assumptions), game.inputs)
-    return lost(~answer(winning)) == manager.false
+def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
+    """Decide what was made of a game; winning states and layers are those of the arena.
+
+    Raises LimitError when a limit of the manager is reached.
+    """
+    with arena.manager.guard():
+        return _Solver(arena).run(is_complete)
 
 
 @dataclass(slots=True)
 class _Solver:
-    game: Game
+    arena: Arena
     _steps: Steps = field(init=False)
     _goals: tuple[Node, ...] = field(init=False)
-    _fairness: tuple[Node, ...] = field(init=False)
     _layers: list[tuple[Layer, ...]] = field(init=False)
     _rounds: int = 0
 
     def __post_init__(self) -> None:
-        self._steps = Steps(self.game)
-        self._goals = tuple(_nodes(self.game.goals)) or (self.game.manager.true,)
-        self._fairness = tuple(_nodes(self.game.fairness))
+        self._steps = Steps(self.arena)
+        self._goals = self.arena.goals or (self.arena.manager.true,)
         self._layers = [() for _ in self._goals]
 
     def run(self, is_complete: bool) -> Solution:
         """Take the goals in turn until none of them makes the winning states fewer."""
-        winning, settled = self.game.manager.true, 0
+        winning, settled = self.arena.states, 0
         for goal in cycle(range(len(self._goals))):
             found = self._attracted(goal, winning)
             settled = settled + 1 if found == winning else 0
             winning = found
             if settled == len(self._goals):
                 break
-            if not is_complete and not is_won(self.game, winning):
+            if not is_complete and not self._steps.is_won(winning):
                 return self._solution(winning, False, False)
-        return self._solution(winning, is_won(self.game, winning), True)
+        return self._solution(winning, self._steps.is_won(winning), True)
 
     def _attracted(self, goal: int, winning: Node) -> Node:
         """Those of the winning states from which the goal can be reached, again and again."""
         self._rounds += 1
         target = self._goals[goal] & self._steps.controllable(winning) & winning
-        reached, layers = self.game.manager.false, list[Layer]()
+        reached, layers = self.arena.manager.false, list[Layer]()
         while reached != winning:
             layer = self._layer(target, reached, winning, _at(self._layers[goal], len(layers)))
             if layer.states == reached:
@@ -112,10 +110,10 @@ class _Solver:
     def _layer(self, target: Node, reached: Node, winning: Node, before: Layer | None) -> Layer:
         """The next layer; ``before`` is the one at its place when there were more states."""
         start = target | (self._steps.controllable(reached) & winning)
-        bounds = before.waiting if before else (winning,) * len(self._fairness)
+        bounds = before.waiting if before else (winning,) * len(self.arena.fairness)
         waiting = tuple(
             self._waiting(start, ~fair, bound & winning)
-            for fair, bound in zip(self._fairness, bounds, strict=True)
+            for fair, bound in zip(self.arena.fairness, bounds, strict=True)
         )
         states = start
         for one in waiting:
@@ -132,11 +130,11 @@ class _Solver:
             found = fewer
 
     def _say(self, goal: int, layers: int) -> None:
-        self.game.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
+        self.arena.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
 
     def _solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
         return Solution(
-            self.game,
+            self.arena,
             is_realizable,
             winning,
             is_complete,
@@ -149,7 +147,3 @@ class _Solver:
 def _at(layers: Sequence[Layer], place: int) -> Layer | None:
     """The layer at a place, or the last one: later ones would have been the same."""
     return layers[min(place, len(layers) - 1)] if layers else None
-
-
-def _nodes(parts: Iterable[Part]) -> list[Node]:
-    return [part.node for part in parts]

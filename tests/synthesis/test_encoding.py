@@ -1,0 +1,110 @@
+"""Encodings of a game: what leaves it, and that the verdict stays."""
+
+import pytest
+import small_games
+from contracts_in_lines import contract
+
+from sysmlc.logic.contract import Owner
+from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis.derived import without_derived
+from sysmlc.synthesis.shift import shifted
+
+SUITE = 200
+ROBOT = """
+    env pos: 0..2
+    env target: 0..2
+    env left: bool
+    env right: bool
+    sys command: stay back ahead
+    assume at first left <-> pos!=0
+    assume at first right <-> pos!=2
+    assume always left' <-> pos'!=0
+    assume always pos'=0 -> right'
+    assume always pos'=1 -> right'
+    assume always pos'=2 -> !right'
+    assume always command=back -> pos' = pos - 1
+    assume always command=ahead -> pos' = pos + 1
+    assume always command=stay -> pos'=pos
+    assume always pos!=target -> target'=target
+    promise always command'=back -> left'
+    promise always command'=ahead -> right'
+    promise recurs pos=target
+"""
+
+
+@pytest.mark.parametrize("start", range(0, SUITE, 50))
+@pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
+def test_the_verdict_is_that_of_listed_states(kind, start):
+    found = [small_games.encoded_disagreement(kind(seed)) for seed in range(start, start + 50)]
+    assert [text for text in found if text] == []
+
+
+def test_without_cudd_the_verdict_is_the_same():
+    plants = [small_games.plant(seed) for seed in range(20)]
+    found = [small_games.encoded_disagreement(one, "autoref") for one in plants]
+    assert [text for text in found if text] == []
+
+
+def test_random_plants_are_encoded():
+    arenas = [small_games.encoded(small_games.plant(seed)) for seed in range(40)]
+    assert sum(moved(arena, "p") for arena in arenas) > 20
+    assert sum(not moves(arena, "d") for arena in arenas) > 10
+
+
+def moves(arena, name: str) -> bool:
+    """Whether somebody gives the variable its next value."""
+    return any(f"{name}.0'" in turn.bits for turn in arena.turns)
+
+
+def moved(arena, name: str) -> bool:
+    """Whether it is the system that gives the variable its next value."""
+    return any(f"{name}.0'" in turn.bits for turn in arena.turns if turn.owner is Owner.SYSTEM)
+
+
+def test_inputs_that_follow_from_others_leave_the_game():
+    game = without_derived(make_game(contract(ROBOT), Manager()))
+    assert game.names(Owner.ENVIRONMENT) == ("pos", "target")
+    left = game.definitions["left"]["left.0"]
+    assert all((game.symbols.encode({"pos": pos}) <= left) == (pos != 0) for pos in range(3))
+
+
+def test_the_command_is_the_chosen_step():
+    arena = shifted(without_derived(make_game(contract(ROBOT), Manager())))
+    assert [(turn.owner.value, turn.bits) for turn in arena.turns] == [
+        ("sys", ("pos.0'", "pos.1'")),
+        ("env", ("target.0'", "target.1'")),
+        ("sys", ()),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("promise always command!=stay -> command'=stay", "it is remembered"),
+        ("promise always pos=target -> command'=stay", "the state before binds it"),
+        ("promise recurs command=stay", "it has to recur"),
+        ("assume recurs command!=stay", "the environment answers to it for ever"),
+    ],
+)
+def test_a_command_stays_in_the_state_when(line, why):
+    arena = shifted(make_game(contract(f"{ROBOT}\n{line}"), Manager()))
+    assert len(arena.turns) == 2, why
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("left' <-> pos'!=0", "left' -> pos'!=0"),
+        ("at first left <-> pos!=0", "at first left -> pos!=0"),
+        ("always left' <-> pos'!=0", "always left' <-> pos!=0"),
+    ],
+)
+def test_an_input_with_a_choice_stays(old, new):
+    text = ROBOT.replace(f"assume {old}", f"assume {new}").replace(old, new)
+    assert "left" in without_derived(make_game(contract(text), Manager())).names(Owner.ENVIRONMENT)
+
+
+def test_a_plant_with_a_choice_stays_with_the_environment():
+    text = ROBOT.replace("command=stay -> pos'=pos", "command=stay -> pos'<=pos")
+    arena = shifted(without_derived(make_game(contract(text), Manager())))
+    assert not moved(arena, "pos")
