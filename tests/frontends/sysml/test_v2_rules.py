@@ -29,36 +29,88 @@ def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
     assert reading.totals() == {"elements": 5, "mapped": 2, "unsupported": 3}
 
 
-def test_sm481_what_a_usage_is_beyond_a_feature_is_told():
+def test_what_a_usage_is_beyond_a_feature_is_kept():
     portions = "snapshot start; timeslice shift; individual part one : Cell;"
     variants = "variation part tool { variant part gripper; }"
     found = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
-    assert [one.message for one in found.sink] == [
-        "a snapshot is read as a plain feature (1 in the unit)",
-        "a timeslice is read as a plain feature (1 in the unit)",
-        "a variation is read as a plain feature (1 in the unit)",
-        "a variant is read as a plain feature (1 in the unit)",
-    ]
+    assert found.codes() == []
+    assert found.named("P::Cell").attrs["individual"] is True
+    assert found.named("P::Cell::start").attrs["portion"] == "snapshot"
+    assert found.named("P::Cell::shift").attrs["portion"] == "timeslice"
+    assert found.named("P::Cell::tool", "Property").attrs["variation"] is True
+    assert found.named("P::Cell::tool::gripper").attrs["variant"] is True
+    assert found.named("P::Cell::x").attrs.keys().isdisjoint({"variation", "variant", "portion"})
 
 
 @pytest.mark.parametrize(
     ("member", "what"),
     [
         ("constraint safe { attribute x; 1 == 2 }", "a constraint"),
-        ("satisfy R { attribute x; }", "a satisfaction"),
+        ("satisfy q { attribute x; }", "a satisfaction"),
         ("flow from a.x to b.x { attribute x; }", "a flow"),
         ("allocate a to b { attribute x; }", "an allocation"),
         ("enum def E { enum e { attribute x; } }", "an enumerated value"),
         ("action stop { terminate { attribute x; } }", "a terminate action"),
+        ("exhibit state s : S { attribute x; } state def S;", "an exhibit state usage"),
+        ("state t { state f; transition first f then f { attribute x; } }", "a transition usage"),
+        (
+            "action go { action k { out e; in g; } flow k.e to k.g { attribute x; } }",
+            "a flow usage",
+        ),
+        ("action go { in h; out i; bind h = i { attribute x; } }", "a binding connector as usage"),
+        ("action go { action k { in h { attribute x; } } }", "a reference usage"),
+        ("port h { out : M { attribute x; } }", "a reference usage"),
+        ("verification v { objective { verify q { attribute x; } } }", "a verification"),
     ],
 )
 def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, what):
-    around = "requirement def R; part def M { attribute x; } part a : M; part b : M;"
+    around = "requirement q; part def M { attribute x; } part a : M; part b : M;"
     found = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
     told = [one.message for one in found if one.rule.code == "SM481"]
     assert told == [f"a member of {what} is read as nothing (1 in the unit)"]
     nearly = member.replace("attribute x;", "doc /* x */")
     assert "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").codes()
+
+
+@pytest.mark.parametrize(
+    ("member", "said"),
+    [
+        ("action a { action b[4]; }", "the multiplicity of an action usage is read as nothing"),
+        ("state a { state b[4]; }", "the multiplicity of a state usage is read as nothing"),
+        ("action a { variation action b; }", "a variation is read as a plain usage"),
+        (
+            "use case u { include use case v : V { doc /* x */ } } use case def V;",
+            "a member of an include use case usage is read as nothing",
+        ),
+        (
+            "part def D { @M { y { :>> z = 3; } } }",
+            "a member of a reference usage is read as nothing",
+        ),
+    ],
+)
+def test_sm481_nothing_vanishes_without_a_word(member, said):
+    around = "metadata def M { attribute y { attribute z; } }"
+    found = read(f"package P {{ {around} {member} }}").sink
+    told = [one.message for one in found if one.rule.code == "SM481"]
+    assert told == [f"{said} (1 in the unit)"]
+    plain = member.replace("[4]", "").replace("variation ", "").replace("{ :>> z = 3; }", "= 3;")
+    plain = plain.replace("doc /* x */", "")
+    assert "SM481" not in read(f"package P {{ {around} {plain} }}").codes()
+
+
+def test_documentation_of_aliases_imports_and_nested_allocations_is_kept():
+    reading = read("""
+package P {
+    part def A; part a : A { part c; } part b { part d; }
+    alias z for A { doc /* one */ }
+    public import Q::* { doc /* two */ }
+    allocate a to b { allocate a.c to b.d; }
+}
+package Q;""")
+    bodies = [one.attrs["body"] for one in reading.graph if one.kind == "Comment"]
+    assert sorted(bodies) == ["one", "two"]
+    assert len([one for one in reading.graph if one.role == "allocate"]) == 2
+    assert reading.codes() == []
 
 
 @pytest.mark.parametrize(

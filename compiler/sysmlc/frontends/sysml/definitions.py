@@ -77,11 +77,20 @@ def of_aml(node: Node) -> dict[str, AttrValue]:
     return {_AML[key]: value for key, value in known.items() if key in _AML}
 
 
+def variant(node: Node) -> dict[str, AttrValue]:
+    """Whether there is a choice, whether it is a choice, and which portion of a life it is."""
+    return {
+        "variation": bool(node.facts.get("isVariation")),
+        "variant": node.membership == "VariantMembership",
+        "portion": str(node.facts.get("portionKind") or ""),
+    }
+
+
 def flags(node: Node) -> dict[str, AttrValue]:
     """What the prefixes of a declaration say."""
     return {
         "abstract": bool(node.facts.get("isAbstract")),
-        "variation": bool(node.facts.get("isVariation")),
+        **variant(node),
         "individual": bool(node.facts.get("isIndividual")),
         **visibility(node),
         **outside(node),

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
-from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, visibility
+from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, variant, visibility
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
@@ -21,27 +21,14 @@ def property_(low: "Lowering", node: Node, owner: Element) -> Element:
     """A feature of a classifier; one with members of its own is typed by a class made for it."""
     kind, subkind = marked(node, Kind.PROPERTY)
     made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **_attrs(node, owner))
-    more = _more_than_feature(node)
-    if more:
-        low.approximated(node, more, "a plain feature")
     describe(low, node, made)
     _aggregate(node, made)
     return made
 
 
-def _more_than_feature(node: Node) -> str:
-    """What a usage is beyond a feature, for which the graph has no words; empty for most."""
-    if node.facts.get("isVariation"):
-        return "a variation"
-    if node.membership == "VariantMembership":
-        return "a variant"
-    portion = node.facts.get("portionKind")
-    return f"a {portion}" if portion else ""
-
-
 def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
     direction = node.facts.get("direction")
-    found: dict[str, AttrValue] = visibility(node) | outside(node) | of_aml(node)
+    found: dict[str, AttrValue] = visibility(node) | outside(node) | of_aml(node) | variant(node)
     if direction is not None and owner.role != "constraint block":
         found["direction"] = direction
         found["role"] = "flow property" if owner.role in _OWN_ROLES else ""
@@ -196,7 +183,9 @@ def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> Non
     )
     for one in nodes.references(flowing, "FeatureTyping"):
         low.refer(Edge.TYPED_BY, made, one)
-    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+    low.seen.add(id(flowing))
+    for held in (node, flowing):
+        low.lower_all((one for one in held.members if nodes.is_text(one)), made)
 
 
 def part_port(low: "Lowering", node: Node, owner: Element, role: str) -> Element:

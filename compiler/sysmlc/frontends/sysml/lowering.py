@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.sysml import nodes, stubs
 from sysmlc.frontends.sysml.places import Places
-from sysmlc.frontends.sysml.rules import APPROXIMATED, NOT_IN_GRAPH
+from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.identity import derived_id
@@ -48,6 +48,8 @@ class Lowering:
         self._controls: dict[tuple[str, str], Element] = {}
         self.repeated: set[int] = set()
         """Identities of redefinitions that say nothing that is an element."""
+        self.seen: set[int] = set()
+        """Identities of nodes that were lowered, or that an element was made for."""
         self.skipped: set[int] = set()
         """Identities of members that are read with something else."""
         self._handlers = handlers
@@ -62,7 +64,8 @@ class Lowering:
         self._taken: dict[str, int] = {}
         self._named: dict[str, str] = {}
         self._places = Places()
-        self._told: dict[tuple[str, str], list[Node]] = {}
+        self.told: dict[tuple[str, str], list[Node]] = {}
+        """What is not wholly in the graph, by what is said and how it is read."""
 
     # -- nodes ---------------------------------------------------------------------------------
 
@@ -70,6 +73,7 @@ class Lowering:
         """Lower a member of what ``owner`` is in the graph."""
         if id(node) in self.skipped:
             return
+        self.seen.add(id(node))
         handler = self._handlers.get(node.kind)
         if handler is None:
             self.unsupported(node)
@@ -108,7 +112,7 @@ class Lowering:
         self._last.append(work)
 
     def finish(self) -> None:
-        """Do all that waits for elements, in order, and tell what is not wholly in the graph."""
+        """Do all that waits for elements, in order."""
         self.work()
         while self._last:
             self._last.pop(0)()
@@ -116,7 +120,6 @@ class Lowering:
         for source, general in self._generals if self._waits else ():
             self.graph.disconnect(Edge.SPECIALIZES, source, general)
             self.graph.refer(Pending(Edge.SPECIALIZES, source.id, general.id))
-        self._report()
 
     def work(self) -> None:
         """Do what waits for elements, and what that brings with it."""
@@ -147,6 +150,7 @@ class Lowering:
             key: value for key, value in attrs.items() if value not in (None, "", False)
         }
         above = None if owner is None else owner.id
+        self.seen.add(id(node))
         self._brought.setdefault(id(node), set()).add(id_)
         return self.graph.add(Element(id_, kind, name, above, ordinal, source, given))
 
@@ -265,7 +269,7 @@ class Lowering:
     def _lost(self, edge: Edge, source: Element, target: Node) -> None:
         self._unresolved(source, edge)
         name = nodes.path_of(target)
-        subject, type_ = self.graph.subject(source), words(target.kind)
+        subject, type_ = self.graph.subject(source), nodes.words(target.kind)
         self.sink.report(NOT_IN_GRAPH, subject, edge=str(edge.value), name=name, type=type_)
 
     # -- steps ---------------------------------------------------------------------------------
@@ -318,7 +322,7 @@ class Lowering:
     def unsupported(self, node: Node) -> None:
         """The node, with what it owns, has no place in the graph."""
         self.verdicts[id(node)] = Verdict.UNSUPPORTED
-        self._told.setdefault(("unsupported", node.kind), []).append(node)
+        self.told.setdefault(("unsupported", node.kind), []).append(node)
 
     def external(self, node: Node) -> None:
         """The node belongs to a library and not to the model."""
@@ -331,7 +335,7 @@ class Lowering:
     def approximated(self, node: Node, said: str, written: str) -> None:
         """Part of the node's meaning is lost: ``said`` is kept as ``written``."""
         self.verdicts[id(node)] = Verdict.APPROXIMATED
-        self._told.setdefault((said, written), []).append(node)
+        self.told.setdefault((said, written), []).append(node)
 
     def subject(self, node: Node) -> Subject:
         """The node as the subject of a diagnostic."""
@@ -340,19 +344,3 @@ class Lowering:
             return Subject(nodes.path_of(node))
         place = Place(document.path, self._places.ordinal(document, node))
         return Subject(nodes.path_of(node), place=place)
-
-    def _report(self) -> None:
-        from sysmlc.frontends.sysml.rules import UNSUPPORTED
-
-        for (said, written), found in self._told.items():
-            if said == "unsupported":
-                subject, type_ = self.subject(found[0]), words(written)
-                self.sink.report(UNSUPPORTED, subject, type=type_, count=len(found))
-            else:
-                count, subject = len(found), self.subject(found[0])
-                self.sink.report(APPROXIMATED, subject, count=count, said=said, written=written)
-
-
-def words(metaclass: str) -> str:
-    """A metaclass in words: ``FlowDefinition`` is ``flow definition``."""
-    return "".join(f" {c.lower()}" if c.isupper() else c for c in metaclass).strip()

@@ -118,3 +118,8 @@ def path_of(node: Node) -> str:
         names.append(name_of(above) or f"<{above.kind}>")
         above = above.owner
     return "::".join(reversed(names))
+
+
+def words(metaclass: str) -> str:
+    """A metaclass in words: ``FlowDefinition`` is ``flow definition``."""
+    return "".join(f" {c.lower()}" if c.isupper() else c for c in metaclass).strip()

@@ -135,7 +135,9 @@ def allocation(low: "Lowering", node: Node, owner: Element | None) -> None:
     attrs: dict[str, AttrValue] = {"role": "allocate", "subkind": "abstraction"}
     made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **attrs)
     low.later(lambda: _allocate(low, node, made))
-    annotations.texts(low, node, made, "an allocation")
+    inner = list(nodes.members(node, "AllocationUsage"))
+    annotations.texts(low, node, made, "an allocation", inner)
+    low.lower_all(inner, owner)
 
 
 def _allocate(low: "Lowering", node: Node, made: Element) -> None:
@@ -155,6 +157,7 @@ def import_(low: "Lowering", node: Node, owner: Element | None) -> None:
     made = low.add(node, Kind.IMPORT, "", owner, subkind=subkind)
     if node.visibility != "public":
         low.set(made, visibility=node.visibility or "private")
+    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.later(lambda: _imported(low, made, target))
 
 
@@ -171,4 +174,5 @@ def membership(low: "Lowering", node: Node, owner: Element | None) -> None:
         return
     name = node.name or node.short or ""
     made = low.add(node, Kind.ALIAS, name, owner, **visibility(node))
+    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.refer(Edge.REFERENCES, made, nodes.reference(node, "Membership"))

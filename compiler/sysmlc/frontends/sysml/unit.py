@@ -11,6 +11,7 @@ from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.libraries import SHIPPED
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
+from sysmlc.frontends.sysml.strays import tell
 from sysmlc.frontends.sysml.usage import accepted, flowing
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.language.tree import Document, Node
@@ -31,6 +32,7 @@ def lower(
             low.lower_all(document.root.members, None)
     low.last(lambda: _give_pins(low, documents))
     low.finish()
+    tell(low, documents)
     for document in documents:
         if not document.path.startswith(SHIPPED):
             _count(low, document, coverage)

@@ -30,7 +30,6 @@ def include(low: "Lowering", node: Node, owner: Element | None) -> None:
     kinds = ("ReferenceSubsetting", "FeatureTyping", "Subsetting")
     for found in nodes.references(node, *kinds)[:1]:
         low.refer(Edge.INCLUDES, owner, found)
-    low.skipped.update(id(one) for one in node.members)
 
 
 def _subject(low: "Lowering", node: Node, made: Element) -> None:
