@@ -9,6 +9,10 @@ from pathlib import Path
 from sysmlc.values import dataclass
 
 
+_MODE = 0o644
+"""Who may read and write a new file, as far as the user's mask lets them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Artefact:
     """One file that a back end makes.
@@ -93,7 +97,6 @@ def write(target: Path | str, data: bytes) -> None:
     try:
         try:
             _write_all(handle, data)
-            os.chmod(handle, 0o644)  # noqa: PTH101
         finally:
             os.close(handle)
         os.replace(temporary, target)  # noqa: PTH105 - a Path for each file costs as much again
@@ -114,7 +117,7 @@ def _opened(temporary: str, folder: str) -> int:
     """Handle of a new file. Most folders are there: to ask for each file costs time."""
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     try:
-        return os.open(temporary, flags, 0o600)
+        return os.open(temporary, flags, _MODE)
     except FileNotFoundError:
         Path(folder).mkdir(parents=True, exist_ok=True)
-        return os.open(temporary, flags, 0o600)
+        return os.open(temporary, flags, _MODE)

@@ -1,6 +1,7 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
 from collections.abc import Iterable
+from itertools import chain
 from json.encoder import encode_basestring
 
 from sysmlc.diagnostics import Place
@@ -19,14 +20,29 @@ def coverage_text(compilation: Compilation) -> str:
 
 
 def trace_text(compilation: Compilation) -> str:
-    """Which elements each file comes from, and where those stand in the inputs."""
+    """Which elements each file comes from, and where those stand in the inputs.
+
+    It is written as ``json_text`` would, without dicts between: there are thousands of elements.
+    """
     written = compilation.written()
-    ids = dict.fromkeys(id for artefact in written for id in artefact.trace)
-    outputs = [{"path": a.path, "elements": list(a.trace)} for a in written]
-    head = as_text({"schema": "sysmlc-trace/1", "outputs": outputs}).removesuffix("\n}\n")
-    elements = ",".join(_elements(compilation, ids))
-    end = "\n " if elements else ""
-    return f'{head},\n "elements": [{elements}{end}]\n}}\n'
+    traces = dict.fromkeys(artefact.trace for artefact in written)
+    ids = dict.fromkeys(chain.from_iterable(traces))
+    # Several files of one element often have one trace, and it can be long.
+    listed = {trace: _rows(map(encode_basestring, trace), "   ") for trace in traces}
+    outputs = (_output(one.path, listed[one.trace]) for one in written)
+    return (
+        f'{{\n "schema": "sysmlc-trace/1",\n "outputs": {_rows(outputs, " ")},\n'
+        f' "elements": {_rows(_elements(compilation, ids), " ")}\n}}\n'
+    )
+
+
+def _rows(items: Iterable[str], indent: str) -> str:
+    joined = f",\n{indent} ".join(items)
+    return f"[\n{indent} {joined}\n{indent}]" if joined else "[]"
+
+
+def _output(path: str, elements: str) -> str:
+    return f'{{\n   "path": {encode_basestring(path)},\n   "elements": {elements}\n  }}'
 
 
 def _elements(compilation: Compilation, ids: Iterable[str]) -> list[str]:
@@ -51,7 +67,7 @@ def _element(id: str, name: str, file: str, line: int, column: int) -> str:
         else "null"
     )
     return (
-        f'\n  {{\n   "id": {encode_basestring(id)},\n'
+        f'{{\n   "id": {encode_basestring(id)},\n'
         f'   "qualified_name": {encode_basestring(name)},\n   "source": {source}\n  }}'
     )
 
