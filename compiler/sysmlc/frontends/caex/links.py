@@ -40,6 +40,7 @@ class Links:
         self._edges: dict[Edge, tuple[list[Element], list[Element | None]]] = {
             edge: ([], []) for edge in (_END, _ROLE, _PATH)
         }
+        """Edges to come, by their ends."""
 
     def lower(self) -> None:
         """Add a connector for each link; those of classes first, as instances repeat them."""
@@ -81,9 +82,9 @@ class Links:
         if self._is_of_class(holder, ends):
             return
         known = self._context.special
-        meanings = {known.get(end.port, "") for end in ends}
-        if meanings == {special.PPR} or meanings == {special.ORDER}:
-            self._relation(document.node(row), document, holder, ends, meanings.pop())
+        meaning = known.get(ends[0].port, "")
+        if meaning in _RELATIONS and known.get(ends[1].port, "") == meaning:
+            self._relation(document.node(row), document, holder, ends, meaning)
         else:
             self._connector(row, document, holder, ends)
 
@@ -104,7 +105,7 @@ class Links:
     def _connector(self, row: int, document: Document, holder: Site, ends: list[End]) -> None:
         top = holder.root
         owner = top.instance or (top.own.id if top.own else None)
-        crosses = any(end.site.root is not top for end in ends)
+        crosses = ends[0].site.root is not top or ends[1].site.root is not top
         if crosses and owner is not None:
             owner = self._context.graph[owner].owner
         connector = self._context.add_at(_CONNECTOR, document, row, owner)
@@ -122,21 +123,20 @@ class Links:
     def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
         graph, above = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
+        (whole, halves), (players, roles), (led, steps) = self._edges.values()
         for side, (port, site) in zip(SIDES, ends, strict=True):
             id = f"{above}#{side}"
             made = graph.new(id, _CONNECTOR_END, "", above, ordinal, source)
             if made is None:
                 id = f"{id}~{ordinal}"
                 made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
-            self._tie(_END, connector, made)
-            self._tie(_ROLE, made, graph[port])
-            for step in self._steps_to(site)[0 if crosses else 1 :]:
-                self._tie(_PATH, made, step)
-
-    def _tie(self, edge: Edge, source: Element, target: Element | None) -> None:
-        sources, targets = self._edges[edge]
-        sources.append(source)
-        targets.append(target)
+            whole.append(connector)
+            halves.append(made)
+            players.append(made)
+            roles.append(graph[port])
+            way = self._steps_to(site)[0 if crosses else 1 :]
+            led += [made] * len(way)
+            steps += way
 
     def _steps_to(self, site: Site) -> list[Element | None]:
         """The Instance at the top (if any), and the parts that lead down to an element."""
@@ -188,6 +188,9 @@ class Links:
         for edge, id in zip((Edge.CLIENT, Edge.SUPPLIER), known, strict=False):
             self._context.graph.connect(edge, made.id, id)
 
+
+_RELATIONS = (special.PPR, special.ORDER)
+"""Meanings of interfaces whose links are no wires."""
 
 _DEPENDS = ("process", "resource", "product")
 """A process needs the resource that does it; both are there for a product."""

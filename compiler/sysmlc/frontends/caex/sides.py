@@ -31,11 +31,15 @@ class Sides:
     def __init__(self, context: Context, sites: Sites) -> None:
         self._context = context
         self._sites = sites
+        self._direct: dict[str, End] = {}
         self._named: dict[Node, dict[str, Node]] = {}
         self._below: dict[Node, dict[str, list[Node]]] = {}
 
     def direct(self, text: str) -> End | None:
         """The end that is named by the ID of an interface and nothing else, as in CAEX 3.0."""
+        known = self._direct.get(text)
+        if known is not None:
+            return known
         place = self._context.ids.spot(text)
         if place is None:
             return None
@@ -47,7 +51,10 @@ class Sides:
         while tags[above] == "ExternalInterface":
             above = document.parents[above]
         site = self._sites.rows(document).get(above)
-        return None if site is None else End(port, site)
+        if site is None:
+            return None
+        found = self._direct[text] = End(port, site)
+        return found
 
     def end(self, node: Node, document: Document, side: str) -> End | Problem | None:
         """The end that a side means; None when it is open. What leads nowhere is reported."""
