@@ -122,7 +122,10 @@ def test_a_word_that_nothing_is_called_cannot_be_ignored(plants, word, found):
     assert f"Error: Invalid value for '--ignore': {found}" in done.stderr
 
 
-@pytest.mark.parametrize("word", ["id", "default", "default_value", "unit", "typed-by", "Comment"])
+WORDS = ["id", "default", "default_value", "unit", "typed-by", "Comment", "id,source,trace"]
+
+
+@pytest.mark.parametrize("word", WORDS)
 def test_what_a_model_may_say_can_be_ignored(plants, word):
     assert plants.sysmlc("diff", "old.aml", "old.aml", "--ignore", word).exit_code == 0
 
