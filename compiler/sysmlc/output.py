@@ -8,7 +8,6 @@ from pathlib import Path
 
 from sysmlc.values import dataclass
 
-
 _MODE = 0o644
 """Who may read and write a new file, as far as the user's mask lets them."""
 
