@@ -171,3 +171,52 @@ def test_kerml_classifiers_and_features_have_bases_too():
         "Subsetting Performances::Performance::enclosedPerformances"
     ]
     assert implied(model, "Wire") == ["Subclassification Links::BinaryLink"]
+
+
+def test_features_specialise_what_all_of_their_types_have():
+    model = resolved(
+        """
+        class Gate;
+        struct Plant;
+        datatype Speed;
+        feature gate : Gate;
+        feature plant : Plant;
+        feature speed : Speed;
+        class Yard { composite feature gate : Gate; composite feature plant : Plant; }
+        struct Site {
+            composite feature gate : Gate;
+            composite feature plant : Plant;
+            portion feature morning : Site;
+            feature other : Plant;
+            feature same : Plant subsets other;
+        }
+        feature site : Site { composite feature hall : Plant; }
+        """,
+        language="kerml",
+    )
+    said = {
+        "gate": ["Occurrences::occurrences"],
+        "plant": ["Objects::objects"],
+        "speed": ["Base::dataValues"],
+        "Yard::gate": ["Occurrences::Occurrence::suboccurrences"],
+        "Yard::plant": ["Objects::objects", "Occurrences::Occurrence::suboccurrences"],
+        "Site::gate": ["Occurrences::Occurrence::suboccurrences"],
+        "Site::plant": ["Objects::Object::subobjects"],
+        "Site::morning": ["Objects::objects", "Occurrences::Occurrence::portions"],
+        "Site::other": ["Objects::objects"],
+        "Site::same": [],
+        "site::hall": ["Objects::Object::subobjects"],
+    }
+    made = {name: sorted(implied(model, name)) for name in said}
+    assert made == {name: [f"Subsetting {one}" for one in ones] for name, ones in said.items()}
+
+
+def test_references_specialise_what_all_of_their_types_have():
+    model = resolved("""
+        part def Gate;
+        attribute def Speed;
+        part def Plant { ref gate : Gate; ref speed : Speed; in start : Speed; }
+    """)
+    assert implied(model, "Plant::gate") == ["Subsetting Objects::objects"]
+    assert implied(model, "Plant::speed") == ["Subsetting Base::dataValues"]
+    assert implied(model, "Plant::start") == ["Subsetting Base::dataValues"]

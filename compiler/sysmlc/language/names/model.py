@@ -6,30 +6,18 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library
-from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import implied, semantic
+from sysmlc.language.names.adding import add_implied
 from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
 from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP
 from sysmlc.language.names.unresolved import report, subject
-from sysmlc.language.tree import Document, Node, Reference, Relation
-
-_EXPRESSIONS = (
-    kinds_of("InstantiationExpression")
-    | kinds_of("LiteralExpression")
-    | {
-        "FeatureReferenceExpression",
-        "MetadataAccessExpression",
-        "NullExpression",
-    }
-)
-
+from sysmlc.language.tree import Document, Node, Relation
 
 _DEPTH = 20_000
 """Names lead to names that lead to names: how deep Python may call itself meanwhile."""
-_DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
 class Model:
@@ -48,7 +36,6 @@ class Model:
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
         self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
-        self._names: dict[Node, tuple[str, ...]] = {}
         self._supers: dict[Node, dict[Node, None]] = {}
 
     def _roots(self, name: str) -> Hits:
@@ -187,9 +174,16 @@ class Model:
             self._implied[node] = known
         return known
 
-    def needed_generals(self, node: Node) -> list[Node]:
-        """What ``node`` implicitly specialises and no other general of it does already."""
-        possible = (*self.lookup.by_position(node), *self.implied_generals(node))
+    def candidates(self, node: Node) -> list[tuple[str, Node]]:
+        """Kind of relation and target of all that ``node`` may implicitly specialise."""
+        return self._candidates(node)
+
+    def needed_generals(self, node: Node, also: tuple[Node, ...] = ()) -> list[Node]:
+        """What ``node`` implicitly specialises and no other general of it does already.
+
+        ``also`` are candidates beside those that names are looked up in.
+        """
+        possible = (*self.lookup.by_position(node), *also, *self.implied_generals(node))
         key = possible, tuple(self.lookup.generals(node))
         known = self._needed.get(key)
         if known is None:
@@ -220,39 +214,6 @@ class Model:
             self._supers[node] = known
         return known
 
-    def add_implied(self) -> None:
-        """Give the types and features of the documents what the text does not say of them.
-
-        Expressions and multiplicities, which no one declares, are left as they are.
-        """
-        for document in self.documents:
-            for node in document.root.walk():
-                if node.kind in _DECLARED:
-                    try:
-                        node.relations += self._implied_relations(node)
-                    except RecursionError:
-                        self.lookup.abandon()
-
-    def _implied_relations(self, node: Node) -> list[Relation]:
-        needed = dict.fromkeys(self.needed_generals(node))
-        redefined = self.lookup.by_position(node)
-        made = [self._relation("Redefinition", one) for one in redefined]
-        for one in redefined:
-            needed.pop(one, None)
-        for kind, target in self._candidates(node):
-            if target in needed:
-                del needed[target]
-                made.append(self._relation(kind, target))
-        return made
-
-    def _relation(self, kind: str, target: Node) -> Relation:
-        names = self._names.get(target)
-        if names is None:
-            names = self._names[target] = tuple(self.qualified_name(target).split("::"))
-        reference = Reference((names,))
-        reference.targets = [target]
-        return Relation(kind, reference, implied=True)
-
 
 def _accepted(node: Node) -> list[tuple[str, Node]]:
     """The payload of a transition is what its trigger accepts (SysML 8.3.17.9)."""
@@ -276,7 +237,7 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     try:
         for document in model.documents:
             _resolve(document, model, sink)
-        model.add_implied()
+        add_implied(model)
         _report_cycles(model, sink)
         if library.is_core:
             _report_core(model, sink)

@@ -1,0 +1,60 @@
+"""Relations that the specification adds to what a text says (KerML 8.4, SysML 8.4)."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names import typed
+from sysmlc.language.names.contents import TYPES
+from sysmlc.language.tree import Node, Reference, Relation
+
+if TYPE_CHECKING:
+    from sysmlc.language.names.model import Model
+
+_EXPRESSIONS = (
+    kinds_of("InstantiationExpression")
+    | kinds_of("LiteralExpression")
+    | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
+)
+_DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
+
+
+def add_implied(model: "Model") -> None:
+    """Give the types and features of the documents what the text does not say of them.
+
+    Expressions and multiplicities, which no one declares, are left as they are.
+    """
+    names: dict[Node, tuple[str, ...]] = {}
+    for document in model.documents:
+        for node in document.root.walk():
+            if node.kind in _DECLARED:
+                try:
+                    made = _relations(model, node)
+                except RecursionError:
+                    model.lookup.abandon()
+                    continue
+                node.relations += [_relation(model, kind, one, names) for kind, one in made]
+
+
+def _relations(model: "Model", node: Node) -> list[tuple[str, Node]]:
+    """Kind and target of each relation that is needed beside the written ones."""
+    by_type = typed.needed(model, node)
+    needed = dict.fromkeys(model.needed_generals(node, by_type))
+    made = [("Redefinition", one) for one in model.lookup.by_position(node)]
+    for _, one in made:
+        needed.pop(one, None)
+    for kind, target in [*(("Subsetting", one) for one in by_type), *model.candidates(node)]:
+        if target in needed:
+            del needed[target]
+            made.append((kind, target))
+    return made
+
+
+def _relation(
+    model: "Model", kind: str, target: Node, names: dict[Node, tuple[str, ...]]
+) -> Relation:
+    name = names.get(target)
+    if name is None:
+        name = names[target] = tuple(model.qualified_name(target).split("::"))
+    reference = Reference((name,))
+    reference.targets = [target]
+    return Relation(kind, reference, implied=True)
