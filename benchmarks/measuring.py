@@ -77,6 +77,20 @@ class Report:
         self.is_good &= met
         self.line(name, f"{text}  budget {limit:g} {unit}: {'met' if met else 'MISSED'}")
 
+    def scaled(
+        self, name: str, text: str, value: float, limit: float, slower: float, unit: str
+    ) -> None:
+        """A line with a limit that holds where the budgets were set.
+
+        It counts times ``slower``, as the floor does here; whether it holds as it stands, too, is
+        told beside.
+        """
+        met, as_set = value <= limit * slower, value <= limit
+        self.is_good &= met
+        verdict = f"{'met' if met else 'MISSED'} ({'met' if as_set else 'missed'} as it stands)"
+        here = f"budget {limit:g}, by ratio {limit * slower:.3g} {unit}"
+        self.line(name, f"{text}  = {value / slower:.3g} where it was set  {here}: {verdict}")
+
     def calibration(self) -> None:
         """The line that tells how fast the machine is just now."""
         self.line("calibration loop", f"{min(calibration() for _ in range(5)):6.3f} s")

@@ -4,9 +4,9 @@
 
 All numbers of one run are of one machine in one state: what counts are the ratios to lxml, to
 expat and to pyecore, and the calibration loop. Every number is the least of several processes.
-With SYSMLC_CORPUS set four real models are measured too. Exit code 1 when a budget is missed:
-budgets are absolute. Beside each is told, for information, what it would be where the budgets
-were set, if this machine is slower by as much as expat alone is.
+With SYSMLC_CORPUS set four real models are measured too. Exit code 1 when a budget is missed.
+The budgets were set on a machine where expat alone, the floor, took 9.0 ms/MB: here they count
+times as much longer as expat takes in this run. Whether they hold as they stand is told beside.
 """
 
 import argparse
@@ -78,8 +78,8 @@ def slowness(report: Report, options: argparse.Namespace, folder: Path) -> float
     floor = measure("expat", path, options.rounds).total
     path.unlink()
     ratio = floor / FLOOR
-    text = f"{floor:6.1f} ms/MB, {FLOOR:g} where the budgets were set: {ratio:.2f} x as slow here"
-    report.line("expat alone, 10 MB", text)
+    text = f"{floor:6.1f} ms/MB, {FLOOR:g} where the budgets were set: {ratio:.2f} x as long here"
+    report.line("floor: expat alone, 10 MB", text)
     return ratio
 
 
@@ -101,9 +101,7 @@ def report_file(
     rounds = rounds_for(path, options.rounds)
     ours = measure("ours", path, rounds)
     name = f"{path.name} ({ours.megabytes:.1f} MB)"
-    report.budget(name, ours.text, ours.total, budget, "ms/MB")
-    scaled = f"{ours.total / slower:6.1f} ms/MB, scaled by expat alone; counts for no budget"
-    report.line("  where the budgets were set", scaled)
+    report.scaled(name, ours.text, ours.total, budget, slower, "ms/MB")
     if path.suffix != ".mdzip":
         for work in ("lxml", "expat"):
             other = measure(work, path, rounds)
@@ -139,7 +137,9 @@ def report_generated(
             report_pyecore(report, path, ours, options.metamodel)
         if dialect == "papyrus" and ours.megabytes < 2:
             seconds = all_outputs(path, options.rounds)
-            report.budget("  to all outputs", f"{seconds:6.2f} s", seconds, ALL_OUTPUTS, "s")
+            report.scaled(
+                "  to all outputs", f"{seconds:6.2f} s", seconds, ALL_OUTPUTS, slower, "s"
+            )
     for dialect, rows in totals.items():
         if len(rows) > 1:
             report.line(f"{dialect}: largest to smallest", f"{rows[-1] / rows[0]:6.2f} x per MB")
