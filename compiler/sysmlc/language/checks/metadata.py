@@ -1,6 +1,7 @@
 """Metadata says what its definition has, about what its definition is for (KerML 8.3.4.12)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from weakref import WeakKeyDictionary
 
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
@@ -32,6 +33,8 @@ OTHER_FEATURE = error(
 
 _METADATA = kinds_of("MetadataFeature")
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
+_ALLOWED: WeakKeyDictionary[Model, dict[tuple[Node, ...], list[str]]] = WeakKeyDictionary()
+"""What definitions of metadata are for, found once for all that is annotated with them."""
 
 
 def check_type(model: Model, node: Node) -> Iterator[Found]:
@@ -65,12 +68,20 @@ def _annotated(node: Node) -> list[Node]:
 
 def _allowed(model: Model, node: Node) -> list[str]:
     """Metaclasses that ``annotatedElement`` is redefined or subset to be; empty for any."""
+    kept = _ALLOWED.setdefault(model, {})
+    definitions = tuple(model.lookup.all_generals(node))
+    if definitions not in kept:
+        kept[definitions] = _allowed_in(model, model.supers(node)[1:])
+    return list(dict.fromkeys([*_allowed_in(model, [node]), *kept[definitions]]))
+
+
+def _allowed_in(model: Model, namespaces: Iterable[Node]) -> list[str]:
     base = model.find("Metaobjects::Metaobject::annotatedElement")
     if base is None:
         return []
     found: dict[str, None] = {}
-    for general in model.supers(node):
-        for member in general.members:
+    for namespace in namespaces:
+        for member in namespace.members:
             if member is not base and _names(member, base) and model.specializes(member, base):
                 found.update(dict.fromkeys(one.name for one in model.types(member) if one.name))
     return [one for one in found if one in ALL_GENERALS]

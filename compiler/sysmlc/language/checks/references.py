@@ -1,6 +1,6 @@
 """What usages may reference, redefine and specialise."""
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules, reference_rules
 from sysmlc.language.composition import is_composite
 from sysmlc.language.metaclasses import kinds_of
@@ -37,23 +37,20 @@ def _relation(
 ) -> None:
     if relation.kind not in _CHECKED:
         return
-    place = subject(document, node, relation.reference.start)
+
+    def report(rule: Rule, **facts: object) -> None:
+        sink.report(rule, subject(document, node, relation.reference.start), **facts)
+
     name = str(relation.reference)
     if relation.kind == "ReferenceSubsetting" and node.kind in _REFERENCED:
         kinds, words = _REFERENCED[node.kind]
         if target.kind in _USAGES and target.kind not in kinds:
-            found = kind_of(target)
-            sink.report(reference_rules.OTHER_KIND, place, name=name, found=found, wanted=words)
+            report(reference_rules.OTHER_KIND, name=name, found=kind_of(target), wanted=words)
     if relation.kind == "Redefinition" and _turns(model, node, target):
         owner = model.name(target.owner) if target.owner else ""
-        sink.report(reference_rules.OTHER_DIRECTION, place, name=name, owner=owner)
+        report(reference_rules.OTHER_DIRECTION, name=name, owner=owner)
     if node.facts.get("isVariation") and target.facts.get("isVariation"):
-        sink.report(
-            member_rules.VARIATION_OF_VARIATION,
-            place,
-            name=model.name(node) or node.kind,
-            owner="",
-        )
+        report(member_rules.VARIATION_OF_VARIATION, name=model.name(node) or node.kind, owner="")
 
 
 def _turns(model: Model, node: Node, target: Node) -> bool:

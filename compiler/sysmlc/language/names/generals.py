@@ -33,6 +33,7 @@ class Generals(ABC):
         self._pointed: set[Node] = set()
         self._generals: dict[Node, list[Node]] = {}
         self._silently: dict[Node, list[Node]] = {}
+        self._all_generals: dict[Node, list[Node]] = {}
         self._redefining: dict[Node, list[Node]] = {}
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
@@ -192,7 +193,13 @@ class Generals(ABC):
 
     def all_generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says and what it may implicitly."""
-        return [*self.generals(node), *self._silent_generals(node)]
+        known = self._all_generals.get(node)
+        if known is None:
+            before = self.cuts
+            known = [*self.generals(node), *self._silent_generals(node)]
+            if self.cuts == before:
+                self._all_generals[node] = known
+        return known
 
     def _silent_generals(self, node: Node) -> list[Node]:
         known = self._silently.get(node)
