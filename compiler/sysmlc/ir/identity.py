@@ -1,7 +1,7 @@
 """Ids for what a pass or a front end makes: computed from origin and role, never random."""
 
 import re
-from uuid import UUID, uuid5
+from hashlib import sha1
 
 _MADE_BY_TOOLS = re.compile(
     r"_[\w-]{22}|_\w+_\d+_\d+_\d+|EA(ID|PK)_[0-9A-F]{8}_\w+|eee_\d+_\d+_\d+", re.ASCII
@@ -11,7 +11,9 @@ _UNMISTAKABLE = 20
 about 41, Enterprise Architect 43."""
 ROOT = "eee_1045467100313_"
 """Start of the ids of MagicDraw's roots, the same in every project."""
-_NAMESPACE = UUID("6f1d7a54-3f0c-5d3a-9a52-0c2f6f2d7b11")
+_NAMESPACE = bytes.fromhex("6f1d7a543f0c5d3a9a520c2f6f2d7b11")
+_VARIANT = dict(zip("0123456789abcdef", "89ab" * 4, strict=True))
+"""Digit of a UUID in which two bits say that it is one of RFC 9562."""
 
 
 def is_unmistakable(id: str) -> bool:
@@ -25,5 +27,11 @@ def is_made_by_tools(id: str) -> bool:
 
 
 def derived_id(origin: str, role: str) -> str:
-    """Id of what plays ``role`` for the element ``origin``; the same on every machine."""
-    return str(uuid5(_NAMESPACE, f"{origin}\x1f{role}"))
+    """Id of what plays ``role`` for the element ``origin``; the same on every machine.
+
+    A UUID of version 5 (RFC 9562, 5.5), made here because ``uuid.uuid5`` takes three times as long.
+    """
+    name = f"{origin}\x1f{role}".encode()
+    found = sha1(_NAMESPACE + name, usedforsecurity=False).hexdigest()
+    version, variant = f"5{found[13:16]}", f"{_VARIANT[found[16]]}{found[17:20]}"
+    return f"{found[:8]}-{found[8:12]}-{version}-{variant}-{found[20:32]}"

@@ -1,9 +1,12 @@
 """Places of nodes in their files: bytes of a text, ordinals of an interchange file."""
 
+import re
 from bisect import bisect_left
 
 from sysmlc.language.places import mark
 from sysmlc.language.tree import Document, Node
+
+_WIDE = re.compile(r"[^\x00-\x7f]")
 
 
 class Places:
@@ -36,9 +39,8 @@ def _table(document: Document) -> tuple[list[int], list[int], int]:
     """Characters that take several bytes, the bytes more up to each, and those of a mark."""
     positions, extra, sum_ = [], [], 0
     if not document.text.isascii():
-        for number, char in enumerate(document.text):
-            if char > "\x7f":
-                sum_ += len(char.encode("utf-8", "replace")) - 1
-                positions.append(number)
-                extra.append(sum_)
+        for found in _WIDE.finditer(document.text):
+            sum_ += len(found[0].encode("utf-8", "replace")) - 1
+            positions.append(found.start())
+            extra.append(sum_)
     return positions, extra, mark(document)

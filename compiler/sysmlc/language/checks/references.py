@@ -38,8 +38,9 @@ def _relation(
     if relation.kind not in _CHECKED:
         return
 
-    def report(rule: Rule, **facts: object) -> None:
-        sink.report(rule, subject(document, node, relation.reference.start), **facts)
+    def report(rule: Rule, **facts: str) -> None:
+        place = subject(document, node, relation.reference.start)
+        sink.report(rule, place, notes=(), help="", **facts)
 
     name = str(relation.reference)
     if relation.kind == "ReferenceSubsetting" and node.kind in _REFERENCED:
