@@ -38,7 +38,7 @@ def _relation(
     if relation.kind not in _CHECKED:
         return
 
-    def report(rule: Rule, **facts: str) -> None:
+    def report(rule: Rule, **facts: str | None) -> None:
         place = subject(document, node, relation.reference.start)
         sink.report(rule, place, notes=(), help="", **facts)
 

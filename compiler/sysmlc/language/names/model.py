@@ -84,25 +84,18 @@ class Model:
 
     def types(self, node: Node) -> list[Node]:
         """The types of a feature: its own, else those of what it subsets and redefines."""
-        found = {
-            general: None
-            for one in self._features_above(node)
-            for general in self.lookup.all_generals(one)
-            if general.kind not in FEATURES
-        }
-        if len(found) < 2:
-            return list(found)
-        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
-
-    def _features_above(self, node: Node) -> list[Node]:
-        """``node`` and the features that it subsets and redefines, directly or not."""
+        found: dict[Node, None] = {}
         waiting, seen = [node], {node}
         for one in waiting:
             for general in self.lookup.all_generals(one):
-                if general.kind in FEATURES and general not in seen:
+                if general.kind not in FEATURES:
+                    found[general] = None
+                elif general not in seen:
                     seen.add(general)
                     waiting.append(general)
-        return waiting
+        if len(found) < 2:
+            return list(found)
+        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
 
     def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
         """Members of a namespace: own, inherited that nothing redefines, imported ones."""
