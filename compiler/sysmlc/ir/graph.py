@@ -1,12 +1,13 @@
 """The graph: elements, edges of each kind in both directions, and the only way to change them."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from typing import TypeVar, cast
 
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new
+from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_each_new, put_new
 from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
@@ -231,10 +232,14 @@ class Graph:
                 drawn += (source, target)
 
     def connect_each(
-        self, edge: Edge, sources: Iterable[Element | None], targets: Iterable[Element | None]
+        self, edge: Edge, sources: Sequence[Element | None], targets: Sequence[Element | None]
     ) -> None:
         """Add edges of one kind; those without source or target are not added."""
         out, drawn = self._out[edge], self._drawn.get(edge)
+        if drawn is not None and put_each_new(out, sources, targets):
+            ends = cast("Iterable[tuple[Element, Element]]", zip(sources, targets, strict=True))
+            drawn += chain.from_iterable(ends)
+            return
         for source, target in zip(sources, targets, strict=True):
             if source is None or target is None:
                 continue
@@ -311,8 +316,14 @@ class Graph:
         return self._elements[element if isinstance(element, str) else element.id]
 
     def _index_kinds(self) -> None:
+        add = {kind: elements.append for kind, elements in self._of_kind.items()}
         for element in self._fresh:
-            self._of_kind.setdefault(element.kind, []).append(element)
+            kind = element.kind
+            if kind in add:
+                add[kind](element)
+            else:
+                self._of_kind[kind] = [element]
+                add[kind] = self._of_kind[kind].append
         self._fresh.clear()
         for kind in self._stale:
             left = self._of_kind.get(kind, [])

@@ -1,5 +1,7 @@
 """Neighbours of elements by edges of one kind, compact: most elements have one, some thousands."""
 
+from collections.abc import Sequence
+
 from sysmlc.ir.element import Element
 
 Neighbours = Element | list[Element] | dict[Element, None]
@@ -45,6 +47,18 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
         known[neighbour] = None
     else:
         index[id] = [known, neighbour]
+
+
+def put_each_new(
+    index: Index, ones: Sequence[Element | None], neighbours: Sequence[Element | None]
+) -> bool:
+    """Add a neighbour to each of many that have none; False, and nothing added, when one has."""
+    pairs = zip(ones, neighbours, strict=True)
+    new = {one.id: other for one, other in pairs if one is not None and other is not None}
+    if len(new) < len(ones) or not index.keys().isdisjoint(new):
+        return False
+    index.update(new)
+    return True
 
 
 def drop(index: Index, id: str, neighbour: Element) -> bool:

@@ -32,10 +32,9 @@ class Identifiers:
         self._know(written)
 
     def _know(self, written: list[str]) -> None:
-        numbers = dict(zip(written, range(len(written)), strict=True))
-        without = written.count("")
-        numbers.pop("", None)
-        if len(numbers) < len(written) - without:
+        rows = compress(range(len(written)), written)
+        numbers = dict(zip(filter(None, written), rows, strict=True))
+        if len(numbers) < len(written) - written.count(""):
             numbers = {}
             for number, id in enumerate(written):
                 if id and numbers.setdefault(id, number) != number:
