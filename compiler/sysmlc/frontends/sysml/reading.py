@@ -56,10 +56,16 @@ def read(
     check(model, sink)
     settle(own, sink)
     graph.store(Model, [*graph.derived(Model), model])
-    shared = [one for one in ours if one.root.members[0].name in READ]
+    shared = [one for one in ours if one.root.members[0].name in READ and _is_named(one, models)]
     settle(shared, sink)
     lower([*own, *shared], model, graph, sink, coverage)
     _mark(graph, shared)
+
+
+def _is_named(library: Document, models: Sequence[Source]) -> bool:
+    """Whether a file speaks of the library; of an interchange file nothing tells before."""
+    name = str(library.root.members[0].name).encode()
+    return any(name in one.data for one in models)
 
 
 def _mark(graph: Graph, libraries: Sequence[Document]) -> None:
