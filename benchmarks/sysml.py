@@ -21,7 +21,9 @@ from measuring import Report
 
 _WORK = Path(__file__).with_name("sysml_work.py")
 _PEERS = ("tree-sitter", "toolkit")
-_OFFICIAL = ("sysml.library", "training", "examples")
+_OFFICIAL = ("omg-release/sysml.library", "omg-release/training", "omg-release/examples", "ice-lab")
+_LINKED = ("training", "examples", "ice-lab")
+"""Folders whose names are found among their files and in the installed library."""
 
 PARSE = 1000.0
 """Milliseconds of CPU time for each megabyte, from text to tree."""
@@ -42,7 +44,7 @@ OFFICIAL = 2.0
 """Seconds to check the 195 training and example files in one process."""
 
 EDITED = 0.3
-"""Seconds to compile the ICE laboratory again after an edit of one line."""
+"""Seconds to compile the ICE laboratory again after an edit of one line: a note, or a number."""
 
 _CELL = """\
     part def Cell{n} :> Machine {{
@@ -88,17 +90,24 @@ def generate(folder: Path, megabytes: float) -> None:
 def processes(report: Report, folder: Path, rounds: int) -> None:
     """The lines of whole processes; what is edited is compiled with a cache that is warm."""
     _, seconds = sysml_processes.text(folder, sysml_processes.ALONE, rounds)
-    report.budget("a file with no import", f"{seconds:6.3f} s", seconds, SMALL, "s")
+    _budget(report, "a file with no import", seconds, SMALL)
     first, seconds = sysml_processes.text(folder, sysml_processes.WITH_LIBRARY, rounds)
-    report.budget("with the library, first", f"{first:6.3f} s", first, FIRST, "s")
-    report.budget("with the library, indexed", f"{seconds:6.3f} s", seconds, LIBRARY, "s")
+    _budget(report, "with the library, first", first, FIRST)
+    _budget(report, "with the library, indexed", seconds, LIBRARY)
     corpus = os.environ.get("SYSMLC_CORPUS", "")
     if corpus:
-        first, seconds = sysml_processes.official(Path(corpus), folder, rounds)
+        first, noted, seconds = sysml_processes.official(Path(corpus), folder, rounds)
         report.line("all official files, first", f"{first:6.3f} s")
-        report.budget("all official files", f"{seconds:6.3f} s", seconds, OFFICIAL, "s")
-        _, seconds = sysml_processes.laboratory(Path(corpus), folder, rounds)
-        report.budget("ICE laboratory, edited", f"{seconds:6.3f} s", seconds, EDITED, "s")
+        report.line("all official files, a note edited", f"{noted:6.3f} s")
+        _budget(report, "all official files, a line edited", seconds, OFFICIAL)
+        first, noted, seconds = sysml_processes.laboratory(Path(corpus), folder, rounds)
+        report.line("ICE laboratory, first", f"{first:6.3f} s")
+        _budget(report, "ICE laboratory, a note edited", noted, EDITED)
+        _budget(report, "ICE laboratory, a number edited", seconds, EDITED)
+
+
+def _budget(report: Report, name: str, seconds: float, limit: float) -> None:
+    report.budget(name, f"{seconds:6.3f} s", seconds, limit, "s")
 
 
 def measure(report: Report, name: str, folder: Path, rounds: int, *, linked: bool) -> None:
@@ -133,13 +142,13 @@ def main() -> int:
         measure(report, "generated", folder, given.rounds, linked=True)
         processes(report, folder, given.rounds)
     for path in (*_official(), *given.folders):
-        measure(report, path.name, path, given.rounds, linked=path.name in _OFFICIAL[1:])
+        measure(report, path.name, path, given.rounds, linked=path.name in _LINKED)
     return 0 if report.is_good else 1
 
 
 def _official() -> list[Path]:
     corpus = os.environ.get("SYSMLC_CORPUS", "")
-    return [Path(corpus) / "sysml2" / "omg-release" / name for name in _OFFICIAL] if corpus else []
+    return [Path(corpus) / "sysml2" / name for name in _OFFICIAL] if corpus else []
 
 
 if __name__ == "__main__":
