@@ -205,6 +205,13 @@ def with_formula(body):
         ("G F event=start", "assumptions", Class.LIVENESS, "event=start"),
         ("event=none", "assumptions", Class.INIT, "event=none"),
         ("state=A U state=B", "guarantees", Class.OTHER, "state=A U state=B"),
+        (
+            "[](event=start -> <>(state=B))",
+            "guarantees",
+            Class.OTHER,
+            "G (event=start -> F state=B)",
+        ),
+        ("<>[](state=B)", "guarantees", Class.OTHER, "F G state=B"),
     ],
 )
 def test_formulas_of_the_model_are_conjuncts(body, side, class_, formula):
@@ -212,7 +219,54 @@ def test_formulas_of_the_model_are_conjuncts(body, side, class_, formula):
     conjunct = getattr(contract, side)[-1]
     assert (conjunct.class_, print_formula(conjunct.formula)) == (class_, formula)
     assert conjunct.origin == "f"
-    assert codes(sink) == (["SM503"] if class_ is Class.OTHER else [])
+    assert codes(sink) == (["SM503"] if formula.startswith("F G") else [])
+
+
+@pytest.mark.parametrize(
+    ("language", "body", "guarantees"),
+    [
+        (
+            "LTL",
+            "G (state=B -> O event=start)",
+            ["state=B -> event=start | since_1", "!since_1", "since_1' <-> event=start | since_1"],
+        ),
+        (
+            "English",
+            "Globally, it is always the case that if state=B holds then event=start previously "
+            "held.",
+            [
+                "!(state=B & !(event=start | since_1))",
+                "!since_1",
+                "since_1' <-> event=start | since_1",
+            ],
+        ),
+        (
+            "Pattern",
+            "state=B holds again and again",
+            ["!(!state=B | !state=B & since_1)", None, None],
+        ),
+    ],
+)
+def test_the_past_and_sentences_get_history_bits(language, body, guarantees):
+    text = with_formula(body).replace('language="LTL"', f'language="{language}"')
+    _, (contract,), sink = derived(text)
+    found = [print_formula(one.formula) for one in contract.guarantees if one.origin == "f"]
+    assert [a for a, b in zip(found, guarantees, strict=True) if b is not None and a != b] == []
+    assert contract.variables[-1].name == "since_1"
+    assert codes(sink) == []
+
+
+def test_prose_in_english_is_no_formula():
+    text = with_formula("After start the gate should close.").replace("LTL", "English")
+    _, (contract,), sink = derived(text)
+    assert codes(sink) == []
+    assert "f" not in {one.origin for one in contract.guarantees}
+
+
+def test_a_bad_formula_is_told_with_its_place():
+    _, _, sink = derived(with_formula("[](state=B ->\\n state=C)"))
+    (message,) = [one.message for one in sink if one.rule.code == "SM501"]
+    assert message.endswith("'C' is neither a variable nor a literal (line 2, column 8)")
 
 
 def test_what_a_requirement_demands_is_a_contract_that_the_behaviour_implements():

@@ -19,7 +19,7 @@ kind ask for the same again and again."""
 
 
 class Op(StrEnum):
-    """Operators: Boolean, comparison, arithmetic, temporal."""
+    """Operators: Boolean, comparison, arithmetic, temporal of the future and of the past."""
 
     NOT = "!"
     AND = "&"
@@ -43,6 +43,10 @@ class Op(StrEnum):
     UNTIL = "U"
     RELEASE = "R"
     WEAK_UNTIL = "W"
+    PREVIOUS = "Y"
+    ONCE = "O"
+    HISTORICALLY = "H"
+    SINCE = "S"
 
     # That of Enum is written in Python, and operators are keys of every table here.
     __hash__ = str.__hash__

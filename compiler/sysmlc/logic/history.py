@@ -23,6 +23,18 @@ class History:
         self.variables: list[Variable] = []
         self.conjuncts: list[Conjunct] = []
 
+    def copy(self) -> "History":
+        """A history that goes on from here, without a change of this one."""
+        made = History(self._taken)
+        made._bits = dict(self._bits)
+        made.variables, made.conjuncts = list(self.variables), list(self.conjuncts)
+        return made
+
+    def take(self, other: "History") -> None:
+        """Take over everything that a copy has found."""
+        self._taken, self._bits = other._taken, other._bits
+        self.variables, self.conjuncts = other.variables, other.conjuncts
+
     def previous(self, formula: Formula, origin: str = "") -> Formula:
         """The formula held one step ago; false in the first step."""
         return self._bit("was", formula, f.FALSE, False, origin)
@@ -40,6 +52,14 @@ class History:
         """The goal held at some step up to now, and ``stay`` at all steps after it."""
         bit = self._bit("since", stay, goal, False, origin)
         return f.either(goal, f.both(stay, bit))
+
+    def step(self, step: Formula, origin: str = "") -> Formula:
+        """The last step was one of which the formula, with primes, is true; at first false."""
+        key = (step, Var("step"), False)
+        if key not in self._bits:
+            self._bits[key] = Var(self._fresh("did"))
+            self.define(self._bits[key].name, step, False, origin)
+        return self._bits[key]
 
     def _bit(self, stem: str, stay: Formula, goal: Formula, start: bool, origin: str) -> Var:
         """The bit of ``was`` (of stay), ``always_was`` (of stay) or ``since`` (stay, goal)."""

@@ -9,13 +9,14 @@ _STRENGTH = {
     Op.IMPLIES: 2,
     Op.OR: 3,
     Op.AND: 4,
-    **dict.fromkeys((Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL), 5),
+    **dict.fromkeys((Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL, Op.SINCE), 5),
     **dict.fromkeys((Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY), 6),
+    **dict.fromkeys((Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY), 6),
     **dict.fromkeys((Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE), 7),
     **dict.fromkeys((Op.ADD, Op.SUB), 8),
     **dict.fromkeys((Op.MUL, Op.DIV, Op.MOD), 9),
 }
-_PREFIX = (Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY)
+_PREFIX = (Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY)
 _TIGHT = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 _FROM_THE_RIGHT = (Op.IMPLIES, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL)
 _FROM_THE_LEFT = (Op.IFF, Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD)

@@ -255,6 +255,7 @@ def _size(variables: set[Var], known: Mapping[str, Domain]) -> int:
 
 
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
+_TEMPORAL |= {Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE}
 _CONNECTIVES: dict[Op, Callable[..., Formula]] = {
     Op.AND: f.both,
     Op.OR: f.either,

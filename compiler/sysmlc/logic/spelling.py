@@ -13,8 +13,9 @@ STRENGTH = {
     Op.IMPLIES: 2,
     Op.OR: 3,
     Op.AND: 4,
-    **dict.fromkeys((Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL), 5),
+    **dict.fromkeys((Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL, Op.SINCE), 5),
     **dict.fromkeys((Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY), 6),
+    **dict.fromkeys((Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY), 6),
     **dict.fromkeys((Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE), 7),
     **dict.fromkeys((Op.ADD, Op.SUB), 8),
     **dict.fromkeys((Op.MUL, Op.DIV, Op.MOD), 9),
@@ -26,6 +27,7 @@ ORDERS = COMPARISONS - {Op.EQ, Op.NE}
 ARITHMETIC = frozenset([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD])
 TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
 _DIGITS = 18
+PAST = frozenset([Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE])
 TRUTHS = {"true": True, "false": False, "TRUE": True, "FALSE": False}
 
 
@@ -66,6 +68,7 @@ class Syntax:
 TEMPORAL_WORDS = {"G": Op.ALWAYS, "F": Op.EVENTUALLY, "X": Op.NEXT}
 TEMPORAL_SIGNS = {"[]": Op.ALWAYS, "<>": Op.EVENTUALLY}
 UNTIL_WORDS = {"U": Op.UNTIL, "R": Op.RELEASE, "V": Op.RELEASE, "W": Op.WEAK_UNTIL}
+PAST_WORDS = {"Y": Op.PREVIOUS, "O": Op.ONCE, "H": Op.HISTORICALLY}
 CONNECTIVES = {
     "<->": Op.IFF,
     "->": Op.IMPLIES,

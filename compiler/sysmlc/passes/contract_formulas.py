@@ -7,8 +7,10 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.formal import is_formal, read_formal, told
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.ltl import FormulaError, parse_formula
+from sysmlc.logic.reduce import is_reducible, remembering
+from sysmlc.logic.spelling import FormulaError
 from sysmlc.values import replace
 
 _MACHINE = """\
@@ -38,7 +40,8 @@ NOT_A_FORMULA = rule(
     Severity.ERROR,
     "the formula of '{constraint}' is not understood: {reason}",
     why="What it demands would be missing in the contract.",
-    help="write LTL (G F X U or [] <> X U) over the variables of the contract: {variables}",
+    help="write LTL (G F X U or [] <> X U; of the past Y O H S), or a sentence like 'globally, it "
+    "is always the case that if P holds then Q eventually holds', over: {variables}",
     wrong=_MACHINE.replace("{body}", '"[](Statte=On)"'),
     right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )
@@ -57,13 +60,11 @@ OUTSIDE_GR1 = rule(
     "formula-outside-gr1",
     Severity.INFO,
     "the formula of '{constraint}' is not in GR(1); the contract keeps it as general LTL",
-    why="Synthesis decides initial, one-step and infinitely-often conditions; the rest can only "
-    "be checked.",
-    wrong=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
-    right=_MACHINE.replace("{body}", '"[](state=On -> X(state=On))"'),
+    why="Synthesis decides initial, one-step and infinitely-often conditions, and what can be said "
+    "by them with history bits; the rest can only be checked.",
+    wrong=_MACHINE.replace("{body}", '"<>[](state=On)"'),
+    right=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
 )
-
-_LANGUAGES = ("ltl", "spin", "promela")
 
 
 def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
@@ -81,8 +82,8 @@ def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Co
 
 
 def _is_formula(constraint: Element) -> bool:
-    language = str(constraint.attrs.get("language", "")).lower()
-    return any(name in language for name in _LANGUAGES) and bool(constraint.attrs.get("body"))
+    body = str(constraint.attrs.get("body", ""))
+    return bool(body) and is_formal(str(constraint.attrs.get("language", "")), body)
 
 
 def _components(graph: Graph, constraint: Element) -> Iterator[str]:
@@ -105,20 +106,20 @@ def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: S
     name = constraint.name or "<Constraint>"
     domains = {variable.name: variable.domain for variable in contract.variables}
     subject = graph.subject(constraint)
+    body = str(constraint.attrs["body"])
     try:
-        formula = parse_formula(str(constraint.attrs["body"]), domains)
+        formula = read_formal(body, str(constraint.attrs["language"]), domains)
     except FormulaError as error:
-        known = ", ".join(domains)
-        facts = str(error)
+        known, facts = ", ".join(domains), told(error, body)
         sink.report(NOT_A_FORMULA, subject, constraint=name, reason=facts, variables=known)
         return contract
     conjuncts = [
         Conjunct(part, class_, constraint.id, f"'{name}' demands it.")
         for class_, part in classified(formula)
     ]
-    if any(conjunct.class_ is Class.OTHER for conjunct in conjuncts):
+    if any(one.class_ is Class.OTHER and not is_reducible(one.formula) for one in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)
-    return _extended(contract, conjuncts)
+    return remembering(_extended(contract, conjuncts))
 
 
 def _extended(contract: Contract, conjuncts: list[Conjunct]) -> Contract:

@@ -10,6 +10,7 @@ from sysmlc.logic.context import context_of
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
+from sysmlc.logic.reduce import remembering
 from sysmlc.logic.requirements.meaning import is_temporal, meaning
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import (
@@ -87,7 +88,7 @@ def _contract(
     starts = list(_starts(scope, {one.name for one in used}))
     given = [one for one in starts if scope.is_input(one.formula)]
     own = [one for one in starts if not scope.is_input(one.formula)]
-    return Contract(name, subject.id, used, (*given, *assumptions), (*own, *demands))
+    return remembering(Contract(name, subject.id, used, (*given, *assumptions), (*own, *demands)))
 
 
 def _starts(scope: Scope, used: set[str]) -> Iterator[Conjunct]:

@@ -5,10 +5,11 @@ from sysmlc.ir import Element, Graph
 from sysmlc.logic.context import note_range
 from sysmlc.logic.elaborate import ElaborationError, Fault, condition
 from sysmlc.logic.expression import ExpressionError, parse_expression
+from sysmlc.logic.formal import is_formal, read_formal, told
 from sysmlc.logic.formula import Formula, variables
-from sysmlc.logic.ltl import FormulaError, parse_formula
 from sysmlc.logic.requirements.scope import Scope
 from sysmlc.logic.requirements.statements import Statement
+from sysmlc.logic.spelling import FormulaError
 
 _MODEL = """\
 Package p "Plant"
@@ -44,13 +45,12 @@ NOT_FORMAL = rule(
     wrong=_MODEL.replace("{body}", 'body="level * 0.5 < 4.5"'),
     right=_MODEL.replace("{body}", 'body="level < 9"'),
 )
-_TEMPORAL = ("ltl", "spin", "promela")
 _EXPRESSIONS = ("", "kerml", "sysml", "ocl", "alf")
 
 
 def is_temporal(constraint: Element) -> bool:
-    """Whether the constraint is written in temporal logic."""
-    return any(name in _language(constraint) for name in _TEMPORAL)
+    """Whether the constraint is written in temporal logic, or as a sentence of a pattern."""
+    return is_formal(_language(constraint), str(constraint.attrs.get("body", "")))
 
 
 def meaning(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
@@ -74,8 +74,9 @@ def _language(constraint: Element) -> str:
 
 
 def _temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+    body = str(statement.constraint.attrs["body"])
     try:
-        read = parse_formula(str(statement.constraint.attrs["body"]), scope.domains)
+        read = read_formal(body, _language(statement.constraint), scope.domains)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,
@@ -84,7 +85,7 @@ def _temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> F
             requirement=statement.requirement.name,
             about=scope.context.name,
             variables=", ".join(scope.domains),
-            reason=str(error),
+            reason=told(error, body),
         )
         return None
     return scope.settled(read)

@@ -1,0 +1,149 @@
+"""Property patterns: Spot holds them against the published formulas, in every scope."""
+
+import pytest
+import spot
+from test_formats_spot import for_spot
+from test_reductions import ltl
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, IntegerDomain
+from sysmlc.logic.history import History
+from sysmlc.logic.ltl import FormulaError, line_and_column
+from sysmlc.logic.reduce import parts_of
+from sysmlc.logic.sentences import read_sentence
+
+DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
+SCOPES = {
+    "globally": "Globally, ",
+    "before": "Before r, ",
+    "after": "After q, ",
+    "between": "Between q and r, ",
+    "until": "After q until r, ",
+}
+DWYER = {
+    "it is never the case that p holds": {
+        "globally": "G !p",
+        "before": "F r -> (!p U r)",
+        "after": "G (q -> G !p)",
+        "between": "G ((q & !r & F r) -> (!p U r))",
+        "until": "G (q & !r -> (!p W r))",
+    },
+    "it is always the case that p holds": {
+        "globally": "G p",
+        "before": "F r -> (p U r)",
+        "after": "G (q -> G p)",
+        "between": "G ((q & !r & F r) -> (p U r))",
+        "until": "G (q & !r -> (p W r))",
+    },
+    "p eventually holds": {
+        "globally": "F p",
+        "before": "!r W (p & !r)",
+        "after": "G !q | F (q & F p)",
+        "between": "G (q & !r -> (!r W (p & !r)))",
+        "until": "G (q & !r -> (!r U (p & !r)))",
+    },
+    "p holds at most 1 time": {
+        "globally": "!p W (p W G !p)",
+        "before": "F r -> ((!p & !r) U (r | ((p & !r) U (r | (!p U r)))))",
+        "after": "F q -> (!q U (q & (!p W (p W G !p))))",
+        "between": "G ((q & !r & F r) -> ((!p & !r) U (r | ((p & !r) U (r | (!p U r))))))",
+        "until": "G (q & !r -> ((!p & !r) W (r | ((p & !r) W (r | (!p W r))))))",
+    },
+    "it is always the case that if p holds then s previously held": {
+        "globally": "!p W s",
+        "before": "F r -> (!p U (s | r))",
+        "after": "G !q | (!q U (q & (!p W s)))",
+        "between": "G ((q & !r & F r) -> (!p U (s | r)))",
+        "until": "G (q & !r -> (!p W (s | r)))",
+    },
+    "it is always the case that if p holds then s eventually holds": {
+        "globally": "G (p -> F s)",
+        "before": "F r -> ((p -> (!r U (s & !r))) U r)",
+        "after": "G (q -> G (p -> F s))",
+        "between": "G ((q & !r & F r) -> ((p -> (!r U (s & !r))) U r))",
+        "until": "G (q & !r -> ((p -> (!r U (s & !r))) W r))",
+    },
+}
+CASES = [(text, scope, one) for text, rows in DWYER.items() for scope, one in rows.items()]
+
+
+@pytest.mark.parametrize(("text", "scope", "published"), CASES)
+def test_a_sentence_says_what_the_published_formula_says(text, scope, published):
+    history = History(DOMAINS)
+    parts = parts_of(read_sentence(SCOPES[scope] + text, DOMAINS), history)
+    ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
+    claim = spot.formula(f"({ruled}) & !(({published}) <-> ({for_spot(ltl(parts))}))")
+    assert not spot.translate(spot.formula(ruled)).is_empty()
+    counterexample = spot.translate(claim).accepting_word()
+    assert counterexample is None
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("always p", "Globally, it is always the case that p holds."),
+        ("p responds to q", "always if q holds, then p eventually holds"),
+        ("p precedes q", "It is always the case that if q holds then p previously held"),
+        ("never p & n=3", "p & n=3 never holds"),
+        ("p holds again and again", "it is always the case that p holds again and again"),
+        ("eventually p", "p eventually holds"),
+        ("p holds at most twice", "p holds at most 2 times"),
+        ("after q, always if p then s", "After q, it is always the case that !p | s holds"),
+    ],
+)
+def test_sentences_may_be_short(one, other):
+    told = [_meaning(text) for text in (one, other)]
+    assert spot.are_equivalent(*told)
+
+
+def _meaning(text):
+    text = text.replace("n=3", "s")
+    history = History(DOMAINS)
+    parts = parts_of(read_sentence(text, DOMAINS), history)
+    rules = [(one.class_, one.formula) for one in history.conjuncts]
+    return spot.formula(for_spot(f.both(ltl(rules), ltl(parts))))
+
+
+SOON = "(p -> (s | r | X (s | r | X (s | r))))"
+
+
+@pytest.mark.parametrize(
+    ("scope", "wanted"),
+    [
+        ("", "G (p -> (s | X s | X X s))"),
+        ("Before r, ", f"F r -> ({SOON} U r)"),
+        ("After q, ", "G (q -> G (p -> (s | X s | X X s)))"),
+        ("Between q and r, ", f"G ((q & !r & F r) -> ({SOON} U r))"),
+        ("After q until r, ", f"G (q & !r -> ({SOON} W r))"),
+    ],
+)
+def test_an_answer_within_some_steps(scope, wanted):
+    history = History(DOMAINS)
+    text = f"{scope}always if p then s holds within 2 steps"
+    parts = parts_of(read_sentence(text, DOMAINS), history)
+    ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
+    claim = spot.formula(f"({ruled}) & !(({wanted}) <-> ({for_spot(ltl(parts))}))")
+    assert spot.translate(claim).is_empty()
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "reason"),
+    [
+        ("Globally, p & holds", (1, 15), "'holds' is neither a variable nor a literal"),
+        ("After q until r\n  it is never the case p holds", (2, 24), "'that' is expected, not 'p'"),
+        ("Between q, p never holds", (1, 10), "'and' is expected, not ','"),
+        ("p sometimes holds", (1, 3), "'sometimes'"),
+        ("always G p", (1, 8), "a condition of a pattern is about the present"),
+        ("always p'", (1, 8), "a condition of a pattern is about the present"),
+        ("p holds at most 99 times", (1, 17), "a number from 0 to 32 is expected"),
+        ("always p holds forever", (1, 16), "the end of the sentence is expected, not 'forever'"),
+        ("always n", (1, 8), "'n' is not Boolean"),
+        ("", (1, 1), "the end is not expected here"),
+        ("never if p then s", (1, 10), "'if' follows 'always' only; a condition is expected"),
+    ],
+)
+def test_what_is_no_sentence_is_told_with_its_place(text, place, reason):
+    with pytest.raises(FormulaError) as caught:
+        read_sentence(text, DOMAINS)
+    assert line_and_column(text, caught.value.at) == place
+    assert reason in str(caught.value)
