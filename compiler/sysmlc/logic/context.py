@@ -1,6 +1,7 @@
 """What names mean inside a classifier: its properties as variables with finite domains."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import field
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
@@ -8,10 +9,11 @@ from sysmlc.logic.context_objects import of_objects
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.mentioned import BEHAVIOURS, Mentioned, mentioned
 from sysmlc.logic.names import unique
 from sysmlc.logic.ranges import declared_range, integer
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 ASSUMED_RANGE = rule(
     "SM410",
@@ -65,6 +67,8 @@ class Context:
     features: dict[str, Feature]
     literals: dict[str, tuple[str, str]]
     """Enumeration literals by written name: (enumeration, identifier)."""
+    numbers: dict[str, int] = field(default_factory=dict)
+    """Numbers that enumeration literals stand for, by written name."""
 
 
 def context_of(
@@ -78,8 +82,9 @@ def context_of(
     ``assumed`` is the range of Integers that have none; ``within`` a behaviour of the classifier,
     whose own names go before.
     """
+    numbers = _numbers(graph)
     if classifier is None:
-        return Context("", {}, _literals(graph))
+        return Context("", {}, _literals(graph), numbers)
     named = _named(graph, classifier) | of_objects(graph, classifier)
     if within is not None and within is not classifier:
         named |= _named(graph, within) | of_objects(graph, within)
@@ -90,7 +95,20 @@ def context_of(
         name: _feature(graph, named[name], variable, assumed, fixed)
         for name, variable in zip(names, variables, strict=True)
     }
-    return Context(classifier.name, features, _literals(graph))
+    behaviour = within or classifier
+    if behaviour.kind in BEHAVIOURS and any(_is_open(graph, one) for one in features.values()):
+        said = mentioned(graph, behaviour, numbers)
+        for name, one in features.items():
+            if one.is_assumed and name in said.numbers:
+                wide = _widened(assumed, said, name)
+                features[name] = _feature(graph, one.element, one.variable, wide, fixed)
+        features |= _texts(graph, features, said)
+    return Context(classifier.name, features, _literals(graph), numbers)
+
+
+def _is_open(graph: Graph, feature: Feature) -> bool:
+    """Whether what a behaviour mentions tells the values of a feature."""
+    return feature.is_assumed or _is_text(graph, feature)
 
 
 def _named(graph: Graph, classifier: Element) -> dict[str, Element]:
@@ -114,6 +132,16 @@ def _literals(graph: Graph) -> dict[str, tuple[str, str]]:
         for name, made in _enumeration(graph, enumeration).items():
             for written in (name, f"{enumeration.name}::{name}", f"{enumeration.name}.{name}"):
                 found.setdefault(written, (enumeration.name, made))
+    return found
+
+
+def _numbers(graph: Graph) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for literal in graph.of_kind(Kind.ENUMERATION_LITERAL):
+        value, owner = literal.attrs.get("value"), graph.owner(literal)
+        if isinstance(value, int) and not isinstance(value, bool) and owner is not None:
+            for sign in ("::", "."):
+                found.setdefault(f"{owner.name}{sign}{literal.name}", value)
     return found
 
 
@@ -198,6 +226,48 @@ def _assume(element: Element, names: set[str], assumed: tuple[int, int]) -> Doma
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
     return IntegerDomain(low, high)
+
+
+def _widened(assumed: tuple[int, int], said: Mentioned, name: str) -> tuple[int, int]:
+    """The range of Integers that have none, with the numbers that one is compared with."""
+    numbers = said.numbers.get(name, ())
+    return min((assumed[0], *numbers)), max((assumed[1], *numbers))
+
+
+# -- texts -------------------------------------------------------------------------------------
+
+_STRING = frozenset(["string", "estring", "java.lang.string"])
+_OTHER = "other"
+
+
+def _texts(graph: Graph, features: dict[str, Feature], said: Mentioned) -> dict[str, Feature]:
+    """Features that hold texts: the values are those that the behaviour mentions, and any other."""
+    found = {name: one for name, one in features.items() if _is_text(graph, one)}
+    defaults = [text for one in found.values() if (text := _first_text(one.element)) is not None]
+    texts = tuple(dict.fromkeys([*said.texts, *defaults]))
+    if not said.texts or not found:
+        return {}
+    names = [text.strip() or "empty" for text in texts]
+    domain = EnumerationDomain(unique([*names, _OTHER], "text"), texts)
+    return {name: _as_text(one, domain) for name, one in found.items()}
+
+
+def _is_text(graph: Graph, feature: Feature) -> bool:
+    type_ = query.type_of(graph, feature.element)
+    family = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    return feature.domain is None and bool(_names(family) & _STRING)
+
+
+def _as_text(feature: Feature, domain: EnumerationDomain) -> Feature:
+    text = _first_text(feature.element)
+    default = None if text is None else domain.literals[domain.texts.index(text)]
+    constant = feature.element.attrs.get("readonly") is True and default is not None
+    return replace(feature, domain=domain, default=default, constant=constant, refused="")
+
+
+def _first_text(element: Element) -> str | None:
+    text = element.attrs.get("default")
+    return text if isinstance(text, str) and "default_language" not in element.attrs else None
 
 
 # -- defaults ----------------------------------------------------------------------------------

@@ -31,9 +31,13 @@ class IntegerDomain:
 
 @dataclass(frozen=True, slots=True)
 class EnumerationDomain:
-    """Names of literals, in declaration order."""
+    """Names of literals, in declaration order.
+
+    Of a text (String) they stand for ``texts``, in this order, and the last one for any other.
+    """
 
     literals: tuple[str, ...]
+    texts: tuple[str, ...] = ()
 
 
 Domain = BooleanDomain | IntegerDomain | EnumerationDomain

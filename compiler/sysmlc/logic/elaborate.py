@@ -68,10 +68,11 @@ class Meaning:
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """What a name stands for: a formula and its domain."""
+    """What a name stands for: a formula and its domain; ``number`` where a literal is one."""
 
     formula: Formula
     domain: Domain | None
+    number: int | None = None
 
 
 Scope = Callable[[str], Symbol | None]
@@ -92,7 +93,8 @@ def literal_of(context: Context, name: str) -> Symbol | None:
     if found is None or ("::" not in name and "." not in name):
         return None
     siblings = [made for of, made in context.literals.values() if of == found[0]]
-    return Symbol(f.const(found[1]), EnumerationDomain(tuple(dict.fromkeys(siblings))))
+    domain = EnumerationDomain(tuple(dict.fromkeys(siblings)))
+    return Symbol(f.const(found[1]), domain, context.numbers.get(name))
 
 
 def condition(expression: Expression, scope: Scope) -> Formula:
@@ -144,7 +146,9 @@ def _literal(expression: Written, value: bool | float | str, expected: Domain | 
 
 
 def _enumerated(expression: Expression, value: str, expected: EnumerationDomain) -> Meaning:
-    if value not in expected.literals:
+    if value in expected.texts:
+        return _single(Const(expected.literals[expected.texts.index(value)]), expected)
+    if expected.texts or value not in expected.literals:
         message = f"'{value}' is none of {domains.describe(expected)}"
         raise ElaborationError(Fault.OUTSIDE, message, value, expression.offset)
     return _single(Const(value), expected)
@@ -154,13 +158,15 @@ def _named(expression: Name | Member, scope: Scope, expected: Domain | None) -> 
     name = name_of(expression) or print_expression(expression)
     symbol = scope(name)
     last = name.replace(".", "::").rpartition("::")[2]
-    if isinstance(expected, EnumerationDomain) and last in expected.literals:
+    if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
         is_property = symbol is not None and not isinstance(symbol.formula, Const)
         if not is_property:
             return _single(Const(last), expected)
     if symbol is None:
         kind = Fault.UNKNOWN if dotted(expression) else Fault.UNSUPPORTED
         raise ElaborationError(kind, f"'{name}' is not known", name, expression.offset)
+    if isinstance(expected, IntegerDomain) and symbol.number is not None:
+        return _single(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:
         message = f"'{name}' has no finite type"
         raise ElaborationError(Fault.UNSUPPORTED, message, name, expression.offset)
@@ -176,8 +182,12 @@ def _unary(op: str, operand: Expression, scope: Scope) -> Meaning:
     return _combine(Op.SUB, _single(Const(0), IntegerDomain(0, 0)), inner)
 
 
+_NUMBER = IntegerDomain(0, 0)
+"""That a number is expected, whichever."""
+
+
 def _number(expression: Expression, scope: Scope) -> Meaning:
-    found = meaning(expression, scope)
+    found = meaning(expression, scope, _NUMBER)
     if not isinstance(found.domain, IntegerDomain):
         raise _mismatch(expression, "a number", found.domain)
     return found
@@ -216,7 +226,18 @@ def _sides(expression: Binary, scope: Scope) -> tuple[Meaning, Meaning]:
     if isinstance(left.domain, EnumerationDomain) and left.domain != right.domain:
         raise _mismatch(expression.right, f"one of {domains.describe(left.domain)}", right.domain)
     _check_range(expression, left, right)
+    _check_texts(expression, left, right)
     return left, right
+
+
+def _check_texts(expression: Binary, left: Meaning, right: Meaning) -> None:
+    """Two texts that may be any other are not known to be the same."""
+    is_text = isinstance(left.domain, EnumerationDomain) and bool(left.domain.texts)
+    known = (isinstance(t.value, Const) for side in (left, right) for t in side.terms)
+    if is_text and not any(known):
+        text = print_expression(expression)
+        message = f"'{text}' compares texts of which neither is known"
+        raise ElaborationError(Fault.UNSUPPORTED, message, text, expression.offset)
 
 
 def _paired(left: Expression, right: Expression, scope: Scope) -> tuple[Meaning, Meaning]:
@@ -226,7 +247,10 @@ def _paired(left: Expression, right: Expression, scope: Scope) -> tuple[Meaning,
     except ElaborationError:
         second = meaning(right, scope)
         return meaning(left, scope, second.domain), second
-    return first, meaning(right, scope, first.domain)
+    second = meaning(right, scope, first.domain)
+    if isinstance(first.domain, EnumerationDomain) and isinstance(second.domain, IntegerDomain):
+        first = meaning(left, scope, second.domain)
+    return first, second
 
 
 def _check_range(expression: Binary, left: Meaning, right: Meaning) -> None:

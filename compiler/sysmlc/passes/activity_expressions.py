@@ -31,7 +31,7 @@ class Scope:
         outer = context_of(graph, next(above, None))
         inner = context_of(graph, activity)
         self._features: dict[str, Feature] = {**outer.features, **inner.features}
-        self._literals = outer.literals
+        self._literals, self._numbers = outer.literals, outer.numbers
         self._extra: dict[str, Formula] = {}
 
     def names(self) -> list[str]:
@@ -78,7 +78,8 @@ class Scope:
             return None
         enumeration, literal = found
         named = [made for owner, made in self._literals.values() if owner == enumeration]
-        return Symbol(const(literal), EnumerationDomain(tuple(dict.fromkeys(named))))
+        domain = EnumerationDomain(tuple(dict.fromkeys(named)))
+        return Symbol(const(literal), domain, self._numbers.get(name))
 
     def _variable(self, name: str) -> Variable | None:
         for feature in self._features.values():

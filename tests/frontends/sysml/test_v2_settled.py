@@ -5,7 +5,8 @@ from reading_v2 import FRONT, read
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, catalogue
 from sysmlc.frontends.sysml.settled import SEVERITIES
 from sysmlc.ir import Graph
-from sysmlc.logic.contract import Contract
+from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain
+from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
@@ -114,7 +115,7 @@ package P {
             transition first idle accept fault : Fault if fault.severe
                 do assign machine.busy := false then broken;
             transition first broken accept reset : Reset
-                do action { assign reset.accepted := true; assign machine.text := "ok"; }
+                do action { assign reset.accepted := true; assign machine.age := 1.5; }
                 then idle;
         }
     }
@@ -128,14 +129,78 @@ def test_payloads_and_arguments_of_states_are_variables_of_the_contract():
     assert "SM412" not in codes
 
 
+WORDS = """
+package P {
+    private import ScalarValues::*;
+    enum def Kind :> Integer { none = -2; plain = 3; }
+    item def Report { attribute text : String; }
+    part def Cell {
+        attribute last : String := "idle";
+        attribute note : String;
+        attribute kind : Integer;
+        exhibit state run {
+            entry; then idle;
+            state idle { doc /* "never" said */ }
+            state broken;
+            transition first idle accept report : Report if report.text == "no good"
+                do assign last := report.text then broken;
+            transition first broken if last == "other" and kind == Kind::none
+                do action { assign last := "idle"; assign kind := Kind::plain; assign note := ""; }
+                then idle;
+            transition first broken if kind > 40 then broken;
+        }
+    }
+}
+"""
+
+
+def test_texts_are_those_that_a_behaviour_mentions_and_any_other():
+    reading = read(WORDS, passes=ALL)
+    (found,) = reading.graph.derived(Contract)
+    domains = {one.name: one.domain for one in found.variables}
+    words = EnumerationDomain(
+        ("no_good", "other", "idle", "empty", "other_2"), ("no good", "other", "idle", "")
+    )
+    assert domains["last"] == domains["note"] == domains["report_text"] == words
+    assert domains["kind"] == IntegerDomain(-2, 40)
+    assert {"SM415", "SM458"}.isdisjoint(reading.codes())
+    moves = [print_formula(one.formula) for one in found.guarantees]
+    assert any("report_text=no_good" in text for text in moves)
+    assert any("kind=-2" in text and "last=other" in text for text in moves)
+
+
+def test_two_texts_of_which_neither_is_known_are_not_compared():
+    compared = WORDS.replace('report.text == "no good"', "report.text == note")
+    reading = read(compared, passes=ALL)
+    (found,) = reading.graph.derived(Contract)
+    assert "SM411" in reading.codes()
+    assert not any("report_text=note" in print_formula(one.formula) for one in found.guarantees)
+
+
+def test_a_behaviour_without_texts_has_none_as_values():
+    names, _ = contract(
+        """
+package P {
+    part def Cell {
+        attribute name : ScalarValues::String;
+        attribute on : ScalarValues::Boolean;
+        exhibit state run { entry; then idle; state idle; transition first idle if on then idle; }
+    }
+}""",
+        "P::Cell",
+    )
+    assert "env on" in names
+    assert not any("name" in one for one in names)
+
+
 def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
     reading = read(MACHINE, passes=ALL)
     found = [one for one in reading.sink if one.rule.code == "SM415"]
     assert [(one.severity, one.message) for one in found] == [
         (
             Severity.WARNING,
-            "'machine.text := \"ok\"' assigns to 'machine.text', which is no changeable property "
-            "with finite values of Cell",
+            "'machine.age := 1.5' assigns to 'machine.age', which is no changeable property with "
+            "finite values of Cell",
         )
     ]
 
