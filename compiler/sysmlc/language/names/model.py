@@ -37,6 +37,8 @@ class Model:
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
         self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
         self._supers: dict[Node, dict[Node, None]] = {}
+        self.by_type: dict[Node, tuple[Node, ...]] = {}
+        """What ``typed`` found out about features, once all names are resolved."""
 
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))

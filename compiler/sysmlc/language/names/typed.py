@@ -33,20 +33,29 @@ def needed(model: "Model", node: Node) -> tuple[Node, ...]:
     found = _candidates(model, node)
     if not found:
         return ()
-    above = {one for general in model.supers(node)[1:] for one in _candidates(model, general)}
-    return tuple(one for one in found if one not in above)
+    others = (general for general in model.supers_of(node) if general is not node)
+    above = {one for general in others for one in _candidates(model, general)}
+    return tuple([one for one in found if one not in above])
 
 
 def _candidates(model: "Model", node: Node) -> tuple[Node, ...]:
-    if node.kind not in FEATURES:
-        return ()
+    known = model.by_type.get(node)
+    if known is None:
+        named = _names(model, node) if node.kind in FEATURES else []
+        found = [model.find(name) for name in named]
+        known = tuple([one for one in found if one is not None and one is not node])
+        model.by_type[node] = known
+    return known
+
+
+def _names(model: "Model", node: Node) -> list[str]:
     names = [_PORTIONS] if node.facts.get("isPortion") and _is_in(model, node, _CLASSES) else []
-    for kinds, base, part in _BASES:
-        if any(one.kind in kinds for one in _stated(node)):
+    stated = {one.kind for one in _stated(node)}
+    for kinds, base, part in _BASES if stated else ():
+        if not kinds.isdisjoint(stated):
             is_inside = bool(part) and is_part(node) and _is_in(model, node, kinds)
             names += [part, base] if is_inside else [base]
-    found = [model.find(name) for name in names]
-    return tuple(one for one in found if one is not None and one is not node)
+    return names
 
 
 def _stated(node: Node) -> list[Node]:
