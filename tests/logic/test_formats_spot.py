@@ -12,6 +12,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.ltl import parse_formula
 
 VARIABLES = tuple(
     Variable(name, owner, BooleanDomain())
@@ -124,6 +125,15 @@ def same(contract, form):
     assert spot.are_equivalent(meaning(contract), meaning(again))
 
 
+@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
+def test_what_can_be_reduced_is_written_with_history_bits(form):
+    response = parse_formula("G (a -> F c)", {name: BooleanDomain() for name in "abcd"})
+    contract = Contract("C", "", VARIABLES, (), (Conjunct(response, Class.OTHER, ""),))
+    (again,) = formats.read(formats.write(contract, form), "C.txt", Sink(), form)
+    assert [one.name for one in again.variables] == [*"abcd", "since_1"]
+    assert [one.class_ for one in again.guarantees] == [Class.INIT, Class.SAFETY, Class.LIVENESS]
+
+
 @pytest.mark.parametrize("form", ["spot", "spin"])
 @given(contract=any_contracts)
 @settings(max_examples=40, deadline=None)
@@ -136,7 +146,8 @@ def test_spot_reads_the_formula_itself(form, contract):
 @given(formula=general)
 @settings(max_examples=25, deadline=None)
 def test_what_a_form_has_no_words_for_names_the_conjunct(form, formula):
-    outside = Conjunct(Apply(Op.WEAK_UNTIL, (Var("a"), formula)), Class.OTHER, "model.uml:3:1")
+    stable = f.eventually(f.always(f.either(Var("d"), formula)))
+    outside = Conjunct(stable, Class.OTHER, "model.uml:3:1")
     with pytest.raises(NotExpressibleError) as caught:
         formats.write(Contract("C", "", VARIABLES, (), (outside,)), form)
     assert caught.value.conjunct == outside

@@ -41,8 +41,8 @@ NOT_EXPRESSIBLE = rule(
     "the contract of '{component}' is not written for {form}: it has no words for "
     "{what}, since {reason}",
     why="A file without that part would say something else.",
-    help="take a form for general LTL (contracts, spot, tlsf), or demand it in GR(1)",
-    wrong=_LAMP.replace("{body}", "(state=Off) U (event=start)"),
+    help="take a form for general LTL (contracts, spot, tlsf), or demand it as a property pattern",
+    wrong=_LAMP.replace("{body}", "<>[](state=On)"),
     right=_LAMP.replace("{body}", "[](<>(state=On))"),
 )
 

@@ -62,7 +62,7 @@ def test_what_a_tool_has_no_words_for_is_told_at_the_constraint(name, count):
     told = [one for one in sink if one.rule is NOT_EXPRESSIBLE]
     assert [one.subject.name for one in told] == ["Lamp::Lit"] * count
     assert len(files) == (len(ENDINGS[name]) if not count else 0)
-    assert all("state=Off U event=start" in one.message for one in told)
+    assert all("F G state=On" in one.message for one in told)
 
 
 def test_the_same_model_gives_the_same_bytes():

@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
-from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formats.spelt import Spelling
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.logic.lower import TooManyValuesError
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduce import is_plain, reduced
 from sysmlc.values import dataclass
 
 
@@ -81,19 +81,31 @@ def conjuncts_of(contract: Contract, owner: Owner, class_: Class) -> Iterator[Co
     return of_class(contract, side, class_)
 
 
-def only_gr1(
+def game(
     contract: Contract, form: str, *, primed_liveness: bool = False, apart: bool = False
-) -> None:
-    """Raise NotExpressibleError for the first conjunct that is not of GR(1) as games know it.
+) -> Contract:
+    """The contract in GR(1) as games know it, with history bits for what needs them.
 
-    ``apart`` lets each side's initial conditions speak of its own variables alone.
+    ``primed_liveness`` says that the form's goals may speak of the next step, ``apart`` that each
+    side's initial conditions speak of its own variables alone. Raises NotExpressibleError for
+    the first conjunct that cannot be said.
     """
+    conjuncts = (*contract.assumptions, *contract.guarantees)
+    is_game = all(_is_game(one, primed_liveness) for one in conjuncts)
+    made = contract if is_game else reduced(contract).contract
+    for one in (*made.assumptions, *made.guarantees):
+        if not _is_game(one, primed_liveness):
+            raise NotExpressibleError(form, "no reduction to GR(1) is known for it", one)
+    _check_owners(made, form, apart)
+    return made
+
+
+def _is_game(conjunct: Conjunct, primed_liveness: bool) -> bool:
+    return is_plain(conjunct) or (primed_liveness and conjunct.class_ is Class.LIVENESS)
+
+
+def _check_owners(contract: Contract, form: str, apart: bool) -> None:
     owners = {variable.name: variable.owner for variable in contract.variables}
-    for one in (*contract.assumptions, *contract.guarantees):
-        if one.class_ is Class.OTHER:
-            raise NotExpressibleError(form, "it is outside GR(1)", one)
-        if one.class_ is Class.LIVENESS and has_primes(one.formula) and not primed_liveness:
-            raise NotExpressibleError(form, "what holds again and again has no next step", one)
     for owner in Owner if apart else ():
         for one in conjuncts_of(contract, owner, Class.INIT):
             if any(owners[variable.name] is not owner for variable in variables(one.formula)):

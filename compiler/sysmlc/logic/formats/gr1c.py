@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.counting import counted
-from sysmlc.logic.formats.base import File, conjuncts_of, lowered, only_gr1, said
+from sysmlc.logic.formats.base import File, conjuncts_of, game, lowered, said
 from sysmlc.logic.formats.draft import Draft, joined
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.formula import Op
@@ -91,8 +91,8 @@ def _conjuncts(draft: Draft, reader: Reader, owner: Owner, class_: Class) -> Non
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract as gr1c has words for it. Raises NotExpressibleError."""
-    only_gr1(contract, form, apart=True)
-    return lowered(renamed(contract, _RESERVED), form, lambda one: counted(one, is_flat=True))
+    made = game(contract, form, apart=True)
+    return lowered(renamed(made, _RESERVED), form, lambda one: counted(one, is_flat=True))
 
 
 def write(contract: Contract, form: str) -> str:

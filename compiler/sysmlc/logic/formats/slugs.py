@@ -11,7 +11,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.counting import counted
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, conjuncts_of, lowered, only_gr1, said
+from sysmlc.logic.formats.base import File, conjuncts_of, game, lowered, said
 from sysmlc.logic.formats.draft import Draft
 from sysmlc.logic.formats.slugsin import PrefixError, from_prefix
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
@@ -148,8 +148,8 @@ class _Reader(Reader):
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract as structured slugs have words for it. Raises NotExpressibleError."""
-    only_gr1(contract, form, primed_liveness=True)
-    return lowered(renamed(contract, SYNTAX.truths), form, _without_minus)
+    made = game(contract, form, primed_liveness=True)
+    return lowered(renamed(made, SYNTAX.truths), form, _without_minus)
 
 
 def write(contract: Contract, form: str) -> str:

@@ -9,7 +9,7 @@ from sysmlc.depth import room_for
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Contract, Domain
 from sysmlc.logic.counting import in_bits
-from sysmlc.logic.formats.base import File, lowered, only_gr1
+from sysmlc.logic.formats.base import File, game, lowered
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST
 from sysmlc.logic.lower import each_formula
@@ -113,8 +113,8 @@ def read(file: File) -> tuple[Contract, ...]:
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract over bits, with not, and, or, exclusive or. Raises NotExpressibleError."""
-    only_gr1(contract, form, primed_liveness=True)
-    return lowered(contract, form, lambda one: each_formula(in_bits(one), _without_implication))
+    made = game(contract, form, primed_liveness=True)
+    return lowered(made, form, lambda one: each_formula(in_bits(one), _without_implication))
 
 
 def _without_implication(formula: Formula) -> Formula:
