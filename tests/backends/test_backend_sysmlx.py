@@ -154,3 +154,23 @@ def test_what_is_nested_as_deep_as_text_is_read_is_written():
     files, codes = emitted(nested(200))
     assert list(files) == ["sysmlx/P0.sysmlx"]
     assert codes == []
+
+
+class Wrong:
+    """A writer of text that makes a mistake."""
+
+    def emit(self, _graph, output, _sink, _options):
+        output.add("sysml/plant.sysml", "package Plant {\n  part def Gate { part : ; }\n}\n")
+
+
+def test_an_error_in_the_text_of_our_own_is_told_at_its_element(monkeypatch):
+    monkeypatch.setattr("sysmlc.backends.sysml.BACKEND", Wrong())
+    graph = parse_text('Package plant "Plant"\n  Class gate "Gate"\n')
+    output, sink = Output(), Sink()
+    BACKEND.emit(graph, output, sink, EmitOptions())
+    assert output.artefacts() == []
+    (found,) = sink
+    assert (found.rule.code, found.subject.name) == ("SM749", "Plant::Gate")
+    assert found.message.startswith(
+        "the text that says 'Gate' in SysML v2 cannot be read (line 2: ';' "
+    )

@@ -5,9 +5,9 @@ from functools import cache, lru_cache
 from os import environ
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.sysmlx.rules import TOO_DEEP
+from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.cache import default
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.language.exchange import Files, interchange_path, write
 from sysmlc.language.library import VARIABLE, Library, core, find
@@ -60,8 +60,8 @@ class _Places:
 def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
     """The graph as SysML v2 text says it, with names resolved; losses are those of the text.
 
-    None, and a message, for one that is nested deeper than text is read. Raises ValueError when
-    the text has other syntax errors, which is a fault of ours.
+    None, and a message, for one that is nested deeper than text is read, and where the text has
+    another syntax error, which is a fault of ours.
     """
     from sysmlc.backends.sysml import BACKEND as TEXT
     from sysmlc.language.names import resolve
@@ -80,9 +80,30 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
         if first.rule is DEEP:
             deepest = _deepest(graph)
             sink.report(TOO_DEEP, graph.subject(deepest), name=deepest.name, limit=LIMIT)
-            return None
-        raise ValueError(f"the text that +sysml makes cannot be read: {first.message}")
+        else:
+            _report(graph, documents, first, sink)
+        return None
     return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
+
+
+def _report(graph: Graph, documents: Sequence[Document], first: Diagnostic, sink: Sink) -> None:
+    """Report a syntax error of our own text at the element that the text is about there."""
+    place = first.subject.place
+    texts = {one.path: one for one in documents}
+    line, name = 0, ""
+    if place is not None and place.file in texts:
+        line, name = _about(texts[place.file], place.offset or 0)
+    element = next((one for one in graph if one.name == name), None) or _deepest(graph)
+    facts = {"name": element.name or element.kind, "line": line, "message": first.message}
+    sink.report(OWN_TEXT, graph.subject(element), **facts)
+
+
+def _about(document: Document, offset: int) -> tuple[int, str]:
+    """The line of a byte of a text, and the name of the innermost element around it."""
+    before = document.text.encode()[:offset].decode(errors="replace")
+    at = len(before)
+    names = [one.name for one in document.root.walk() if one.name and one.start <= at < one.end]
+    return before.count("\n") + 1, names[-1] if names else ""
 
 
 def _deepest(graph: Graph) -> Element:

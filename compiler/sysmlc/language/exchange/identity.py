@@ -15,6 +15,12 @@ from sysmlc.language.tree import Document, Node
 
 _STANDARD = {"kerml": "https://www.omg.org/spec/KerML/", "sysml": "https://www.omg.org/spec/SysML/"}
 _BASIC = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_OPERANDS = {
+    **dict.fromkeys(("and", "or", "implies"), ("firstValue", "secondValue")),
+    **dict.fromkeys(("<", ">", "<=", ">=", "==", "!=", "===", "!==", "xor", "not"), ("x", "y")),
+    **dict.fromkeys(("+", "-", "*", "/", "%", "^", "**", "|", "&"), ("x", "y")),
+}
+"""Parameters of the functions of operators, which those of an expression redefine (KerML 9.4)."""
 _ESCAPES = str.maketrans(
     {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\f": "\\f", "\b": "\\b"}
 )
@@ -57,6 +63,9 @@ def _name_package(root: Element, id: str) -> None:
                 one.id = id
 
 
+_RESULTS = frozenset({"ReturnParameterMembership"})
+
+
 class _Ids:
     def __init__(self, base: UUID, root: Node) -> None:
         self._base = base
@@ -80,8 +89,11 @@ class _Ids:
         element.id = self._of(path)
         is_root = element.node is self._root
         taken: set[str] = set()
+        operands = iter(_OPERANDS.get(str(element.attributes.get("operator")), ()))
         for index, owned in enumerate(element.owned, 1):
             name = _name(owned) if is_root or qualified else ""
+            if element.kind == "OperatorExpression" and qualified:
+                name = "result" if owned.kind in _RESULTS else next(operands, "")
             first = name if name not in taken else ""
             taken.add(name)
             inner = _joined("" if is_root else qualified, first)

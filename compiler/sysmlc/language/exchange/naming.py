@@ -1,6 +1,7 @@
 """Effective and qualified names of elements whose references are resolved (KerML 1.0, 8.3.2.1)."""
 
 from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names.contents import payload_of
 from sysmlc.language.tree import Node, Reference
 
 _PERFORMANCES = kinds_of("PerformActionUsage")
@@ -40,19 +41,31 @@ def effective(node: Node, depth: int = 0) -> str:
     """The name of an element, else that of the feature which names it, else nothing.
 
     A feature without a name is called as the first that it redefines (KerML 1.0, 8.3.3.3.4);
-    performances, variants and constraints of requirements as what they reference (SysML 2.0,
-    8.3.6.4, 8.3.17.15, 8.3.20.6).
+    performances, variants and constraints of requirements as what they reference, the payload of
+    a transition as what its trigger accepts (SysML 2.0, 8.3.6.4, 8.3.17.15, 8.3.20.6, 8.2.2.18.3).
     """
     if node.name or node.short:
         return node.name or node.short or ""
     if node.kind not in _FEATURES or depth > _DEEPEST:
         return ""
+    accepted = accepted_by(node)
+    if accepted is not None:
+        return effective(accepted, depth + 1)
     kinds = _naming_relations(node)
     named = next((one for kind in kinds for one in node.relations if one.kind == kind), None)
     if named is None:
         return ""
     target = named.reference.target
     return effective(target, depth + 1) if target else _last(named.reference)
+
+
+def accepted_by(node: Node) -> Node | None:
+    """What the trigger of a transition accepts, for the parameter of the transition that has it."""
+    owner = node.owner
+    if owner is None or owner.kind != "TransitionUsage" or node.membership != "ParameterMembership":
+        return None
+    payload, accepted = payload_of(owner)
+    return accepted if node is payload and accepted is not node else None
 
 
 def _last(reference: Reference) -> str:

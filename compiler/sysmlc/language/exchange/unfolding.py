@@ -6,6 +6,7 @@ from sysmlc.language.composition import USAGES, is_composite, is_end
 from sysmlc.language.exchange.elements import Element, Link
 from sysmlc.language.exchange.features import stated
 from sysmlc.language.exchange.implicit import add_implicit, argument, late
+from sysmlc.language.exchange.naming import accepted_by
 from sysmlc.language.exchange.relations import ENDS, OWN_ENDS, RELATIONS
 from sysmlc.language.metaclasses import is_a, kinds_of
 from sysmlc.language.tree import Fact, Node, Reference, Relation
@@ -71,7 +72,9 @@ def _in_order(node: Node) -> Iterator[Relation | Node]:
 
 
 def _state(element: Element, node: Node) -> None:
-    names = {"declaredName": node.name, "declaredShortName": node.short}
+    accepted = accepted_by(node)
+    name = node.name if accepted is None else accepted.name
+    names = {"declaredName": name, "declaredShortName": node.short}
     element.attributes.update({name: text for name, text in names.items() if text is not None})
     known = stated(node.kind)
     element.attributes.update({name: fact for name, fact in node.facts.items() if name in known})

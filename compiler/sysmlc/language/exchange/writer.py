@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterator, Sequence
 from posixpath import dirname, relpath, splitext
 from urllib.parse import quote
 
-from sysmlc.diagnostics import Place, Rule, Sink, Subject
+from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.elements import Element, Link, walk
 from sysmlc.language.exchange.files import File, Files
 from sysmlc.language.exchange.naming import shown
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
+from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node
 
 _SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
@@ -19,17 +20,17 @@ def write(
     document: Document,
     others: Sequence[Document] | Files,
     sink: Sink,
-    place: Callable[[Document], str] | None = None,
+    at: Callable[[Document], str] | None = None,
 ) -> bytes:
     """The document as an interchange file; references are those that names were resolved to.
 
     ``others`` are the documents, libraries included, that references may lead to: they become
-    hrefs relative to the path of the document, to where ``place`` says that the interchange
+    hrefs relative to the path of the document, to where ``at`` says that the interchange
     files are, by default those of the same names; to write several documents of a model, they are
     given as the same ``Files``. What leads nowhere is reported and left out.
     """
     files = others if isinstance(others, Files) else Files(others)
-    writer = _Writer(document, files, sink, place or interchange_path)
+    writer = _Writer(document, files, sink, at or interchange_path)
     return ("\n".join(lines(writer.root, writer.targets)) + "\n").encode()
 
 
@@ -45,14 +46,14 @@ class _Writer:
         document: Document,
         others: Files,
         sink: Sink,
-        place: Callable[[Document], str],
+        at: Callable[[Document], str],
     ) -> None:
-        self._place = place
+        self._at = at
         self._document = document
         self._sink = sink
         self._others = others
         self._file = File(document)
-        self._folder = dirname(place(document)) or "."
+        self._folder = dirname(at(document)) or "."
         self.root = self._file.root
         self._prune()
 
@@ -79,7 +80,7 @@ class _Writer:
             return "", ""
         if root is self._document.root:
             return target.id, ""
-        path = relpath(self._place(file.document), self._folder)
+        path = relpath(self._at(file.document), self._folder)
         return f"{quote(path)}#{target.id}", target.kind
 
     # -- what cannot be written ------------------------------------------------------------------
@@ -97,9 +98,9 @@ class _Writer:
             element.owned[:] = [owned for owned in element.owned if lost[owned] is None]
 
     def _report(self, rule: Rule, node: Node, what: str) -> None:
-        place = Place(self._document.path, offset=node.start)
+        where = place(self._document, node.start)
         facts = {"element": shown(node), "name": what, "feature": what}
-        self._sink.report(rule, Subject(shown(node), place=place), notes=(), help="", **facts)
+        self._sink.report(rule, Subject(shown(node), place=where), notes=(), help="", **facts)
 
 
 def _root(node: Node) -> Node:
