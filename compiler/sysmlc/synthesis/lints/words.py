@@ -1,0 +1,54 @@
+"""What the text of a contract shows: who decides what is assumed and promised."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Rule
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.formula import Formula, variables
+from sysmlc.synthesis.lints import rules
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A finding about a conjunct, or about the contract when there is none."""
+
+    rule: Rule
+    conjunct: Conjunct | None = None
+    name: str = ""
+    said: str = ""
+
+
+def of_words(contract: Contract) -> Iterator[Remark]:
+    """Conjuncts about what the other side decides, and primes where none may be."""
+    owners = {one.name: one.owner for one in contract.variables}
+    for conjunct in contract.assumptions:
+        if _decider(conjunct, owners) is Owner.SYSTEM:
+            yield Remark(rules.WRONG_OWNER, conjunct, "assumes", "the component")
+    for conjunct in contract.guarantees:
+        if _decider(conjunct, owners) is Owner.ENVIRONMENT:
+            yield Remark(rules.WRONG_OWNER, conjunct, "promises", "the environment")
+        elif conjunct.class_ is Class.INIT and Owner.ENVIRONMENT in _owners(conjunct, owners):
+            yield Remark(rules.INITIAL_INPUT, conjunct)
+    for conjunct in (*contract.assumptions, *contract.guarantees):
+        if conjunct.class_ is Class.LIVENESS and _primed(conjunct.formula):
+            yield Remark(rules.NEXT_IN_LIVENESS, conjunct)
+
+
+def _decider(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
+    """Who alone decides whether it holds: of a step, the one whose next values it is about.
+
+    What recurs may be brought about by the other side, through what it assumes or promises.
+    """
+    names = _primed(conjunct.formula) or {one.name for one in variables(conjunct.formula)}
+    found = {owners[name] for name in names if name in owners}
+    is_immediate = conjunct.class_ in (Class.INIT, Class.SAFETY)
+    return next(iter(found)) if len(found) == 1 and is_immediate else None
+
+
+def _owners(conjunct: Conjunct, owners: dict[str, Owner]) -> set[Owner]:
+    return {owners[one.name] for one in variables(conjunct.formula) if one.name in owners}
+
+
+def _primed(formula: Formula) -> set[str]:
+    return {one.name for one in variables(formula) if one.primed}
