@@ -66,3 +66,13 @@ def test_what_has_two_notations_has_one(text, written):
 
 def test_a_body_has_no_notation_without_its_declarations():
     assert expression(value("a->collect {in x; x + 1}")) == ""
+
+
+def test_a_conditional_within_an_operand_stands_in_parentheses():
+    for text in (
+        "(if a ? b else c) ?? d",
+        "a + (if b ? c else d)",
+        "if a ?? b ? c else d ?? e",
+        "(if a ? b else c, d)",
+    ):
+        assert expression(value(text)) == text

@@ -2,26 +2,12 @@
 
 from collections.abc import Callable
 
+from sysmlc.language.operators import LEVEL, LEVELS
 from sysmlc.language.tree import Node, Reference
 
-_LEVELS = (
-    ("if",),
-    ("??",),
-    ("implies",),
-    ("or", "|"),
-    ("xor",),
-    ("and", "&"),
-    ("==", "!=", "===", "!=="),
-    ("istype", "hastype", "@", "@@", "as", "meta"),
-    ("<", ">", "<=", ">="),
-    ("..",),
-    ("+", "-"),
-    ("*", "/", "%"),
-    ("^", "**"),
-)
-"""Binary operators, those that bind less first (KerML 8.2.5.8.1, Table 6)."""
-_LEVEL = {operator: level for level, group in enumerate(_LEVELS) for operator in group}
-_UNARY = len(_LEVELS)
+_CONDITIONAL = -1
+"""How tightly ``if`` binds: less than all binary operators."""
+_UNARY = len(LEVELS)
 _PRIMARY = _UNARY + 1
 _TYPED = {"istype", "hastype", "@", "@@", "as", "meta"}
 _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"})
@@ -85,13 +71,13 @@ def _operator(node: Node) -> tuple[str, int]:
     operator, args = str(node.facts.get("operator", "")), _arguments(node)
     if operator in _TYPED:
         left = [one for one in args if one.kind != "Feature"]
-        before = f"{_within(left[0], _LEVEL[operator])} " if left else ""
-        return f"{before}{operator} {_type(node)}", _LEVEL[operator]
+        before = f"{_within(left[0], LEVEL[operator])} " if left else ""
+        return f"{before}{operator} {_type(node)}", LEVEL[operator]
     if operator == "all":
         return f"all {_type(node)}", _UNARY
     if operator == "if" and len(args) == 3:
-        test, then, other = (_within(one, 1) for one in args)
-        return f"if {test} ? {then} else {other}", 0
+        test, then, other = (_within(one, _CONDITIONAL + 1) for one in args)
+        return f"if {test} ? {then} else {other}", _CONDITIONAL
     if len(args) == 1:
         space = " " if operator.isalpha() else ""
         return f"{operator}{space}{_within(args[0], _UNARY)}", _UNARY
@@ -104,10 +90,10 @@ def _binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
     if operator == ",":
         rest = _written(right)[0]
         is_list = right.facts.get("operator") == ","
-        return f"({_within(left, 0)}, {rest[1:-1] if is_list else rest})", _PRIMARY
+        return f"({_within(left, _CONDITIONAL)}, {rest[1:-1] if is_list else rest})", _PRIMARY
     if operator == "[":
         return f"{_within(left, _PRIMARY)} [{_bare(right)}]", _PRIMARY
-    level = _LEVEL.get(operator)
+    level = LEVEL.get(operator)
     if level is None:
         raise _UnsaidError(operator)
     first, second = (level + 1, level) if operator in ("^", "**") else (level, level + 1)
@@ -141,11 +127,11 @@ def _call(node: Node) -> tuple[str, int]:
 def _given(argument: Node) -> str:
     """An argument, by its position or by the name of its parameter."""
     if argument.kind != "Feature":
-        return _within(argument, 0)
+        return _within(argument, _CONDITIONAL)
     named = next((one for one in argument.relations if one.kind == "Redefinition"), None)
     if named is None or len(argument.members) != 1:
         raise _UnsaidError(argument.kind)
-    return f"{_reference(named.reference)} = {_within(argument.members[0], 0)}"
+    return f"{_reference(named.reference)} = {_within(argument.members[0], _CONDITIONAL)}"
 
 
 def _construct(node: Node) -> tuple[str, int]:

@@ -94,8 +94,9 @@ def _report(graph: Graph, documents: Sequence[Document], first: Diagnostic, sink
     if place is not None and place.file in texts:
         line, name = _about(texts[place.file], place.offset or 0)
     element = next((one for one in graph if one.name == name), None) or _deepest(graph)
-    facts = {"name": element.name or element.kind, "line": line, "message": first.message}
-    sink.report(OWN_TEXT, graph.subject(element), **facts)
+    name = element.name or element.kind
+    about = graph.subject(element)
+    sink.report(OWN_TEXT, about, name=name, line=line, message=first.message)
 
 
 def _about(document: Document, offset: int) -> tuple[int, str]:

@@ -1,13 +1,8 @@
 """Constraints of the specification about what may be a member of what."""
 
-from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.language.checks.found import error
 
-
-def _rule(code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str) -> Rule:
-    return rule(code, name, Severity.ERROR, phrase, why=why, help=help, wrong=wrong, right=right)
-
-
-VARIANT_ELSEWHERE = _rule(
+VARIANT_ELSEWHERE = error(
     "SM226",
     "variant-elsewhere",
     "'{name}' is a variant, and '{owner}' is no variation",
@@ -16,7 +11,7 @@ VARIANT_ELSEWHERE = _rule(
     "part def Engine { variant part small; }\n",
     "variation part def Engine { variant part small; }\n",
 )
-NO_VARIANT = _rule(
+NO_VARIANT = error(
     "SM227",
     "variation-member",
     "'{name}' is a member of the variation '{owner}' and no variant",
@@ -26,7 +21,7 @@ NO_VARIANT = _rule(
     "variation part def Engine { part small; }\n",
     "variation part def Engine { variant part small; }\n",
 )
-VARIATION_OF_VARIATION = _rule(
+VARIATION_OF_VARIATION = error(
     "SM228",
     "variation-of-variation",
     "the variation '{name}' specialises another variation",
@@ -35,7 +30,7 @@ VARIATION_OF_VARIATION = _rule(
     "variation part def Engine;\nvariation part def Big :> Engine;\n",
     "part def Engine;\nvariation part def Big :> Engine;\n",
 )
-VERIFY_ELSEWHERE = _rule(
+VERIFY_ELSEWHERE = error(
     "SM229",
     "verify-elsewhere",
     "'{owner}' is not the objective of a verification, so it cannot verify '{name}'",
@@ -45,7 +40,7 @@ VERIFY_ELSEWHERE = _rule(
     "requirement r;\nverification v { requirement o { verify r; } }\n",
     "requirement r;\nverification v { objective o { verify r; } }\n",
 )
-PARALLEL = _rule(
+PARALLEL = error(
     "SM230",
     "parallel-succession",
     "'{owner}' is parallel: its states have no order",
@@ -55,7 +50,7 @@ PARALLEL = _rule(
     "state def Running parallel { state a; state b; transition first a then b; }\n",
     "state def Running { state a; state b; transition first a then b; }\n",
 )
-PORTION_ELSEWHERE = _rule(
+PORTION_ELSEWHERE = error(
     "SM231",
     "portion-elsewhere",
     "'{name}' is a portion of no occurrence",
@@ -65,7 +60,7 @@ PORTION_ELSEWHERE = _rule(
     "snapshot part broken;\n",
     "part gate { snapshot part broken; }\n",
 )
-END_NO_PORT = _rule(
+END_NO_PORT = error(
     "SM232",
     "interface-end-no-port",
     "'{name}' is an end of the interface '{owner}' and no port",
@@ -74,7 +69,7 @@ END_NO_PORT = _rule(
     "interface def Plug { end part a; end port b; }\n",
     "interface def Plug { end port a; end port b; }\n",
 )
-TOO_MANY_ENDS = _rule(
+TOO_MANY_ENDS = error(
     "SM233",
     "flow-ends",
     "'{name}' is the third end of the flow '{owner}'",
@@ -83,7 +78,7 @@ TOO_MANY_ENDS = _rule(
     "flow def Supply { end a; end b; end c; }\n",
     "flow def Supply { end a; end b; }\n",
 )
-ABSTRACT_METADATA = _rule(
+ABSTRACT_METADATA = error(
     "SM234",
     "abstract-metadata",
     "metadata '{name}' has an abstract type",
@@ -92,7 +87,7 @@ ABSTRACT_METADATA = _rule(
     "abstract metadata def M;\npart def P { @M; }\n",
     "metadata def M;\npart def P { @M; }\n",
 )
-ENUMERATION_AND_MORE = _rule(
+ENUMERATION_AND_MORE = error(
     "SM235",
     "enumeration-and-more",
     "attribute '{name}' has an enumeration and another type",

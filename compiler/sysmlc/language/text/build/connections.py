@@ -11,6 +11,9 @@ from sysmlc.language.text.scan import Remark, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 from sysmlc.values import dataclass
 
+Rest = End | list[End] | list[Node]
+"""What follows the keyword of a connector: ends, one by one or as a list, and its body."""
+
 
 @dataclass(slots=True)
 class Tail:
@@ -170,30 +173,27 @@ def tail_usage(
     return whole(node, tokens, at, body or [])
 
 
-def _usage_ends(
-    tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]
-) -> Node:
+def _usage_ends(tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: Rest) -> Node:
     word = keyword if isinstance(keyword, str) else tokens[keyword]
     kind, membership = USAGES[word]
     node = made(kind, membership, tokens, begin, at)
     if word == "message":
         node.facts["isAbstract"] = True
-    ends = [end for end in rest if isinstance(end, End)]
-    node = apply(node, Tail(ends=ends), tokens)
-    body = rest[-1]
-    return whole(node, tokens, at, body if isinstance(body, list) else [])
+    ends, body = parted(rest)
+    return whole(apply(node, Tail(ends=ends), tokens), tokens, at, body)
 
 
-def _usage_many_ends(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    keyword: Keyword,
-    first: End,
-    rest: list[End],
-    body: list[Node],
-) -> Node:
-    return _usage_ends(tokens, at, begin, keyword, first, *rest, body)
+def parted(rest: tuple[Rest, ...]) -> tuple[list[End], list[Node]]:
+    """The ends, one by one or as lists, and the body, if there is one."""
+    ends: list[End] = []
+    body: list[Node] = []
+    for one in rest:
+        for part in [one] if isinstance(one, End) else one:
+            if isinstance(part, End):
+                ends.append(part)
+            else:
+                body.append(part)
+    return ends, body
 
 
 def _usage_named_end(
@@ -224,6 +224,6 @@ ACTIONS = {
     "usage_tail": _usage_tail,
     "tail_usage": tail_usage,
     "usage_ends": _usage_ends,
-    "usage_many_ends": _usage_many_ends,
+    "usage_many_ends": _usage_ends,
     "usage_named_end": _usage_named_end,
 }

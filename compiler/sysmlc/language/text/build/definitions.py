@@ -1,5 +1,7 @@
 """Definitions, usages by keyword, and what may stand before them (SysML 8.2.2.6 to 8.2.2.27)."""
 
+from functools import partial
+
 from sysmlc.language.text.build.features import Part, give, specialize
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import FEATURE, OWNING, made, own
@@ -88,28 +90,6 @@ def _defined(
     if kind == "EnumerationDefinition":
         tokens.special.append(node)
     return own(node, body)
-
-
-def _metadata_definition(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    names: Names | None,
-    general: list[Reference] | None,
-    body: list[Node],
-) -> Node:
-    return _defined("MetadataDefinition", tokens, at, begin, names, general, body)
-
-
-def _bare_definition(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    names: Names | None,
-    general: list[Reference] | None,
-    body: list[Node],
-) -> Node:
-    return _defined("Definition", tokens, at, begin, names, general, body)
 
 
 def _word(tokens: Tokens, keyword: Keyword) -> str:
@@ -216,8 +196,8 @@ ACTIONS = {
     "use_case": _use_case,
     "succession_flow": _succession_flow,
     "definition": _definition,
-    "metadata_definition": _metadata_definition,
-    "bare_definition": _bare_definition,
+    "metadata_definition": partial(_defined, "MetadataDefinition"),
+    "bare_definition": partial(_defined, "Definition"),
     "parallel": _parallel,
     "declared": _declared,
     "declared_with_metadata": _declared_with_metadata,

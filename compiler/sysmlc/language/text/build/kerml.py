@@ -1,7 +1,7 @@
 """Types, features and prefixes of KerML (8.2.4, 8.2.5)."""
 
 from sysmlc.language.text.build import definitions
-from sysmlc.language.text.build.connections import Tail, apply
+from sysmlc.language.text.build.connections import Rest, Tail, apply, parted
 from sysmlc.language.text.build.definitions import whole
 from sysmlc.language.text.build.ends import End
 from sysmlc.language.text.build.features import Part, give, multiplicity, specialize
@@ -89,31 +89,18 @@ def _declared(
     return give(specialize(node, parts, tokens), value)
 
 
-def _ends(tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: End | list[Node]) -> Node:
+def _ends(tokens: Tokens, at: int, begin: int, keyword: Keyword, *rest: Rest) -> Node:
     node = _declared(tokens, at, begin, keyword, None, None, None, None)
-    apply(node, Tail(ends=[end for end in rest if isinstance(end, End)]), tokens)
-    body = rest[-1]
-    return whole(node, tokens, at, body if isinstance(body, list) else [])
+    ends, body = parted(rest)
+    return whole(apply(node, Tail(ends=ends), tokens), tokens, at, body)
 
 
 def _ends_all(
-    tokens: Tokens, at: int, begin: int, keyword: Keyword, _all: int, *rest: End | list[Node]
+    tokens: Tokens, at: int, begin: int, keyword: Keyword, _all: int, *rest: Rest
 ) -> Node:
     node = _ends(tokens, at, begin, keyword, *rest)
     node.facts["isSufficient"] = True
     return node
-
-
-def _many_ends(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    keyword: Keyword,
-    first: End,
-    rest: list[End],
-    body: list[Node],
-) -> Node:
-    return _ends(tokens, at, begin, keyword, first, *rest, body)
 
 
 def _declared_many_ends(
@@ -186,7 +173,7 @@ ACTIONS = {
     "usage": definitions.ACTIONS["usage"],
     "usage_ends": _ends,
     "usage_ends_all": _ends_all,
-    "usage_many_ends": _many_ends,
+    "usage_many_ends": _ends,
     "declared_many_ends": _declared_many_ends,
     "bound_name": _bound_name,
     "bound_name_of": _bound_name_of,

@@ -1,5 +1,8 @@
 """What stands before members of KerML, and members without keyword (8.2.3.4, 8.2.4.3)."""
 
+from collections.abc import Callable
+from typing import ParamSpec
+
 from sysmlc.language.text.build import usages
 from sysmlc.language.text.build.definitions import lead, loose
 from sysmlc.language.text.build.features import Part, specialize
@@ -9,7 +12,7 @@ from sysmlc.language.text.build.owning import OWNING, made
 from sysmlc.language.text.build.prefixes import check
 from sysmlc.language.text.build.usages import Prefix
 from sysmlc.language.text.scan import Tokens
-from sysmlc.language.tree import Fact, Node, Reference, Relation
+from sysmlc.language.tree import Fact, Node
 
 _FACTS: dict[str, tuple[tuple[str, Fact], ...]] = {
     "in": (("direction", "in"),),
@@ -60,30 +63,24 @@ def _feature(node: Node) -> Node:
     return node
 
 
-def _loose(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    names: Names | None,
-    parts: list[Part] | None,
-    value: Node | None,
-    body: list[Node],
-) -> Node:
-    return _feature(loose(tokens, at, begin, names, parts, value, body))
+_Said = ParamSpec("_Said")
 
 
-def _loose_all(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    names: Names | None,
-    parts: list[Part] | None,
-    value: Node | None,
-    body: list[Node],
-) -> Node:
-    node = _loose(tokens, at, begin, names, parts, value, body)
+def _as(change: Callable[[Node], Node], build: Callable[_Said, Node]) -> Callable[_Said, Node]:
+    """The builder of an element of SysML, changed to that of KerML which is written alike."""
+
+    def built(*said: _Said.args, **named: _Said.kwargs) -> Node:
+        return change(build(*said, **named))
+
+    return built
+
+
+def _sufficient(node: Node) -> Node:
     node.facts["isSufficient"] = True
     return node
+
+
+_loose = _as(_feature, loose)
 
 
 def _loose_nameless(
@@ -121,22 +118,7 @@ def _crossed(
     return lead(prefix(tokens, begin, given, node), [cross.node])
 
 
-def _metadata(
-    tokens: Tokens,
-    at: int,
-    begin: int,
-    names: Names | None,
-    typing: Relation,
-    about: list[Reference] | None,
-    body: list[Node],
-) -> Node:
-    node = metadata(tokens, at, begin, names, typing, about, body)
-    node.kind = "MetadataFeature"
-    return node
-
-
-def _prefix_metadata(tokens: Tokens, at: int, begin: int, name: Reference) -> Node:
-    node = prefix_metadata(tokens, at, begin, name)
+def _metadata_feature(node: Node) -> Node:
     node.kind = "MetadataFeature"
     return node
 
@@ -146,7 +128,7 @@ ACTIONS = {
     "prefixed_loose": _prefixed,
     "prefixed_nothing": _prefixed_nothing,
     "loose": _loose,
-    "loose_all": _loose_all,
+    "loose_all": _as(_sufficient, _loose),
     "loose_nameless": _loose_nameless,
     "loose_value": _loose_value,
     "cross": _cross,
@@ -154,8 +136,8 @@ ACTIONS = {
     "crossed": _crossed,
     "crossed_prefixed": _crossed,
     "crossed_prefixed_loose": _crossed,
-    "metadata": _metadata,
-    "prefix_metadata": _prefix_metadata,
+    "metadata": _as(_metadata_feature, metadata),
+    "prefix_metadata": _as(_metadata_feature, prefix_metadata),
     "return": usages.ACTIONS["return"],
     "visible_return": usages.ACTIONS["visible_return"],
 }

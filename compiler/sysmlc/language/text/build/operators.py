@@ -1,5 +1,6 @@
 """Operands and operators are grouped by precedence (KerML 8.2.5.8.1, Table 6)."""
 
+from sysmlc.language.operators import LEVEL
 from sysmlc.language.text.build.owning import made
 from sysmlc.language.text.scan import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
@@ -9,22 +10,7 @@ Operand = Node | Reference
 Part = Operand | int
 """Of an expression with operators: an operand, a type, or the token of an operator."""
 
-_LEVELS = (
-    ("??",),
-    ("implies",),
-    ("or", "|"),
-    ("xor",),
-    ("and", "&"),
-    ("==", "!=", "===", "!=="),
-    ("istype", "hastype", "@", "as", "@@", "meta"),
-    ("<", ">", "<=", ">="),
-    ("..",),
-    ("+", "-"),
-    ("*", "/", "%"),
-    ("^", "**"),
-)
-_PRECEDENCE = {operator: level for level, row in enumerate(_LEVELS) for operator in row}
-_RIGHT = _PRECEDENCE["^"]
+_RIGHT = LEVEL["^"]
 _CONDITIONAL = {"??", "or", "and", "implies"}
 _CASTS = {"as", "meta"}
 _METADATA = {"@@", "meta"}
@@ -40,7 +26,7 @@ def grouped(tokens: Tokens, parts: list[Part]) -> Node:
     done: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
     pending: list[str] = []
     for operator, operand in zip(operators, operands, strict=True):
-        while pending and _before(_PRECEDENCE[pending[-1]], _PRECEDENCE[operator]):
+        while pending and _before(LEVEL[pending[-1]], LEVEL[operator]):
             _reduce(done, pending.pop())
         if isinstance(operand, Reference):
             done.append(operation(operator, done.pop(), operand))
@@ -54,7 +40,7 @@ def grouped(tokens: Tokens, parts: list[Part]) -> Node:
 
 def level(operator: str) -> int:
     """How tightly a binary operator binds, those that bind least first; -1 for others."""
-    return _PRECEDENCE.get(operator, -1)
+    return LEVEL.get(operator, -1)
 
 
 def _before(left: int, right: int) -> bool:
