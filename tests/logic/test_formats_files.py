@@ -88,6 +88,15 @@ def test_a_fault_is_told_with_its_place(text, faults):
     assert found == ()
 
 
+def test_a_formula_alone_does_not_say_who_decides():
+    (contract,), told = read("[](req -> <>{state==Busy})\n", "x.spin.ltl")
+    assert [one[:3] for one in told] == [("SM587", 1, 1)]
+    assert [(one.name, one.owner.value) for one in contract.variables] == [
+        ("state", "sys"),
+        ("req", "sys"),
+    ]
+
+
 def test_only_the_contract_with_the_fault_is_missing():
     head = (
         "NAME: A;\nCONTRACT One:\n output boolean variable x;\n Guarantees:\n  G(x y);\n  G(z);\n"

@@ -1,6 +1,7 @@
 """Which class of GR(1) an LTL formula belongs to, and its form there (thesis, 2.2.3)."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class
@@ -45,7 +46,7 @@ def within(formula: Formula, class_: Class) -> Formula | None:
     """
     if class_ is Class.OTHER:
         return formula
-    step = with_primes(formula)
+    step = with_primes(formula) if _is_temporal(formula) else formula
     return None if class_ is Class.INIT and step is not None and _is_primed(step) else step
 
 
@@ -75,6 +76,7 @@ def _applied(op: Op, args: tuple[Formula, ...]) -> Formula:
             return Apply(op, args)
 
 
+@lru_cache(1 << 14)
 def _is_temporal(formula: Formula) -> bool:
     match formula:
         case Apply(op, args):

@@ -5,7 +5,7 @@ grammars/ltl.lark is the grammar of the neutral spelling; the tests hold this re
 """
 
 from collections.abc import Callable, Mapping
-from typing import ClassVar, NoReturn
+from typing import ClassVar, NamedTuple, NoReturn
 
 from sysmlc.depth import room_for
 from sysmlc.logic import domains
@@ -21,7 +21,6 @@ from sysmlc.logic.spelling import (
     Syntax,
     Token,
 )
-from sysmlc.values import dataclass
 
 DEEPEST = 200
 """Levels of nesting that are read: what comes after walks through formulas by recursion."""
@@ -30,8 +29,7 @@ TRUTH, NUMBER, WORD = "truth", "number", "word"
 Kind = str | EnumerationDomain
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(NamedTuple):
     """Part of a formula, what kind of value it has, and where it begins."""
 
     formula: Formula
@@ -138,6 +136,8 @@ class Reader:
 
     def _as_literal(self, part: Part, other: Part) -> Part:
         """A name that the enumeration on the other side has is a literal of it."""
+        if not isinstance(other.kind, EnumerationDomain):
+            return part
         match part.formula, other.kind:
             case ((Var(name, False) | Const(str(name))), EnumerationDomain(literals)) if (
                 name in literals

@@ -2,8 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from functools import cache
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from sysmlc.logic.formula import Op
 from sysmlc.values import dataclass
@@ -39,8 +38,7 @@ class FormulaError(ValueError):
         self.at = at
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(NamedTuple):
     """One word, number, string or sign of a text; the last one of a text has kind ``end``."""
 
     kind: str
@@ -91,41 +89,46 @@ NEUTRAL = Syntax(
 
 def tokens(text: str, syntax: Syntax) -> list[Token]:
     """The text in tokens, with one of kind ``end`` behind them."""
-    pattern = _pattern(syntax.name, syntax.comment, syntax.string, _signs(syntax))
     found = [
         Token(match.lastgroup, match.group(), match.start())
-        for match in pattern.finditer(text)
+        for match in _pattern(syntax).finditer(text)
         if match.lastgroup
     ]
     return [*found, Token("end", "", len(text.rstrip()))]
 
 
-def _signs(syntax: Syntax) -> tuple[str, ...]:
+_patterns: dict[int, tuple[Syntax, re.Pattern[str]]] = {}
+"""By the identity of syntaxes, which are few and made once."""
+
+
+def _pattern(syntax: Syntax) -> re.Pattern[str]:
+    if id(syntax) not in _patterns:
+        signs = "|".join(map(re.escape, _signs(syntax)))
+        text = (
+            rf"\s+|{syntax.comment}|(?P<name>{syntax.name})|(?P<number>\d+)"
+            rf"|(?P<string>{syntax.string})|(?P<sign>{signs})|(?P<unknown>.)"
+        )
+        _patterns[id(syntax)] = (syntax, re.compile(text))
+    return _patterns[id(syntax)][1]
+
+
+def _signs(syntax: Syntax) -> list[str]:
     spelt = {*syntax.prefix, *syntax.infix, *syntax.signs, *syntax.brackets, "'"}
-    signs = spelt | set(syntax.brackets.values())
-    return tuple(sorted((one for one in signs if not one[0].isalpha()), key=lambda s: (-len(s), s)))
-
-
-@cache
-def _pattern(name: str, comment: str, string: str, signs: tuple[str, ...]) -> re.Pattern[str]:
-    known = "|".join(map(re.escape, signs))
-    return re.compile(
-        rf"\s+|{comment}|(?P<name>{name})|(?P<number>\d+)"
-        rf"|(?P<string>{string})|(?P<sign>{known})|(?P<unknown>.)"
-    )
+    signs = {one for one in spelt | set(syntax.brackets.values()) if not one[0].isalpha()}
+    return sorted(signs, key=lambda sign: (-len(sign), sign))
 
 
 class Cursor:
-    """Tokens of a text that are taken one after the other."""
+    """Tokens of a text that are taken one after the other.
+
+    ``next`` is the token that comes next; at the end that of kind ``end``.
+    """
+
+    __slots__ = ("_index", "_tokens", "next")
 
     def __init__(self, found: list[Token]) -> None:
         self._tokens = found
-        self._index = 0
-
-    @property
-    def next(self) -> Token:
-        """The token that comes next; at the end that of kind ``end``."""
-        return self._tokens[self._index]
+        self.back_to(0)
 
     @property
     def after_next(self) -> Token:
@@ -139,6 +142,7 @@ class Cursor:
     def back_to(self, mark: int) -> None:
         """Go back to where the cursor stood, or on to where it will stand."""
         self._index = mark
+        self.next = self._tokens[mark]
 
     def has(self, *texts: str) -> bool:
         """Whether one of the texts comes next."""
@@ -146,8 +150,10 @@ class Cursor:
 
     def take(self) -> Token:
         """The next token, which is read by that."""
-        token = self._tokens[self._index]
-        self._index = min(self._index + 1, len(self._tokens) - 1)
+        token = self.next
+        if token.kind != "end":
+            self._index += 1
+            self.next = self._tokens[self._index]
         return token
 
     def took(self, *texts: str) -> bool:
