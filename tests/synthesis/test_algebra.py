@@ -13,7 +13,7 @@ from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import lasso_truth
 from sysmlc.logic.formats import read
 from sysmlc.logic.printing import print_formula
-from sysmlc.synthesis import Manager
+from sysmlc.synthesis import Manager, OutsideGr1Error
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.relations import behaviour, environment, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError, Universe
@@ -156,3 +156,17 @@ def test_actions_of_din_8580_refine_their_variants_or_not(pair):
 def test_ranges_are_given():
     narrow = "sys n: 0..2\npromise always n'=n"
     assert failures(narrow, f"{narrow}\npromise always n<3") == []
+
+
+def test_what_is_outside_gr1_is_observed():
+    short = "env go: bool\nsys on: bool\npromise always on' <-> go'"
+    asked = "promise G (go -> F on)"
+    assert said(failures(short, f"{short}\n{asked}")) == ["promises: G (go -> F on)"]
+    held = f"{short}\nassume always go -> go'"
+    assert failures(held, f"{held}\n{asked}") == []
+
+
+def test_what_no_reduction_is_known_for_is_named():
+    with pytest.raises(OutsideGr1Error) as caught:
+        failures("sys on: bool", "sys on: bool\npromise G (F G on -> F on)")
+    assert caught.value.conjunct.text == "G (F G on -> F on)"

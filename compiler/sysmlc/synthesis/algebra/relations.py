@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.synthesis.algebra.entail import Entailment
+from sysmlc.synthesis.algebra.observed import observed
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.manager import Manager
@@ -34,10 +35,12 @@ def refinement_failures(
     assumptions entail its own, and with the other's assumptions its guarantees entail the other's.
     Raises DomainError, OutsideGr1Error, LimitError.
     """
-    universe = Universe((concrete, abstract), manager)
-    given = Entailment(universe, universe.system(abstract.assumptions))
+    both = observed((concrete, abstract))
+    (concrete, abstract), seen = both.contracts, both.definitions
+    universe = Universe(both.contracts, manager)
+    given = Entailment(universe, universe.system((*abstract.assumptions, *seen)))
     yield from _failures(given, _new(concrete.assumptions, abstract.assumptions), True)
-    kept = (*abstract.assumptions, *concrete.guarantees)
+    kept = (*abstract.assumptions, *concrete.guarantees, *seen)
     promised = Entailment(universe, universe.system(kept))
     yield from _failures(promised, _new(abstract.guarantees, kept), False)
 
@@ -59,12 +62,18 @@ def _new(wanted: Sequence[Conjunct], given: Sequence[Conjunct]) -> list[Conjunct
 
 def environment(contract: Contract, manager: Manager) -> Trace | None:
     """A run that the assumptions allow; None when the contract is not compatible."""
-    universe = Universe((contract,), manager)
-    return Entailment(universe, universe.system(contract.assumptions)).example()
+    return _example(contract, manager, is_whole=False)
 
 
 def behaviour(contract: Contract, manager: Manager) -> Trace | None:
     """A run that assumptions and guarantees allow; None when the contract is not consistent."""
-    universe = Universe((contract,), manager)
-    conjuncts = (*contract.assumptions, *contract.guarantees)
-    return Entailment(universe, universe.system(conjuncts)).example()
+    return _example(contract, manager, is_whole=True)
+
+
+def _example(contract: Contract, manager: Manager, is_whole: bool) -> Trace | None:
+    alone = observed((contract,))
+    (made,) = alone.contracts
+    universe = Universe(alone.contracts, manager)
+    promised = made.guarantees if is_whole else ()
+    system = universe.system((*made.assumptions, *promised, *alone.definitions))
+    return Entailment(universe, system).example()

@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis.algebra.relations import environment
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.games import NewManager, of_games
-from sysmlc.synthesis.lints.runs import has_environment, of_runs
+from sysmlc.synthesis.lints.runs import of_runs
 from sysmlc.synthesis.lints.words import Remark, of_words
 
 Place = Callable[[str], Subject]
@@ -37,7 +38,7 @@ def _remarks(contract: Contract, new: NewManager) -> Iterator[Remark]:
     yield from said
     if any(one.rule is rules.NEXT_IN_LIVENESS for one in said):
         return
-    if not has_environment(contract, new()):
+    if environment(contract, new()) is None:
         yield Remark(rules.NO_ENVIRONMENT)
         return
     yield from of_runs(contract, new())

@@ -5,9 +5,8 @@ from collections.abc import Iterator
 from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.printing import print_literal
-from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.fair import Runs
-from sysmlc.synthesis.algebra.systems import FairSystem, Universe
+from sysmlc.synthesis.algebra.systems import FairSystem
 from sysmlc.synthesis.game import Game, Part, make_game
 from sysmlc.synthesis.image import Product
 from sysmlc.synthesis.lints import rules
@@ -16,12 +15,6 @@ from sysmlc.synthesis.manager import Manager, Node
 
 _COUNTED = 3
 """Values from which on a whole number is a quantity, which jumps when nothing holds it."""
-
-
-def has_environment(contract: Contract, manager: Manager) -> bool:
-    """Whether the assumptions have a run."""
-    universe = Universe((contract,), manager)
-    return Entailment(universe, universe.system(contract.assumptions)).is_possible
 
 
 def of_runs(contract: Contract, manager: Manager) -> Iterator[Remark]:
