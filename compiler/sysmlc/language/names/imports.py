@@ -1,6 +1,6 @@
 """What namespaces import (KerML 8.2.3.5.3 and 7.2.5.4)."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.contents import NAMESPACES
@@ -22,6 +22,7 @@ class Imports(Members):
         self._imports: dict[Node, list[Node]] = {}
         self._imported: dict[tuple[Node, bool], dict[str, Hits]] = {}
         self._conditions: dict[Node, list[Node]] = {}
+        self._below: dict[tuple[Node, bool], list[Node]] = {}
         self._seen: dict[tuple[Node, bool, str], Hits] = {}
         """What one question has passed through already: imports may go in circles."""
 
@@ -114,9 +115,20 @@ class Imports(Members):
                 return hits
         return NONE
 
-    def _nested(self, scope: Node, everything: bool) -> Iterator[Node]:
-        """The namespaces below ``scope`` that a recursive import searches."""
-        for member in scope.members:
-            if member.kind in NAMESPACES and (everything or member.visibility in ("", "public")):
-                yield member
-                yield from self._nested(member, everything)
+    def _nested(self, scope: Node, everything: bool) -> list[Node]:
+        """The namespaces below ``scope`` that a recursive import searches, owners first."""
+        known = self._below.get((scope, everything))
+        if known is None:
+            known = self._below[scope, everything] = []
+            waiting = [scope]
+            while waiting:
+                node = waiting.pop()
+                if node is not scope:
+                    known.append(node)
+                waiting += [
+                    member
+                    for member in reversed(node.members)
+                    if member.kind in NAMESPACES
+                    and (everything or member.visibility in ("", "public"))
+                ]
+        return known
