@@ -1,0 +1,112 @@
+"""Contracts of a file, be it a model, one of our contracts or a specification of another tool."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sysmlc.values import dataclass, replace
+
+if TYPE_CHECKING:
+    from sysmlc.cli.session import Settings
+    from sysmlc.config import Config
+    from sysmlc.diagnostics import Sink, Subject
+    from sysmlc.diagnostics.render import Finding
+    from sysmlc.logic.contract import Contract
+    from sysmlc.sources import Source
+    from sysmlc.synthesis.decide import Place
+
+_PLACE = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
+
+
+@dataclass(frozen=True, slots=True)
+class ContractFile:
+    """The contracts of a file, and how findings about them find their places."""
+
+    contracts: "tuple[Contract, ...]"
+    sink: "Sink"
+    place: "Place"
+    findings: "tuple[Finding, ...]"
+    sources: "tuple[Source, ...]"
+    root: Path
+
+
+def chosen(contracts: "tuple[Contract, ...]", component: str) -> "tuple[Contract, ...]":
+    """The contracts of one component, or all when none is named; ends the process for another."""
+    from sysmlc.cli.session import fail
+    from sysmlc.suggest import did_you_mean
+
+    names = [one.component for one in contracts]
+    found = tuple(one for one in contracts if component in ("", one.component))
+    if not found:
+        fail(f"no component '{component}'; {did_you_mean(component, names)}")
+    return found
+
+
+def read_contracts(
+    file: Path, language: str, config: "Config", settings: "Settings"
+) -> ContractFile:
+    """The contracts of a file, with what was found on the way; ends the process where it must.
+
+    ``language`` is the form of the text; empty takes it from name and content.
+    """
+    from sysmlc.driver.inputs import SUFFIXES
+
+    is_model = file.is_dir() or file.suffix.lower() in SUFFIXES
+    if is_model and not language:
+        return _of_model(file, config, settings)
+    return _of_text(file, language, config)
+
+
+def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
+    from sysmlc.cli import session
+    from sysmlc.diagnostics import Sink
+    from sysmlc.logic.contract import Contract
+
+    made = session.compile_unit((file,), config, settings)
+    findings = tuple(session.findings(made, only_errors=not settings.verbose))
+
+    def place(origin: str) -> "Subject":
+        from sysmlc.diagnostics import Subject
+
+        element = made.graph.get(origin)
+        return Subject() if element is None else made.graph.subject(element)
+
+    contracts = made.graph.derived(Contract) if made.exit_code() < 2 else ()
+    if not contracts and made.exit_code() < 2:
+        session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
+    return ContractFile(
+        tuple(contracts), Sink(config.rules), place, findings, made.sources, made.root
+    )
+
+
+def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
+    from sysmlc.cli.session import fail
+    from sysmlc.diagnostics import Sink
+    from sysmlc.logic import formats
+    from sysmlc.sources import Source
+
+    if language and not (language in formats.FORMS and formats.FORMS[language].is_read):
+        known = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
+        fail(f"'{language}' is no form that is read; known are {known}")
+    try:
+        source = Source(file.as_posix(), file.read_bytes())
+        text = source.data.decode("utf-8-sig")
+    except OSError as problem:
+        fail(f"cannot read '{file}': {problem.strerror}")
+    except UnicodeDecodeError:
+        fail(f"'{file}' is neither a model that is known nor a text in UTF-8")
+    sink = Sink(config.rules)
+    name = file.name.partition(".")[0]
+    read = formats.read(text, source.name, sink, language)
+    contracts = tuple(one if one.component else replace(one, component=name) for one in read)
+    return ContractFile(contracts, sink, _from_text, (), (source,), Path.cwd())
+
+
+def _from_text(origin: str) -> "Subject":
+    from sysmlc.diagnostics import Place, Subject
+
+    found = _PLACE.fullmatch(origin)
+    if found is None:
+        return Subject()
+    place = Place(found["file"], line=int(found["line"]), column=int(found["column"]))
+    return Subject(place=place)
