@@ -40,16 +40,14 @@ def _reasons(
     artefact: Artefact, graph: Graph, by_id: _Errors, by_file: _Errors, clean: set[str]
 ) -> tuple[Diagnostic, ...]:
     """The errors that concern an artefact; of ``clean`` ids it is known that none does."""
-    reasons: dict[Diagnostic, None] = {}
     reached = _closure(artefact.trace, graph, clean)
-    for id in reached:
-        reasons |= dict.fromkeys(by_id.get(id, ()))
-        element = graph.get(id)
-        if element is not None:
-            reasons |= dict.fromkeys(by_file.get(element.source, ()))
-    if not reasons:
+    elements = (graph.get(id) for id in reached) if by_file else ()
+    files = dict.fromkeys(one.source for one in elements if one is not None)
+    found = [error for id in reached for error in by_id.get(id, ())]
+    found += [error for file in files for error in by_file.get(file, ())]
+    if not found:
         clean.update(reached)
-    return tuple(reasons)
+    return tuple(found)
 
 
 def _closure(trace: Iterable[str], graph: Graph, clean: set[str]) -> list[str]:

@@ -8,6 +8,10 @@ from sysmlc.language.names.imports import Imports
 from sysmlc.language.names.members import Hits
 from sysmlc.language.tree import Node, Relation
 
+_MOST = 2_000
+"""Circles that a name may be looked for in; behind those it is known as lost. Namesakes that each
+specialise what lies in all of them lead to one another in more ways than can be tried."""
+
 
 class Lookup(Imports):
     """Finds what names lead to, each once; ``roots`` gives the members of the global scope.
@@ -43,7 +47,8 @@ class Lookup(Imports):
         self._active.add(reference)
         targets = self._follow(node, relation)
         self._active.discard(reference)
-        if len(targets) == len(reference.chain) or self.cuts == before or not self._active:
+        is_whole = len(targets) == len(reference.chain)
+        if is_whole or not self._active or not 0 < self.cuts - before <= _MOST:
             reference.targets = targets
         return targets[-1] if len(targets) == len(reference.chain) else None
 
