@@ -34,7 +34,7 @@ _NAME = re.compile(r"\{[^{}]*\}|[^\W\d]\w*|[\s\S]")
 
 
 def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file; ranges are those of the values that are named."""
+    """The contract of the file; values are those that are named, and another for a single one."""
     draft = Draft(file, "SPIN")
     text = PARTS.sub(lambda match: " " * len(match.group()), file.text)
     owners = _owners(file.text)
@@ -73,10 +73,12 @@ def _domains(text: str) -> dict[str, Domain]:
 
 
 def _domain(given: list[str]) -> Domain:
+    """Numbers from 0 to the largest, or names; a value that is the only one says nothing."""
     numbers = [int(one) for one in given if re.fullmatch(r"-?\d{1,18}", one)]
     if len(numbers) == len(given):
         return IntegerDomain(min(0, *numbers), max(1, *numbers))
-    return EnumerationDomain(tuple(given))
+    others = () if len(given) > 1 else (f"not_{given[0]}".replace("-", "_"),)
+    return EnumerationDomain((*given, *others))
 
 
 class _Reader(Reader):
