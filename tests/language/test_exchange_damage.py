@@ -96,3 +96,17 @@ def test_damaged_texts_are_laid_out_or_left_alone():
             assert layout(made, "sysml") == made
             done += 1
     assert done > 5
+
+
+def test_a_reference_to_the_top_of_the_file_has_a_name():
+    text = interchange(
+        owning(
+            "PartDefinition",
+            'xmi:id="d" declaredName="D"',
+            relating("Subclassification", 'subclassifier="d" superclassifier="root"'),
+        )
+    )
+    document = read(Source("m.sysmlx", text.encode()), Sink())
+    link([document], Sink())
+    (relation,) = document.root.members[0].relations
+    assert relation.reference.chain == (("#",),)

@@ -24,7 +24,8 @@ class Naming:
     def qualified(self, node: Node) -> tuple[str, ...]:
         """The names from the top of its document down to the element.
 
-        What has no name counts by its position: ``#3`` is the third member of its owner.
+        What has no name counts by its position: ``#3`` is the third member of its owner, ``#``
+        the top itself.
         """
         above: list[Node] = []
         while node not in self._qualified and node.owner is not None:
@@ -34,7 +35,7 @@ class Naming:
         for below in reversed(above):
             names = (*names, effective(below) or _position(below))
             self._qualified[below] = names
-        return names
+        return names or ("#",)
 
 
 def effective(node: Node, depth: int = 0) -> str:
