@@ -30,14 +30,14 @@ def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
 
 
 def test_what_a_usage_is_beyond_a_feature_is_kept():
-    portions = "snapshot start; timeslice shift; individual part one : Cell;"
+    portions = "snapshot begun; timeslice shift; individual part one : Cell;"
     variants = "variation part tool { variant part gripper; }"
     found = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
     assert found.codes() == []
     assert found.named("P::Cell").attrs["individual"] is True
-    assert found.named("P::Cell::start").attrs["portion"] == "snapshot"
+    assert found.named("P::Cell::begun").attrs["portion"] == "snapshot"
     assert found.named("P::Cell::shift").attrs["portion"] == "timeslice"
-    assert found.named("P::Cell::tool", "Property").attrs["variation"] is True
+    assert found.named("P::Cell::tool", "Class").attrs["variation"] is True
     assert found.named("P::Cell::tool::gripper").attrs["variant"] is True
     assert found.named("P::Cell::x").attrs.keys().isdisjoint({"variation", "variant", "portion"})
 

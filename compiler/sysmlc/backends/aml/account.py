@@ -21,6 +21,8 @@ _EVERYWHERE = frozenset(
         "interface_ids",
         "ppr",
         "domain",
+        "usage",
+        "property_specific",
     }
 )
 """What is written of every element, or follows from what is written."""

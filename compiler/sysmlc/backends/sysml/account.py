@@ -103,7 +103,8 @@ _ATTRIBUTES = """
     condition_languages relative port path represents data_type unit default_value category
     semantics version change_mode copyright ppr interface_ids associated_facet tag data_type
     decision_input_flow stereotype namespace lineage on diagram arguments
-    message_kind description
+    message_kind description usage property_specific payload initial value_unit variation variant
+    portion individual
 """
 _SAID = frozenset(_ATTRIBUTES.split())
 """Attributes that the text says, or that say nothing more than what it says."""

@@ -7,7 +7,7 @@ from sysmlc.backends.sysml.library import scalar_of
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import bounds
+from sysmlc.ir.query import bounds, type_of
 from sysmlc.values import dataclass
 
 _VISIBILITIES = ("private", "protected")
@@ -58,8 +58,7 @@ def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head
     """
     element = _element(entry)
     prefixes = visibility(book, element)
-    if element.attrs.get("abstract"):
-        prefixes.append("abstract")
+    prefixes += _kinds_of_life(element)
     head = Head(prefixes, entry.shape.keyword, quoted(entry.name) if entry.name else "")
     head.subsets = [] if is_quantity else _generals(book, entry)
     return head
@@ -126,7 +125,13 @@ def feature_prefixes(book: Book, entry: Entry, keyword: str) -> list[str]:
     direction = attrs.get("direction")
     if direction in ("in", "out", "inout", "return"):
         prefixes.append("out" if direction == "return" else str(direction))
-    prefixes += [word for word in ("derived", "abstract") if attrs.get(word)]
+    life = _kinds_of_life(element)
+    type_ = type_of(book.graph, element)
+    if type_ is not None and type_.attrs.get("variation"):
+        life = [word for word in life if word != "variation"]
+    prefixes += ["variant"] if attrs.get("variant") else []
+    prefixes += [word for word in ("derived",) if attrs.get(word)]
+    prefixes += [word for word in life if word in ("abstract", "variation")]
     if attrs.get("readonly"):
         prefixes.append("constant")
     is_part = attrs.get("aggregation") == "composite" or element.role == "part"
@@ -137,7 +142,15 @@ def feature_prefixes(book: Book, entry: Entry, keyword: str) -> list[str]:
         prefixes += ["ref"] if is_property or _is_referential(entry) else []
     elif direction is None and keyword not in ("attribute", "port") and _is_referential(entry):
         prefixes.append("ref")
-    return prefixes
+    prefixes += [word for word in life if word not in ("abstract", "variation")]
+    return [*prefixes, *([str(attrs["portion"])] if "portion" in attrs else [])]
+
+
+def _kinds_of_life(element: Element) -> list[str]:
+    """Whether it is abstract or a choice, and one individual."""
+    attrs = element.attrs
+    choice = "variation" if attrs.get("variation") else "abstract" if attrs.get("abstract") else ""
+    return [*([choice] if choice else []), *(["individual"] if attrs.get("individual") else [])]
 
 
 def _is_referential(entry: Entry) -> bool:

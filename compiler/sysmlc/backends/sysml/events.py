@@ -34,5 +34,6 @@ def _typed(book: Book, scope: Entry, element: Element) -> str:
         return f"any : {book.library(scope, 'Base::Anything')}"
     if other.shape.is_definition:
         name = book.name(scope, element, Edge.TYPED_BY, target)
-        return str(name)
+        payload = element.attrs.get("payload")
+        return f"{quoted(str(payload))} : {name}" if payload else str(name)
     return f"{quoted(other.name)} : {book.ours(scope, 'Call')}"

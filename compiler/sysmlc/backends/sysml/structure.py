@@ -214,7 +214,8 @@ def parameter(book: Book, entry: Entry) -> list[Line]:
     if not any(one in head.prefixes for one in ("in", "out", "inout")):
         head.prefixes = ["in", *(one for one in head.prefixes if one != "ref")]
     if "default" in element.attrs:
-        head.value = f" default = {value(book, entry.parent, element, element, 'default')}"
+        mark = ":=" if element.attrs.get("initial") else "default ="
+        head.value = f" {mark} {value(book, entry.parent, element, element, 'default')}"
     return [Line(head.text(), contents(book, entry))]
 
 

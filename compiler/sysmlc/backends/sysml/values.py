@@ -47,6 +47,9 @@ def _number(book: Book, scope: Entry | None, feature: Element, given: float) -> 
     text = repr(given)
     if text in ("inf", "-inf", "nan"):
         return string(text)
+    unit_ = feature.attrs.get("value_unit")
+    if isinstance(unit_, str) and unit_.isidentifier():
+        return f"{text} [{book.library(scope, f'SI::{unit_}')}]"
     if type_ is None or quantity_of(book.graph, type_) is None:
         return text
     unit = unit_name(unit_of(book.graph, type_))

@@ -14,11 +14,11 @@ from sysmlc.ir.query import flow_properties, type_of
 _Writer = Callable[[Book, Element, str, AttrValue], None]
 
 _OF_PASSES_NAMES = """
-    role level origin unresolved lineage message_kind path_multiplicity item_property
-    req_id text external href library qualified_name stereotype namespace on"""
+    role level origin unresolved lineage message_kind path_multiplicity item_property usage
+    property_specific req_id text external href library qualified_name stereotype namespace on"""
 _OF_PASSES = frozenset(_OF_PASSES_NAMES.split())
 """What passes work out again, or what stereotype applications hold."""
-_OF_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite property_specific distribution
+_OF_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distribution
     criterion source_context source_path target_context target_path feature_direction symbol
     description definition_uri domain"""
 _OF_TAGS = frozenset(_OF_TAGS_NAMES.split())

@@ -123,6 +123,8 @@ def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     role = _CLASS_ROLES.get(node.kind, "block")
     kind = Kind.DATA_TYPE if role == "value type" else Kind.CLASS
     own = low.make(node, kind, made.name, owner, role=role, property_specific=True)
+    if made.attrs.pop("variation", False):
+        low.set(own, variation=True)
     low.made_for[id(node)] = own
     low.later(lambda: low.lead_all(Edge.SPECIALIZES, own, types_of(low, node)))
     return own

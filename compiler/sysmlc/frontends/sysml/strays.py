@@ -77,9 +77,9 @@ def _more(low: "Lowering", node: Node) -> str:
     is_plain = node.membership != "VariantMembership" and _MORE.isdisjoint(node.facts)
     if is_plain or node.kind == "EnumerationUsage":
         return ""
-    made = low.elements.get(id(node))
+    made = (low.elements.get(id(node)), low.made_for.get(id(node)))
     said = [key for key, value in variant(node).items() if value]
-    lost = [key for key in said if made is None or key not in made.attrs]
+    lost = [key for key in said if not any(one and key in one.attrs for one in made)]
     return str(node.facts["portionKind"]) if lost == ["portion"] else lost[0] if lost else ""
 
 
