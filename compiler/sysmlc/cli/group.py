@@ -13,6 +13,7 @@ from sysmlc import __version__
 COMMANDS = (
     "build",
     "check",
+    "contracts",
     "coverage",
     "explain",
     "backends",

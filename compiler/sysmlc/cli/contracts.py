@@ -1,0 +1,97 @@
+"""``sysmlc contracts``: what contracts say, by themselves and of one another."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from sysmlc.cli.contract_files import ContractFile
+    from sysmlc.cli.session import Settings
+    from sysmlc.synthesis.check import Checked
+    from sysmlc.synthesis.decide import Options
+
+
+@click.group("contracts", short_help="Check contracts, by themselves and against one another.")
+def command() -> None:
+    """Check the contracts of a model."""
+
+
+@command.command(
+    "check",
+    short_help="Say whether contracts can be kept and behaviours keep them.",
+    epilog="""\b
+Examples:
+  sysmlc contracts check plant.uml
+  sysmlc contracts check cells.sysml -c Cells::Cell.turn
+  sysmlc contracts check gate.contract.json
+
+Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
+2 the work could not be done.""",
+)
+@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
+@click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
+@click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
+@click.option("--time-limit", "seconds", type=float, default=0.0, metavar="S", help="CPU seconds.")
+@options.reporting
+@options.reading
+@click.pass_context
+def check_command(
+    ctx: click.Context,
+    /,
+    file: Path,
+    component: str,
+    language: str,
+    seconds: float,
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Check the contracts in FILE, a model or a contract.
+
+    Each is decided, and what is suspicious in it is told: promises that cost nothing, assumptions
+    that nobody can keep, outputs of which nothing is said. A behaviour is compared with the
+    requirements of its component; a run shows where it breaks them.
+    """
+    from sysmlc.cli import session
+    from sysmlc.cli.contract_files import read_contracts
+    from sysmlc.cli.progress import Progress
+    from sysmlc.synthesis import Limits
+    from sysmlc.synthesis.decide import Options
+
+    settings = session.Settings(**given)
+    config = session.load_config((file,), settings.config)
+    progress = Progress(settings.verbose)
+    read = read_contracts(file, language, config, settings)
+    limits = Limits(seconds=seconds)
+    try:
+        ctx.exit(_checked(read, component, settings, Options("", limits, progress.note)))
+    except ImportError as problem:
+        session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
+    finally:
+        progress.clear()
+
+
+def _checked(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
+    from sysmlc.cli import session
+    from sysmlc.cli.contract_files import chosen
+    from sysmlc.diagnostics import Severity
+    from sysmlc.diagnostics.render import make_report
+    from sysmlc.synthesis.check import check
+
+    contracts = chosen(read.contracts, component) if read.contracts else ()
+    results = list(check(contracts, read.place, read.sink, options))
+    found = session.named(read.root, make_report(read.sink, read.sources).findings)
+    session.show([*read.findings, *found], settings)
+    for result in results:
+        click.echo(_line(result), err=not session.says_more(settings))
+    is_undecided = any(one.verdict.is_realizable is None for one in results)
+    has_errors = any(one.severity is Severity.ERROR for one in read.sink)
+    return 2 if is_undecided or not results else int(has_errors)
+
+
+def _line(result: "Checked") -> str:
+    kept = {None: "", True: ", keeps its requirements", False: ", breaks its requirements"}
+    words = {None: "not decided", True: "realizable", False: "unrealizable"}
+    verdict = result.verdict
+    return f"{verdict.component}: {words[verdict.is_realizable]}{kept[result.is_implemented]}"

@@ -1,0 +1,154 @@
+"""Checks of the contracts of a model: each by itself, and behaviours against requirements."""
+
+from collections.abc import Callable, Iterable, Iterator
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.samples import arrow, machine
+from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
+from sysmlc.synthesis.algebra.systems import DomainError
+from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.decide import Options, Place, Verdict, decide
+from sysmlc.synthesis.game import OutsideGr1Error
+from sysmlc.synthesis.lints import lint
+from sysmlc.synthesis.manager import LimitError, Manager
+from sysmlc.values import dataclass
+
+SUFFIX = ".requirements"
+"""What the contract of a component's requirements has behind the name of its behaviour's."""
+_SHOWN = 12
+"""Steps of a run that a message shows."""
+
+
+def _lamp(demand: str, *moves: str, constraint: str = "") -> str:
+    """A state machine with a requirement that its owner satisfies, in IR text."""
+    owner = "    -> classifier-behavior m\n"
+    told = f'    Constraint g language="LTL" body="{constraint}"\n' if constraint else ""
+    text = machine(arrow("a", "b", "start"), *moves)
+    return text.replace(owner, f"{owner}    -> satisfies q\n{told}", 1) + (
+        '  Class q "Stays on" role="requirement" req_id="R1"\n'
+        + "".join(
+            f'    Constraint f{at} language="LTL" body="{body}"\n'
+            for at, body in enumerate(demand.split("; "))
+        )
+    )
+
+
+_OFF = arrow("b", "a", "stop")
+BREAKS = rule(
+    "SM560",
+    "behaviour-breaks-requirement",
+    Severity.ERROR,
+    "the behaviour of '{component}' does not keep '{formula}'{said}",
+    why="A behaviour implements the requirements of its component: in every environment that they "
+    "assume it keeps what they demand.",
+    help="change the behaviour, or the requirement; the run shows what happens",
+    wrong=_lamp("G (state=B -> X state=B)", _OFF),
+    right=_lamp("G (state=B -> X state=B)"),
+)
+ASSUMES = rule(
+    "SM561",
+    "behaviour-assumes-more",
+    Severity.ERROR,
+    "the behaviour of '{component}' assumes '{formula}', which its requirements do not{said}",
+    why="A behaviour may rely on no more than the requirements of its component do.",
+    help="add it to the assumptions of the requirement, or let the behaviour do without it",
+    wrong=_lamp("G F state=B", constraint="G F event=start"),
+    right=_lamp("G F state=B; G F event=start", constraint="G F event=start"),
+)
+NOT_COMPARED = rule(
+    "SM562",
+    "behaviour-not-compared",
+    Severity.WARNING,
+    "the behaviour of '{component}' is not compared with its requirements: {reason}",
+    why="Only contracts in GR(1), or that history bits bring there, are compared.",
+    wrong=_lamp("G (F G state=B -> F state=A)", _OFF),
+    right=_lamp("G (state=A -> F state=A)", _OFF),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What was found out about one contract; the pairs that were compared by name."""
+
+    verdict: Verdict
+    is_implemented: bool | None
+    """Whether the behaviour keeps its requirements; None when there are none, or no answer."""
+
+
+def check(
+    contracts: Iterable[Contract], place: Place, sink: Sink, options: Options
+) -> Iterator[Checked]:
+    """Decide each contract, tell what is suspicious in it, compare behaviours with requirements."""
+    given = tuple(contracts)
+    demanded = {one.component.removesuffix(SUFFIX): one for one in given if _is_demand(one)}
+    for contract in given:
+        verdict = decide(contract, place, sink, options)
+        if verdict.is_realizable is not None:
+            _lint(contract, place, sink, options)
+        other = None if _is_demand(contract) else demanded.get(contract.component)
+        kept = None if other is None else _is_kept(contract, other, place, sink, options)
+        yield Checked(verdict, kept)
+
+
+def _is_demand(contract: Contract) -> bool:
+    return contract.component.endswith(SUFFIX)
+
+
+def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
+    try:
+        lint(contract, place, sink, _maker(options))
+    except LimitError:
+        # The verdict needed less than the questions about it: what is known is told.
+        return
+
+
+def _maker(options: Options) -> Callable[[], Manager]:
+    return lambda: Manager(options.engine, options.limits, options.progress)
+
+
+def _is_kept(
+    behaviour: Contract, demanded: Contract, place: Place, sink: Sink, options: Options
+) -> bool | None:
+    """Whether the behaviour's contract refines that of the requirements; failures are reported."""
+    try:
+        failures = list(refinement_failures(behaviour, demanded, _maker(options)()))
+    except (OutsideGr1Error, DomainError, LimitError) as problem:
+        subject = place(behaviour.origin)
+        sink.report(NOT_COMPARED, subject, component=behaviour.component, reason=_why(problem))
+        return None
+    for failure in failures:
+        _report(behaviour, failure, place, sink)
+    return not failures
+
+
+def _why(problem: OutsideGr1Error | DomainError | LimitError) -> str:
+    if isinstance(problem, OutsideGr1Error):
+        return f"'{print_formula(problem.conjunct.formula)}': {problem}"
+    return str(problem)
+
+
+def _report(behaviour: Contract, failure: Failure, place: Place, sink: Sink) -> None:
+    conjunct = failure.conjunct
+    sink.report(
+        ASSUMES if failure.is_assumption else BREAKS,
+        place(conjunct.origin),
+        notes=tuple(lines(failure.trace)),
+        component=behaviour.component,
+        formula=print_formula(conjunct.formula),
+        said=f" ({conjunct.text.removesuffix('.')})" if conjunct.text else "",
+    )
+
+
+def lines(trace: Trace) -> Iterator[str]:
+    """The steps of a run, a line each, with what has changed."""
+    before: dict[str, object] = {}
+    for number, values in enumerate(trace.steps[:_SHOWN], 1):
+        new = {name: value for name, value in values.items() if before.get(name) != value}
+        changed = ", ".join(f"{name}={print_literal(value)}" for name, value in new.items())
+        yield f"step {number}: {changed or 'nothing changes'}"
+        before = dict(values)
+    if len(trace.steps) > _SHOWN:
+        yield f"and {len(trace.steps) - _SHOWN} more"
+    yield f"then again from step {trace.loop + 1}"

@@ -1,0 +1,51 @@
+"""``sysmlc contracts check``: a line for each contract, findings before, exit codes."""
+
+import pytest
+
+from sysmlc.driver import registry
+from sysmlc.passes import pipeline
+from sysmlc.synthesis import check
+from sysmlc.synthesis.lints import rules
+
+
+@pytest.fixture
+def all_passes(monkeypatch):
+    every = [pipeline.load(name) for name in pipeline.NAMES]
+    monkeypatch.setattr(registry, "passes", lambda options: every)
+
+
+def test_a_contract_that_is_well_is_one_line(here):
+    here.write("lamp.gr1.json", rules.NO_FAIRNESS.right)
+    made = here.sysmlc("contracts", "check", "lamp.gr1.json")
+    assert [made.exit_code, made.stdout] == [0, "lamp: realizable\n"]
+
+
+def test_suspicious_contracts_are_told_and_are_no_error(here):
+    here.write("lamp.gr1.json", rules.IDLE.wrong)
+    made = here.sysmlc("contracts", "check", "lamp.gr1.json")
+    assert made.exit_code == 0
+    assert "warning[SM541 vacuous-win]: 'lamp' keeps its contract without ever" in made.stderr
+
+
+def test_an_unrealizable_contract_is_an_error(here):
+    here.write("lamp.gr1.json", rules.NO_FAIRNESS.wrong)
+    made = here.sysmlc("contracts", "check", "lamp.gr1.json")
+    assert [made.exit_code, made.stdout] == [1, "lamp: unrealizable\n"]
+    assert "for instance if 'go' recurred" in made.stderr
+
+
+def test_a_behaviour_that_breaks_a_requirement(here, all_passes):
+    here.write("lamp.ir", check.BREAKS.wrong)
+    made = here.sysmlc("contracts", "check", "lamp.ir")
+    assert made.exit_code == 1
+    assert "Plant::Gate: realizable, breaks its requirements\n" in made.stdout
+    assert "error[SM560 behaviour-breaks-requirement]" in made.stderr
+    assert "step 2: event=stop, state=B" in made.stderr
+
+
+def test_only_one_component(here, all_passes):
+    here.write("lamp.ir", check.BREAKS.right)
+    made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate.requirements")
+    assert made.stdout == "Plant::Gate.requirements: realizable\n"
+    made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gat")
+    assert [made.exit_code, made.stdout] == [2, ""]

@@ -1,0 +1,63 @@
+"""``sysmlc contracts check``: contracts of a model, behaviours against requirements."""
+
+import pytest
+
+from sysmlc.diagnostics import Sink, catalogue
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.contract import Contract
+from sysmlc.passes import pipeline
+from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.check import BREAKS, check, lines
+from sysmlc.synthesis.decide import Options
+
+CODES = ("SM560", "SM561", "SM562")
+
+
+def checked(text):
+    graph, sink = parse_text(text), Sink()
+    pipeline.run(graph, sink, verify_each=True)
+    sink = Sink()
+    results = check(
+        graph.derived(Contract), lambda origin: graph.subject(graph[origin]), sink, Options()
+    )
+    return {one.verdict.component: one for one in results}, list(sink)
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
+    rule = catalogue()[code]
+    assert code in [one.rule.code for one in checked(rule.wrong)[1]]
+    assert code not in [one.rule.code for one in checked(rule.right)[1]]
+
+
+def test_a_behaviour_keeps_its_requirements_or_a_run_shows_where_not():
+    results, _ = checked(BREAKS.right)
+    assert results["Plant::Gate"].is_implemented is True
+    results, found = checked(BREAKS.wrong)
+    assert results["Plant::Gate"].is_implemented is False
+    assert results["Plant::Gate.requirements"].is_implemented is None
+    (broken,) = [one for one in found if one.rule is BREAKS]
+    assert broken.message == (
+        "the behaviour of 'Plant::Gate' does not keep 'state=B -> state'=B' ('Stays on' demands it)"
+    )
+    assert broken.subject.name == "Plant::Stays on::<Constraint>"
+    assert broken.notes[0] == "step 1: event=start, state=A"
+    assert broken.notes[1] == "step 2: event=stop, state=B"
+    assert "state=A" in broken.notes[2]
+
+
+def test_a_run_shows_only_what_changes_and_where_it_goes_on():
+    trace = Trace(({"a": True, "n": 1}, {"a": True, "n": 2}, {"a": True, "n": 2}), 1)
+    assert list(lines(trace)) == [
+        "step 1: a=true, n=1",
+        "step 2: n=2",
+        "step 3: nothing changes",
+        "then again from step 2",
+    ]
+
+
+def test_a_long_run_is_cut():
+    trace = Trace(tuple({"n": number} for number in range(30)), 0)
+    shown = list(lines(trace))
+    assert shown[-2:] == ["and 18 more", "then again from step 1"]
+    assert len(shown) == 14
