@@ -31,4 +31,9 @@ package P {
 def test_portions_choices_individuals_payloads_first_values_and_units():
     reading = read(TEXT)
     assert reading.codes() == []
-    assert [one for one in differences(reading.graph) if "property specific" not in one] == []
+    assert [one for one in differences(reading.graph) if not is_of_grip(one)] == []
+
+
+def is_of_grip(line):
+    """The class of a usage with members of its own is a definition in the text (SM733)."""
+    return "::Grip " in line and line.split()[0] in ("renamed", "changed")
