@@ -39,6 +39,8 @@ class Model:
         self._supers: dict[Node, dict[Node, None]] = {}
         self.by_type: dict[Node, tuple[Node, ...]] = {}
         """What ``typed`` found out about features, once all names are resolved."""
+        self.by_types_above: dict[tuple[Node, ...], set[Node]] = {}
+        """The same about all that is above several generals."""
 
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))

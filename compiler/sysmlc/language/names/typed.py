@@ -33,9 +33,16 @@ def needed(model: "Model", node: Node) -> tuple[Node, ...]:
     found = _candidates(model, node)
     if not found:
         return ()
-    others = (general for general in model.supers_of(node) if general is not node)
-    above = {one for general in others for one in _candidates(model, general)}
+    generals = tuple(model.lookup.all_generals(node))
+    above = model.by_types_above.get(generals)
+    if above is None:
+        above = {one for general in _above(model, generals) for one in _candidates(model, general)}
+        model.by_types_above[generals] = above
     return tuple([one for one in found if one not in above])
+
+
+def _above(model: "Model", generals: tuple[Node, ...]) -> set[Node]:
+    return {one for general in generals for one in model.supers_of(general)}
 
 
 def _candidates(model: "Model", node: Node) -> tuple[Node, ...]:
