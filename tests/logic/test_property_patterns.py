@@ -2,14 +2,16 @@
 
 import pytest
 import spot
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from test_formats_spot import for_spot
 from test_reductions import ltl
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.history import History
-from sysmlc.logic.ltl import FormulaError, line_and_column
-from sysmlc.logic.reduce import parts_of
+from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
+from sysmlc.logic.reduce import NotReducibleError, parts_of
 from sysmlc.logic.sentences import read_sentence
 
 DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
@@ -147,3 +149,34 @@ def test_what_is_no_sentence_is_told_with_its_place(text, place, reason):
         read_sentence(text, DOMAINS)
     assert line_and_column(text, caught.value.at) == place
     assert reason in str(caught.value)
+
+
+WORDS = [
+    *("Globally", "before", "after", "between", "and", "until", "it is", "always", "never"),
+    *("eventually", "the case that", "if", "then", "holds", "previously held", "within", "steps"),
+    *("at most", "times", "again and again", "responds to", "precedes", "p", "q", "n=1", "n", "3"),
+    *("(", ")", ",", ".", "!", "&", "->", "G", "'", "99999999999999999999", '"', "\ud800"),
+]
+
+
+@given(st.lists(st.sampled_from(WORDS), max_size=12))
+@settings(max_examples=600, deadline=None)
+def test_any_words_are_a_sentence_or_told_with_a_place(words):
+    text = " ".join(words)
+    try:
+        formula = read_sentence(text, DOMAINS)
+    except FormulaError as error:
+        assert 0 <= error.at <= len(text)  # noqa: PT017
+    else:
+        assert parts_of(formula, History(DOMAINS))
+
+
+@pytest.mark.parametrize(
+    "text", ["!(a U " * 60 + "b" + ")" * 60, "X " * 150 + "a", "X " * 30 + "a"]
+)
+def test_deep_formulas_are_reduced_or_not_but_never_fail(text):
+    formula = parse_formula(text, {name: BooleanDomain() for name in "ab"})
+    try:
+        assert parts_of(formula, History("ab"))
+    except NotReducibleError:
+        assert len(text) > 200
