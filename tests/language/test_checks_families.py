@@ -16,7 +16,7 @@ KERML = {
 SYSML = {
     *("SM250", "SM259", "SM260", "SM261", "SM262", "SM263", "SM264", "SM265", "SM268", "SM269"),
     *("SM270", "SM271", "SM272", "SM273", "SM276", "SM277", "SM278", "SM279"),
-    *("SM280", "SM281", "SM282", "SM283"),
+    *("SM280", "SM281", "SM282", "SM283", "SM284"),
 }
 
 
@@ -122,4 +122,20 @@ def test_flows_need_a_dot_unless_a_usage_holds_what_flows():
     ]
     assert found(text.format("part def", "flow from A::x to b.z;")) == [
         "'A::x' does not say what of the flow's end it belongs to"
+    ]
+
+
+def test_a_member_with_the_name_of_an_inherited_one_redefines_it_or_hides_it():
+    assert found("""
+        part def Gate { part motor; part leaf; alias arm for leaf; }
+        part def Big :> Gate { part motor; part :>> leaf; }
+        part big : Big { part leaf; attribute speed; }
+        part other : Gate { part arm :>> arm; }
+        metadata def Rated { attribute level { attribute max; } }
+        part rated { @Rated { level { max = 3; } } }
+        action def Move { in way; }
+        action move : Move { in way; }
+    """) == [
+        "'motor' of 'Big' is not the 'motor' that it inherits from 'Gate', and hides it",
+        "'leaf' of 'big' is not the 'leaf' that it inherits from 'Big', and hides it",
     ]

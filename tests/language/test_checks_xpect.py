@@ -149,6 +149,27 @@ def test_most_warnings_that_the_pilot_expects_are_told_at_their_place():
     assert (reached, sum(map(len, wanted.values()))) == (19, 24)
 
 
+def test_members_that_hide_inherited_ones_are_told_where_the_pilot_does():
+    """But for two; what `self` of two generals of different kinds hides is told as that."""
+    wanted = reached = 0
+    apart = re.compile(r"inherited member name '(?!self|start|done)")
+    with (_XPECT / "expected-errors.tsv").open(encoding="utf-8", newline="") as rows:
+        lines = [
+            row for row in csv.DictReader(rows, delimiter="\t") if apart.search(row["message"])
+        ]
+    for case in (*cases("sysml"), *cases("kerml")):
+        name = case.path.relative_to(_XPECT).as_posix()
+        mine = [row for row in lines if row["file"] == name]
+        if mine:
+            found, plain = told(case, Severity.WARNING), xpect.model_text(case.text)
+            hidden = [at for at, code in found if code == "SM284"]
+            for row in mine:
+                places = spans(plain, int(row["line"]), row["at_text"])
+                wanted += 1
+                reached += any(at in place for place in places for at in hidden)
+    assert (reached, wanted) == (8, 10)
+
+
 def table():
     """How many of the expected errors each rule tells."""
     counts = Counter((code, name[:5]) for name, _, code in outcome() if code)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.found import Found, name_of
+from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node
@@ -19,6 +19,17 @@ DUPLICATE = rule(
     wrong="package Plant {\n    part gate;\n    action gate;\n}\n",
     right="package Plant {\n    part gate;\n    action openGate;\n}\n",
 )
+HIDING = rule(
+    "SM284",
+    "hides-inherited",
+    Severity.WARNING,
+    "'{name}' of '{owner}' is not the '{name}' that it inherits from '{general}', and hides it",
+    why="What is inherited under this name cannot be referred to by it any more, though '{owner}' "
+    "has both (KerML 1.0, validateNamespaceDistinguishability).",
+    help="redefine it (':>> {name}') if it is meant, else give the new one another name",
+    wrong="part def Gate { part motor; }\npart def Big :> Gate { part motor; }\n",
+    right="part def Gate { part motor; }\npart def Big :> Gate { part :>> motor; }\n",
+)
 
 
 def check(model: Model, node: Node) -> Iterator[Found]:
@@ -33,4 +44,39 @@ def check(model: Model, node: Node) -> Iterator[Found]:
             yield Found(DUPLICATE, member.name_start, count)
 
 
-CHECKS = ((kinds_of("Namespace"), check),)
+def check_inherited(model: Model, node: Node) -> Iterator[Found]:
+    """Report members with the name of an inherited member that they do not redefine."""
+    inherited = model.lookup.inherited
+    if node.owner is not None and (node.owner.kind in _METADATA or node.kind in _METADATA):
+        return
+    for member in node.members:
+        name = member.name
+        if name is None or member.membership not in _NAMED:
+            continue
+        for hit in inherited(node, name):
+            if hit.name in (name, None) and not _redefines(model, member, hit):
+                general = name_of(model, hit.owner)
+                facts = {"owner": name_of(model, node), "name": name, "general": general}
+                yield Found(HIDING, member.name_start, facts)
+                break
+
+
+def _redefines(model: Model, member: Node, hit: Node) -> bool:
+    """Whether a member redefines what an inherited one stands for, or what that redefines too.
+
+    KerML 1.0, 8.3.3.1.10, removeRedefinedFeatures; the inherited one may be an alias.
+    """
+    element, redefined = model.lookup.element(hit), model.lookup.redefined(member)
+    if element is None or element is member or element in redefined:
+        return True
+    return bool(redefined) and not redefined.isdisjoint(model.lookup.redefined(element))
+
+
+_NAMED = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
+"""Members that have names of their own: parameters of cases are those of what is included."""
+_METADATA = kinds_of("MetadataFeature")
+"""What their bodies say of attributes is no declaration (SysML 2.0, 8.2.2.27)."""
+CHECKS = (
+    (kinds_of("Namespace"), check),
+    (DECLARED_TYPES, check_inherited),
+)
