@@ -193,6 +193,23 @@ def test_any_layout_comes_to_what_a_clean_build_comes_to(runs, seed):
         assert_is_as_from_a_clean_build()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_edits_of_every_kind_one_after_the_other_and_back(runs, seed):
+    chosen = random.Random(seed)
+    path = Path("unit/line.sysml")
+    written = {
+        path.read_text(),
+        LINE.replace("= 3;", "= 4;"),
+        LINE.replace("part arm", "part hand"),
+    }
+    texts = sorted(written)
+    for _ in range(5):
+        lines = chosen.choice(texts).splitlines(keepends=True)
+        lines.insert(chosen.randrange(1, len(lines)), chosen.choice(["\n", "// note\n", ""]))
+        path.write_text("".join(lines))
+        assert_is_as_from_a_clean_build()
+
+
 def test_an_example_whose_layout_changes(runs):
     shutil.rmtree("unit")
     example = Path(__file__).parents[2] / "examples" / "lego-recipe-v2"
