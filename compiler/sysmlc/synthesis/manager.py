@@ -23,6 +23,8 @@ _GIBIBYTE = 1 << 30
 _START = 1 << 26
 """Bytes that CUDD is told to expect: it sets aside and clears a share of them at once, which for
 8 GiB takes longer than most games."""
+REORDER_AT = 50_000
+"""Nodes from which on a better order of bits is worth the search."""
 _CACHE = 1 << 14
 """Slots of the cache at the start; it grows."""
 _NODE = 32
@@ -199,6 +201,8 @@ class Manager:
             return
         self._next_look = now + _PATIENCE
         used, limits = self.usage(), self.limits
+        if used.nodes > REORDER_AT:
+            self.reorder_automatically(True)
         if limits.nodes and used.nodes > limits.nodes:
             raise LimitError("nodes", f"{limits.nodes:,}")
         if limits.seconds and used.seconds > limits.seconds:

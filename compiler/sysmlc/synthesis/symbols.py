@@ -12,6 +12,7 @@ from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomai
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.synthesis import vectors
 from sysmlc.synthesis.manager import Manager, Node
+from sysmlc.synthesis.order import ordered
 from sysmlc.synthesis.vectors import Vector
 
 
@@ -24,13 +25,14 @@ class Symbols:
     """Bits of the variables in one manager."""
 
     def __init__(self, manager: Manager, variables: Iterable[Variable]) -> None:
-        """Declare the bits of the variables in the given order, each beside its next value."""
+        """Declare the bits of the variables, each beside its next value (``order``)."""
         self.manager = manager
         self.variables = {one.name: one for one in variables}
         self._bits = {name: _bits(one) for name, one in self.variables.items()}
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
-        self._to_next = {bit: next_bit(bit) for bits in self._bits.values() for bit in bits}
+        order = ordered(self.variables.values(), self._bits)
+        self._to_next = {bit: next_bit(bit) for bit in order}
         self._to_present = {after: bit for bit, after in self._to_next.items()}
         manager.declare([bit for pair in self._to_next.items() for bit in pair])
 
