@@ -4,8 +4,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from html import unescape
-from itertools import compress
-from operator import eq
+from itertools import compress, islice
+from operator import eq, ne
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
@@ -98,18 +98,25 @@ def _unordered(document: Document) -> list[int]:
 
 def _unordered_neighbours(document: Document) -> list[int]:
     """The same where every child has a place in the order: then two neighbours are wrong."""
-    tags, ends, parents = document.tags, document.ends, document.parents
-    are_neighbours = list(map(eq, parents, map([*parents, None].__getitem__, ends)))
-    pairs = zip(tags, map([*tags, ""].__getitem__, ends), strict=True)
-    wrong = {
-        (one, other)
-        for one, other in set(compress(pairs, are_neighbours))
-        if ORDER.get(one, -1) > ORDER[other]
-    }
-    if not wrong:
-        return []
-    rows = compress(range(len(tags)), are_neighbours)
-    return sorted({parents[row] for row in rows if (tags[row], tags[ends[row]]) in wrong})
+    tags, parents, found = document.tags, document.parents, set()
+    are_beside = map(eq, parents, islice(parents, 1, None))
+    pairs = set(compress(zip(tags, islice(tags, 1, None), strict=False), are_beside))
+    wrong = {(one, other) for one, other in pairs if ORDER.get(one, -1) > ORDER[other]}
+    if wrong:
+        rows = range(len(tags) - 1)
+        alike = (row for row in rows if parents[row] == parents[row + 1])
+        found = {parents[row] for row in alike if (tags[row], tags[row + 1]) in wrong}
+    for row, after in _behind_content(document):
+        if parents[row] == parents[after] and ORDER.get(tags[row], -1) > ORDER[tags[after]]:
+            found.add(parents[row])
+    return sorted(found)
+
+
+def _behind_content(document: Document) -> Iterator[tuple[int, int]]:
+    """Rows with others inside, and for each the row behind these."""
+    ends, rows = document.ends, range(len(document.ends))
+    hold_others = map(ne, ends, range(1, len(ends) + 1))
+    return ((row, ends[row]) for row in compress(rows, hold_others) if ends[row] < len(ends))
 
 
 def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:

@@ -95,8 +95,11 @@ class Context:
         self, kind: Kind, document: Document, row: int, owner: str | None, id: str = ""
     ) -> Element:
         """Add the element of a row, without attributes."""
-        id = id or self.id_at(document, row, owner)
         name, ordinal = document.attributes[row].get("Name", ""), document.ordinals[row]
+        if not id:
+            id = document.ids[row]
+            if not id or self.ids.is_repeated(id):
+                id = self.id_at(document, row, owner)
         source = document.name
         if document.is_built_in:
             source, ordinal = "", -1
