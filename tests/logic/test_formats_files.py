@@ -9,7 +9,9 @@ import pytest
 from sysmlc.diagnostics import Sink
 from sysmlc.diagnostics.rule import catalogue
 from sysmlc.logic import formats
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formats import rules
+from sysmlc.logic.formula import Var
 from sysmlc.logic.printing import print_formula
 
 RULES = [one for code, one in sorted(catalogue().items()) if "SM580" <= code <= "SM589"]
@@ -78,6 +80,7 @@ def test_the_wrong_example_has_the_fault_and_the_right_one_nearly(rule):
             ' "guarantees": {"safety": ["x \\u0026 \\n y"]}}',
             ("SM583", 2, 41),
         ),
+        ("G a\n.inputs a b-c\n", ("SM581", 2, 11)),
         ("nothing that is known", ("SM580", 1, 1)),
         ('{"variables": ' + "[" * 100_000, ("SM581", 1, 1)),
     ],
@@ -95,6 +98,21 @@ def test_a_formula_alone_does_not_say_who_decides():
         ("state", "sys"),
         ("req", "sys"),
     ]
+
+
+def test_names_of_slugs_and_tlsf_become_names_of_all_forms():
+    slugs = "[INPUT]\nx@0.0.7\n[OUTPUT]\n[ENV_TRANS]\n! x@0.0.7'\n"
+    (contract,), told = read(slugs, "a.slugsin")
+    assert (told, said(contract.assumptions)) == ([], [("safety", "!x_0_0_7'")])
+    (contract,), told = read("INFO { }\nMAIN { OUTPUTS { a'; } GUARANTEE { G a'; } }\n")
+    assert (told, said(contract.guarantees)) == ([], [("safety", "a_")])
+
+
+def test_a_contract_of_ours_comes_back_with_origins_and_words():
+    variable = Variable("go", Owner.ENVIRONMENT, BooleanDomain(), "id-1")
+    conjunct = Conjunct(Var("go"), Class.INIT, "id-2", "It \u00e4 'goes'.")
+    contract = Contract("Plant::Gate", "id-0", (variable,), (conjunct,), ())
+    assert read(formats.write(contract, "contract"))[0] == (contract,)
 
 
 def test_only_the_contract_with_the_fault_is_missing():
@@ -270,4 +288,6 @@ def test_spoiled_files_are_told_and_never_fail():
         name, text = draw.choice(files)
         found, told = read(spoiled(text, draw), name)
         assert found or told
+        for contract in found:
+            assert read(formats.write(contract, "neutral"), form="neutral")[1] == []
         assert all(line > 0 and column > 0 and message for _, line, column, message in told)

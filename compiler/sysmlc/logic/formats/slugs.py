@@ -36,7 +36,6 @@ SYNTAX = Syntax(
     {"(": ")"},
     STRENGTH,
     ("^", "-"),
-    name=r"[^\W\d][\w.@]*",
 )
 DECLARING = {"INPUT": Owner.ENVIRONMENT, "OUTPUT": Owner.SYSTEM}
 SECTIONS = {
@@ -48,7 +47,9 @@ SECTIONS = {
     "SYS_LIVENESS": (Owner.SYSTEM, Class.LIVENESS),
 }
 _TITLE = re.compile(r"\[(\w+)\]$")
-_DECLARED = re.compile(r"([^\W\d][\w.@]*)(?:\s*:\s*(-?\d+)\s*\.\.\.\s*(-?\d+))?$")
+_DECLARED = re.compile(r"([^\W\d]\w*)(?:\s*:\s*(-?\d+)\s*\.\.\.\s*(-?\d+))?$")
+_IN_NAMES = re.compile(r"(?<=\w)[.@](?=\w)")
+"""Bits of slugs' own (``x@0.0.7``) become names that formulas of all forms can have."""
 _SPELLING = Spelling(
     LTL, primed, lambda v: {True: "TRUE", False: "FALSE"}[v] if v.__class__ is bool else str(v)
 )
@@ -58,7 +59,7 @@ def read(file: File) -> tuple[Contract, ...]:
     """The contract of the file, whose name it has; slugsin is read by ``[SECTION]`` too."""
     draft = Draft(file, "slugs")
     title = ""
-    for at, line in lines(file.text):
+    for at, line in lines(_IN_NAMES.sub("_", file.text)):
         found = _TITLE.match(line)
         if found:
             title = _title(draft, found.group(1), at)

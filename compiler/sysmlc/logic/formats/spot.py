@@ -10,6 +10,7 @@ from pathlib import PurePath
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
 from sysmlc.logic.counting import in_bits
+from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import File, lowered, said_ltl
 from sysmlc.logic.formats.draft import Draft
 from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
@@ -55,7 +56,11 @@ def read(file: File) -> tuple[Contract, ...]:
     for match in PARTS.finditer(file.text):
         for word in re.finditer(r"[^\s,]+", match.group(2)):
             at = match.start(2) + word.start()
-            draft.declare(word.group(), at, OWNERS[match.group(1)], BooleanDomain())
+            if word.group().isidentifier():
+                draft.declare(word.group(), at, OWNERS[match.group(1)], BooleanDomain())
+            else:
+                reason = f"'{word.group()}' is no name that formulas can have"
+                draft.fault(rules.NOT_UNDERSTOOD, at, form="Spot", reason=reason)
     text = PARTS.sub(lambda match: " " * len(match.group()), file.text)
     read_implication(draft, text, SYNTAX, Atoms)
     return draft.contracts(PurePath(file.path).stem.removesuffix(".spot"))

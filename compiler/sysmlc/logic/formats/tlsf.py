@@ -3,6 +3,7 @@
 Source: TLSF v1.1; enumerations, sets and patterns of its full form are named as outside.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import PurePath
 
@@ -146,15 +147,15 @@ class _File:
         name = cursor.expect_kind("name", "a name")
         if not cursor.took("["):
             cursor.expect(";")
-            self._declare(name.text, name.at, owner)
-            self._known[name.text] = Var(name.text)
+            self._declare(_plain_name(name.text), name.at, owner)
+            self._known[name.text] = Var(_plain_name(name.text))
             return
         size = self._values.number(expression(cursor), {})
         cursor.expect("]")
         cursor.expect(";")
         if not 0 <= size <= _WIDEST:
             cursor.fail(f"a bus has 0 to {_WIDEST} bits")
-        bits = tuple(f"{name.text}_{bit}" for bit in range(size))
+        bits = tuple(f"{_plain_name(name.text)}_{bit}" for bit in range(size))
         for bit in bits:
             self._declare(bit, name.at, owner)
         self._known[name.text] = Bus(bits)
@@ -185,6 +186,11 @@ class _File:
         else:
             whole = f.always(formula) if class_ is Class.SAFETY else formula
             self._draft.add_ltl(owner, whole, at)
+
+
+def _plain_name(name: str) -> str:
+    """A name without the signs that only TLSF has in names."""
+    return re.sub(r"\W", "_", name)
 
 
 def _start(tree: Tree) -> int:
