@@ -31,7 +31,7 @@ def said(conjuncts):
 
 
 def test_the_rules_are_those_of_this_module():
-    assert len(RULES) == 8
+    assert len(RULES) == 9
     assert rules.UNKNOWN_FORM in RULES
 
 
@@ -60,7 +60,7 @@ def test_the_wrong_example_has_the_fault_and_the_right_one_nearly(rule):
         ("MODULE main\nASSIGN\n next(x) := y;\n", ("SM585", 2, 1)),
         ("G (a -> b)\n.inputs a\n", ("SM583", 1, 9)),
         ("[](a -> b || c && d)\n", ("SM583", 1, 11)),
-        ("INFO { SEMANTICS: Moore }\nMAIN { }\n", ("SM585", 1, 19)),
+        ("INFO { SEMANTICS: Moore }\nMAIN { }\n", ("SM585", 1, 18)),
         ("INFO { }\nMAIN { INPUTS { a; } GUARANTEE { a U; } }\n", ("SM583", 2, 37)),
         (
             "INFO { }\nGLOBAL { DEFINITIONS { f(i) = f(i + 1); } }\n"
@@ -231,7 +231,7 @@ def corpus(pattern):
 def test_the_corpus_is_read(pattern, numbers):
     files = corpus(pattern)
     found = [read(text, name) for name, text in files]
-    told = [one for _, told in found for one in told]
+    told = [one for _, told in found for one in told if one[0] != "SM588"]
     assert (len(files), sum(len(contracts) for contracts, _ in found)) == numbers
     if not pattern.startswith("chase"):
         assert told == []
@@ -243,6 +243,15 @@ def test_the_fault_in_the_published_arm_and_the_probability_have_their_places():
     assert {name: [one[:3] for one in found] for name, found in told.items() if found} == {
         "robotic_arm.ltl": [("SM583", 15, 20)],
         "test_1.ltl": [("SM583", 13, 11)],
+    }
+
+
+@pytest.mark.corpus
+def test_the_lifts_are_not_strict():
+    told = {name: read(text, name)[1] for name, text in corpus("tlsf_syntcomp/*.tlsf")}
+    assert {name: [one[0] for one in found] for name, found in told.items() if found} == {
+        "lift_gr1.tlsf": ["SM588"],
+        "lift_wrong_physics_unreal.tlsf": ["SM588"],
     }
 
 

@@ -83,3 +83,14 @@ OWNER_NOT_SAID = rule(
     wrong="[](req -> <>(ack))\n",
     right="[](req -> <>(ack))\n.inputs req\n.outputs ack\n",
 )
+NOT_STRICT = rule(
+    "SM588",
+    "contract-not-strict",
+    Severity.INFO,
+    "the semantics '{semantics}' is read as strict implication, as in games of GR(1)",
+    why="Without Strict a system may break a safety guarantee when the environment breaks an "
+    "assumption later; where neither side can force the other to that, both mean the same.",
+    help="write SEMANTICS: Mealy,Strict",
+    wrong="INFO { SEMANTICS: Mealy }\nMAIN { OUTPUTS { a; } ASSERT { a; } }\n",
+    right="INFO { SEMANTICS: Mealy,Strict }\nMAIN { OUTPUTS { a; } ASSERT { a; } }\n",
+)

@@ -116,12 +116,19 @@ class _File:
 
     def _info(self, cursor: Cursor) -> None:
         title = cursor.expect_kind("name", "a title")
-        cursor.expect(":")
+        at = cursor.expect(":").at + 1
+        words = []
         while not cursor.has("}") and cursor.next.kind != "end" and cursor.after_next.text != ":":
-            word = cursor.take()
-            if title.text == "SEMANTICS" and word.text == "Moore":
-                what = "the semantics of Moore machines"
-                self._draft.fault(rules.OUTSIDE, word.at, what=what, form="TLSF")
+            words.append(cursor.take().text)
+        if title.text == "SEMANTICS":
+            self._semantics([word for word in words if word != ","], at)
+
+    def _semantics(self, words: list[str], at: int) -> None:
+        if "Moore" in words:
+            what = "the semantics of Moore machines"
+            self._draft.fault(rules.OUTSIDE, at, what=what, form="TLSF")
+        elif "Strict" not in words:
+            self._draft.file.report(rules.NOT_STRICT, at, semantics=",".join(words))
 
     def _definition(self, cursor: Cursor) -> None:
         name = cursor.expect_kind("name", "a name")
