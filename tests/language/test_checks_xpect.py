@@ -32,7 +32,6 @@ MISSED = {
     ("kerml/parsing/ParsingTests_ScopeWithFourDotAndDot.kerml.xt", "b"),
     ("kerml/validation/Feature_invalid_noType.kerml.xt", "classifier A;"),
     ("kerml/validation/Feature_invalid_noType.kerml.xt", "feature f;"),
-    ("sysml/validation/invalid/CaseSubjectObjective_Invalid.sysml.xt", "objective o3;"),
     ("sysml/validation/invalid/Feature_invalid_noType.sysml.xt", "part def B;"),
     ("sysml/validation/invalid/Feature_invalid_noType.sysml.xt", "ref f;"),
     ("sysml/validation/invalid/Import_Visibility_Invalid.sysml.xt", "}"),

@@ -21,7 +21,9 @@ _ROLES = {
     "SubjectMembership": "subject",
     "ObjectiveMembership": "objective",
 }
-"""How a membership makes its member redefine others; of a role with one feature only the first."""
+"""How a membership makes its member redefine others."""
+_SINGLE = frozenset({"subject", "objective"})
+"""Roles of one feature: what an owner has too many of redefines the first of its generals too."""
 _BEHAVING = kinds_of("Behavior") | kinds_of("Step")
 _SKIPPED = kinds_of("InstantiationExpression")
 
@@ -57,7 +59,7 @@ def redefined(feature: Node, lookup: "Generals") -> list[Node]:
     owner, wanted = feature.owner, role(feature)
     if not wanted or owner is None or owner.kind in _SKIPPED:
         return []
-    index = own(owner, wanted).index(feature)
+    index = 0 if wanted in _SINGLE else own(owner, wanted).index(feature)
     found: list[Node] = []
     for general in lookup.all_generals(owner):
         features = lookup.at_positions(general, wanted)
