@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fuzz.guard import MEGABYTE, Bounds, Ended, Guard
-from fuzz.mutants import SUFFIXES, Mutant, models, mutant
+from fuzz.mutants import SUFFIXES, Mutant, models, mutant, unspoilt
 
 SECONDS = 5
 MEMORY = 1024 * MEGABYTE
@@ -128,19 +128,22 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
         hunter = Hunter(Path(folder))
         for seed in range(asked.seed, asked.seed + asked.count):
-            spoilt = mutant(seed, among)
+            if asked.as_is and seed >= len(among):
+                break
+            spoilt = unspoilt(seed, among[seed]) if asked.as_is else mutant(seed, among)
             for finding in hunter.look(spoilt):
                 found += 1
                 print(f"{seed} {spoilt.done}: {finding.what}", flush=True)
                 if asked.keep:
                     write(spoilt, asked.keep)
         hunter.close()
-    print(_summary(hunter, asked.count, found), flush=True)
+    print(_summary(hunter, found), flush=True)
     return 1 if found else 0
 
 
-def _summary(hunter: Hunter, count: int, found: int) -> str:
+def _summary(hunter: Hunter, found: int) -> str:
     codes = ", ".join(f"exit {code}: {number}" for code, number in sorted(hunter.codes.items()))
+    count = hunter.codes.total()
     return (
         f"{count} mutants, {found} not answered; {codes}; {hunter.seconds:.0f} s; slowest"
         f" {hunter.slowest[0]} s ({hunter.slowest[1]}); largest {hunter.largest[0]} MB"
@@ -155,6 +158,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--corpus", type=Path, help="a folder of real models to spoil too")
     parser.add_argument("--largest", type=int, default=300, help="largest model, in kB")
     parser.add_argument("--kinds", default=",".join(SUFFIXES), help="of models, comma separated")
+    parser.add_argument("--as-is", action="store_true", help="the models themselves, unspoilt")
     parser.add_argument("--keep", type=Path, help="folder for the mutants that were found")
     return parser.parse_args()
 

@@ -78,6 +78,17 @@ def mutant(seed: int, among: Sequence[Path]) -> Mutant:
     return Mutant(seed, name, f"{path.name}: {done}", ((name, data),))
 
 
+def unspoilt(number: int, path: Path) -> Mutant:
+    """A model as it is, in the place of a mutant."""
+    if path.is_dir():
+        known = sorted(one for one in path.rglob("*") if one.suffix in _TEXTS)
+        found = [(f"m{number}/{p.relative_to(path).as_posix()}", p.read_bytes()) for p in known]
+        return Mutant(number, f"m{number}", path.name, (("sysmlc.toml", _LEVELS), *found))
+    suffix = path.suffix if path.suffix != ".xt" else Path(path.stem).suffix
+    name = f"m{number}{suffix}"
+    return Mutant(number, name, path.name, ((name, path.read_bytes()),))
+
+
 def _chosen(among: Sequence[Path], random: Random) -> Path:
     """One of the models. Projects, of which files say more together, and recipes are not rare."""
     whole = [path for path in among if path.is_dir() or path in _RECIPES]
