@@ -9,8 +9,6 @@ from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formal import is_formal, read_formal, told
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.reduce import is_reducible, remembering
-from sysmlc.logic.spelling import FormulaError
 from sysmlc.values import replace
 
 _MACHINE = """\
@@ -103,6 +101,9 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
+    from sysmlc.logic.reduce import is_reducible, remembering
+    from sysmlc.logic.spelling import FormulaError
+
     name = constraint.name or "<Constraint>"
     domains = {variable.name: variable.domain for variable in contract.variables}
     subject = graph.subject(constraint)

@@ -10,7 +10,6 @@ from sysmlc.logic.context import context_of
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
-from sysmlc.logic.reduce import remembering
 from sysmlc.logic.requirements.meaning import is_temporal, meaning
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import (
@@ -84,6 +83,8 @@ def _contract(
     assumptions: list[Conjunct],
     demands: list[Conjunct],
 ) -> Contract:
+    from sysmlc.logic.reduce import remembering
+
     used = scope.used(one.formula for one in (*assumptions, *demands))
     starts = list(_starts(scope, {one.name for one in used}))
     given = [one for one in starts if scope.is_input(one.formula)]

@@ -9,7 +9,6 @@ from sysmlc.logic.formal import is_formal, read_formal, told
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.logic.requirements.scope import Scope
 from sysmlc.logic.requirements.statements import Statement
-from sysmlc.logic.spelling import FormulaError
 
 _MODEL = """\
 Package p "Plant"
@@ -74,6 +73,8 @@ def _language(constraint: Element) -> str:
 
 
 def _temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+    from sysmlc.logic.spelling import FormulaError
+
     body = str(statement.constraint.attrs["body"])
     try:
         read = read_formal(body, _language(statement.constraint), scope.domains)
