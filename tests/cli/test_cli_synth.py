@@ -38,7 +38,7 @@ def test_what_is_outside_gr1_has_its_place_and_exit_code_2(here):
     here.write("lamp.gr1.json", rules.OUTSIDE_GR1.wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert [made.exit_code, made.stdout] == [2, "lamp: not decided\n"]
-    assert "error[SM530 conjunct-outside-gr1]: 'go -> lamp'' of 'lamp' is outside" in made.stderr
+    assert "error[SM530 conjunct-outside-gr1]: '!lamp' of 'lamp' is outside" in made.stderr
     assert "--> lamp.gr1.json:2:" in made.stderr
 
 
@@ -78,6 +78,15 @@ def test_contracts_of_a_model_are_decided_by_component(here, monkeypatch):
     assert [made.exit_code, made.stdout.split(" (")[0]] == [0, "Gate: realizable"]
     wrong = here.sysmlc("synth", "gate.ir", "--realizable", "-c", "Gat")
     assert [wrong.exit_code, "did you mean 'Gate'" in wrong.stderr] == [2, True]
+
+
+def test_what_history_bits_can_say_is_decided(here):
+    text = rules.UNREALIZABLE.right.replace(
+        '"safety": ["lamp\' <-> go\'"]', '"liveness": ["go -> lamp\'"]'
+    )
+    here.write("lamp.gr1.json", text)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
+    assert made.stdout.startswith("lamp: realizable (3 variables")
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduce import reduced
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
@@ -72,7 +73,10 @@ class Verdict:
 
 
 def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
-    """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported."""
+    """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported.
+
+    What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduce``).
+    """
     doing = ["translating the contract"]
 
     def progress(step: str) -> None:
@@ -82,7 +86,7 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
 
     manager = Manager(options.engine, options.limits, progress)
     try:
-        game = make_game(contract, manager)
+        game = make_game(reduced(contract).contract, manager)
         with manager.guard():
             arena = shifted(without_derived(game))
         solution = solve_arena(arena, is_complete=False)
@@ -129,7 +133,7 @@ def _said(conjunct: Conjunct) -> str:
 def _figures(contract: Contract, game: Game, solution: Solution) -> Figures:
     used = game.manager.usage()
     return Figures(
-        variables=len(contract.variables),
+        variables=len(game.symbols.variables),
         bits=len(game.inputs) + len(game.outputs),
         conjuncts=len(contract.assumptions) + len(contract.guarantees),
         rounds=solution.rounds,

@@ -4,9 +4,8 @@ from sysmlc.diagnostics import Severity, rule
 
 _LAMP = (
     '{"variables": {"go": {"owner": "env", "type": "bool"},'
-    ' "lamp": {"owner": "sys", "type": "bool"}},\n "guarantees": '
+    ' "lamp": {"owner": "sys", "type": "bool"}},\n '
 )
-
 
 OUTSIDE_GR1 = rule(
     "SM530",
@@ -14,10 +13,11 @@ OUTSIDE_GR1 = rule(
     Severity.ERROR,
     "'{formula}' of '{component}' is outside GR(1): {why}",
     why="Controllers are made of contracts in GR(1): conditions for the start, for every step with "
-    "the next one, and for what happens again and again.",
+    "the next one, and for what happens again and again. Assumptions are about what the "
+    "environment decides: inputs at the start, next inputs in every step.",
     help="say it with conditions of these three kinds, or with a variable that remembers",
-    wrong=_LAMP + '{"liveness": ["go -> lamp\'"]}}',
-    right=_LAMP + '{"safety": ["go -> lamp\'"]}}',
+    wrong=_LAMP + '"assumptions": {"init": ["!lamp"]}}',
+    right=_LAMP + '"guarantees": {"init": ["!lamp"]}}',
 )
 LIMIT = rule(
     "SM531",
@@ -38,6 +38,6 @@ UNREALIZABLE = rule(
     why="Whatever the system does, the environment can keep its promises and make one of the "
     "guarantees fail.",
     help="promise less, or assume more of the environment",
-    wrong=_LAMP + '{"safety": ["lamp <-> go\'"]}}',
-    right=_LAMP + '{"safety": ["lamp\' <-> go\'"]}}',
+    wrong=_LAMP + '"guarantees": {"safety": ["lamp <-> go\'"]}}',
+    right=_LAMP + '"guarantees": {"safety": ["lamp\' <-> go\'"]}}',
 )
