@@ -9,6 +9,7 @@ from sysmlc.passes import pipeline
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.check import BREAKS, check, lines
 from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.manager import LimitError
 
 CODES = ("SM560", "SM561", "SM562")
 
@@ -61,3 +62,16 @@ def test_a_long_run_is_cut():
     shown = list(lines(trace))
     assert shown[-2:] == ["and 18 more", "then again from step 1"]
     assert len(shown) == 14
+
+
+def test_questions_that_take_too_long_are_told(monkeypatch):
+    def give_up(*_):
+        raise LimitError("of CPU time", "1 s")
+
+    monkeypatch.setattr("sysmlc.synthesis.check.lint", give_up)
+    results, found = checked(BREAKS.right)
+    assert results["Plant::Gate"].verdict.is_realizable
+    assert next(one.message for one in found if one.rule.code == "SM563") == (
+        "not everything that may be suspicious in 'Plant::Gate' was looked for: "
+        "the limit of 1 s of CPU time was reached"
+    )

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
@@ -68,6 +69,18 @@ NOT_COMPARED = rule(
 )
 
 
+GIVEN_UP = rule(
+    "SM563",
+    "check-given-up",
+    Severity.INFO,
+    "not everything that may be suspicious in '{component}' was looked for: {reached}",
+    why="Some questions about a contract take longer than its verdict.",
+    help="give more time (--time-limit), or check the contracts of parts",
+    wrong="sysmlc contracts check large.uml --time-limit 1",
+    right="sysmlc contracts check large.uml --time-limit 600",
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Checked:
     """What was found out about one contract; the pairs that were compared by name."""
@@ -98,10 +111,10 @@ def _is_demand(contract: Contract) -> bool:
 
 def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
     try:
-        lint(contract, place, sink, _maker(options))
-    except LimitError:
-        # The verdict needed less than the questions about it: what is known is told.
-        return
+        lint(reduced(contract).contract, place, sink, _maker(options))
+    except LimitError as problem:
+        reached = str(problem)
+        sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
 
 
 def _maker(options: Options) -> Callable[[], Manager]:
