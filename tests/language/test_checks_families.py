@@ -16,7 +16,7 @@ KERML = {
 SYSML = {
     *("SM250", "SM259", "SM260", "SM261", "SM262", "SM263", "SM264", "SM265", "SM268", "SM269"),
     *("SM270", "SM271", "SM272", "SM273", "SM276", "SM277", "SM278", "SM279"),
-    *("SM280", "SM281", "SM282", "SM283", "SM284"),
+    *("SM253", "SM280", "SM281", "SM282", "SM283", "SM284"),
 }
 
 
@@ -87,6 +87,7 @@ def test_bounds_are_followed_through_values_that_are_constant():
     """) == [
         "the multiplicity of 'b' has a bound that is -1",
         "the multiplicity of 'd' has a bound that is true",
+        "the multiplicity of 'd' has an expression as a bound",
     ]
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.values import cannot_be, value
 from sysmlc.language.metaclasses import kinds_of
@@ -29,7 +30,19 @@ NOT_BOOLEAN = error(
     'state def Running {\n    state a;\n    state b;\n    transition first a if "x" then b;\n}\n',
     "state def Running {\n    state a;\n    state b;\n    transition first a if 2 > 1 then b;\n}\n",
 )
+BOUND_EXPRESSION = rule(
+    "SM253",
+    "bound-is-expression",
+    Severity.WARNING,
+    "the multiplicity of '{name}' has an expression as a bound",
+    why="The notation has numbers, '*' and names between the brackets (KerML 1.0, 8.2.5.11, "
+    "MultiplicityExpressionMember): other tools may refuse the file. sysmlc reads it all the same.",
+    help="give the expression a name: attribute n = ...; and write [n]",
+    wrong="attribute axles = 2;\npart wheels[2 * axles];\n",
+    right="attribute axles = 2;\nattribute count = 2 * axles;\npart wheels[count];\n",
+)
 
+_OPERATED = kinds_of("InstantiationExpression")
 _ROLES = {"ElementFilterMembership": "filter", "TransitionFeatureMembership": "guard"}
 
 
@@ -47,6 +60,15 @@ def check_bound(model: Model, node: Node) -> Iterator[Found]:
             yield Found(NOT_NATURAL, bound.start, facts)
 
 
+def check_notation(model: Model, node: Node) -> Iterator[Found]:
+    """Report a bound that the notation has no place for; interchange files may have any."""
+    for bound in node.members:
+        if bound.kind in _OPERATED:
+            document = model.document(node)
+            if document is not None and document.text:
+                yield Found(BOUND_EXPRESSION, bound.start, {"name": name_of(model, node.owner)})
+
+
 def check_condition(model: Model, node: Node) -> Iterator[Found]:
     """Report a filter or guard that gives something else than true or false."""
     for condition in node.members:
@@ -59,5 +81,6 @@ def check_condition(model: Model, node: Node) -> Iterator[Found]:
 
 CHECKS = (
     (frozenset({"MultiplicityRange"}), check_bound),
+    (frozenset({"MultiplicityRange"}), check_notation),
     (kinds_of("Package") | {"TransitionUsage"}, check_condition),
 )
