@@ -62,6 +62,12 @@ def same(formula, parts, history):
         ("!F G a", [(LIVE, "!a")], 0),
         ("X X X a", None, None),
         ("a -> F b", None, None),
+        ("G (a -> F (b & F c))", None, None),
+        ("G (a -> F (b & F (c & F d)))", None, None),
+        ("G (a -> F (b & X c))", None, None),
+        ("G (a -> F F b)", None, None),
+        ("G F (a & F b)", None, None),
+        ("F (a & X X b)", None, None),
     ],
 )
 def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
@@ -74,7 +80,7 @@ def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
 
 
 @pytest.mark.parametrize(
-    "text", ["F G a", "G F a -> G F b", "G (a -> F (b & F c))", "G (F a | F b)"]
+    "text", ["F G a", "G F a -> G F b", "G (a -> F (b & G c))", "G (F a | F b)"]
 )
 def test_what_no_reduction_is_known_for_is_told(text):
     history = History(DOMAINS)

@@ -6,7 +6,7 @@ from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.reduce import is_ahead
+from sysmlc.logic.reductions import is_ahead
 from sysmlc.logic.spelling import NEUTRAL, PAST, PAST_WORDS, Cursor, FormulaError, tokens
 from sysmlc.values import replace
 
