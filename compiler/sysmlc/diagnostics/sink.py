@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
+from sysmlc.values import replace
 
 _LONG = 2_000
 _SHOWN = 200
@@ -49,6 +50,11 @@ class Sink:
         told = tuple(f"{note[:_LONG]}..." if len(note) > _LONG else note for note in notes)
         found = Diagnostic(rule, severity, message, subject, told, advice)
         self._found.setdefault((rule.code, message, subject), found)
+
+    def relate(self, found: Diagnostic, id: str) -> None:
+        """Say which element of the graph a finding is about that only knew its place."""
+        key = (found.rule.code, found.message, found.subject)
+        self._found[key] = replace(found, subject=replace(found.subject, id=id))
 
     def _severity(self, rule: Rule, subject: Subject) -> Severity | None:
         for key in (rule.code, rule.name):

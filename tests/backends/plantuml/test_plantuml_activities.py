@@ -88,7 +88,8 @@ def test_a_region_without_a_name_says_what_it_is_repeated_for():
     graph = parse_text("""\
 Activity a "Count"
   Structured r subkind="expansion" mode="iterative" collection="belt.pallets"
+    Property p "p" subkind="variable"
     Action look "look" subkind="opaque"
 """)
     (written,) = texts(graph).values()
-    assert "for each of belt.pallets" in written
+    assert "for each p of belt.pallets" in written

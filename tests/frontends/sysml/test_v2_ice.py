@@ -26,7 +26,7 @@ def laboratory(corpus, tmp_path_factory):
     file = tmp_path_factory.mktemp("ice") / "sysmlc.toml"
     file.write_text(LEVELS)
     folder = corpus / "sysml2" / "ice-lab"
-    backends = tuple(select_backends(("recipe", "contracts")))
+    backends = tuple(select_backends(("recipe", "contracts", "plantuml")))
     request = Request((folder,), config=load(file), backends=backends)
     return compile_model(request)
 
@@ -146,3 +146,17 @@ def test_the_milling_cell_has_a_contract_with_what_it_is_given_and_told(laborato
 def test_nothing_but_unresolved_names_is_an_error(laboratory):
     errors = [one.rule.code for one in laboratory.diagnostics if one.is_error]
     assert errors == ["SM205"] * 24
+
+
+def test_only_what_an_unknown_name_is_in_is_withheld(laboratory):
+    assert {path.partition(".")[0].rpartition("/")[2] for path in laboratory.withheld} == {
+        "RoboticCellStates"
+    }
+    written = {one.path for one in laboratory.written()}
+    plant = {"diagrams/PlantTopology.bdd.puml", "diagrams/PlantTopology.ICEProductionLine.ibd.puml"}
+    assert plant <= written
+
+
+def test_every_condition_and_effect_of_the_laboratory_has_a_meaning(laboratory):
+    codes = {one.rule.code for one in laboratory.diagnostics}
+    assert codes.isdisjoint({"SM411", "SM412", "SM413", "SM414", "SM415", "SM416", "SM458"})

@@ -116,7 +116,7 @@ def _action(graph: Graph, node: Element) -> Look:
     allocations, ids = allocated.of_node(graph, node)
     return Look(
         _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
-        label(_title(node, called)),
+        label(_title(graph, node, called)),
         _words(graph, node),
         (*rows, *allocations),
         pins=tuple(pin.id for pin in pins),
@@ -124,13 +124,14 @@ def _action(graph: Graph, node: Element) -> Look:
     )
 
 
-def _title(node: Element, called: list[Element]) -> str:
+def _title(graph: Graph, node: Element, called: list[Element]) -> str:
     if node.name:
         return node.name
     if called:
         return ", ".join(labels.name(item) for item in called)
     if "collection" in node.attrs:
-        return f"for each of {node.attrs['collection']}"
+        variables = (one.name for one in graph.owned(node) if one.subkind == "variable")
+        return f"for each {next(variables, 'one')} of {node.attrs['collection']}"
     return labels.literal(node.attrs.get("value")) if "value" in node.attrs else labels.name(node)
 
 

@@ -85,6 +85,10 @@ class Lowering:
         for node in found:
             self.lower(node, owner)
 
+    def byte(self, document: Document, offset: int) -> int:
+        """The byte of a character of a document of the unit; -1 stays -1."""
+        return self._places.byte(document, offset)
+
     def document(self, node: Node) -> Document | None:
         """The document of the unit that the node stands in; None for one of the library."""
         return self._documents.get(id(nodes.root_of(node)))

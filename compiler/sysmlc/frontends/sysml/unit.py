@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Coverage, Sink, Verdict
+from sysmlc.frontends.sysml.blame import blame
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.libraries import SHIPPED
@@ -33,6 +34,7 @@ def lower(
     low.last(lambda: _give_pins(low, documents))
     low.finish()
     tell(low, documents)
+    blame(low, documents)
     for document in documents:
         if not document.path.startswith(SHIPPED):
             _count(low, document, coverage)

@@ -1,0 +1,49 @@
+"""An error withholds what it touches, not the whole file that it stands in."""
+
+import pytest
+
+from sysmlc.driver import Request, compile_model, select_backends
+
+TEXT = """package P {{
+    part def Gate {{ attribute open : ScalarValues::Boolean; {inside} }}
+    state def Moves {{
+        in gate : Gate;
+        entry; then shut;
+        state shut {{ {state} }}
+        transition first shut accept Go then shut;
+    }}
+    item def Go;
+    action def Work {{ first start; then action a; then done; }}
+    {beside}
+}}
+"""
+
+
+def withheld(tmp_path, *, inside="", state="", beside=""):
+    (tmp_path / "m.sysml").write_text(TEXT.format(inside=inside, state=state, beside=beside))
+    backends = tuple(select_backends(("contracts", "plantuml")))
+    made = compile_model(Request((tmp_path / "m.sysml",), backends=backends))
+    assert [one.rule.code for one in made.diagnostics if one.is_error] in ([], ["SM205"])
+    written = {one.path.rpartition("/")[2] for one in made.written()}
+    return {name for name in NAMES if name not in written}
+
+
+NAMES = {"P.bdd.puml", "P.Moves.stm.puml", "P.Moves.contract.json", "P.Work.act.puml"}
+
+
+def test_a_right_model_has_all_outputs(tmp_path):
+    assert withheld(tmp_path) == set()
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({"inside": '@Unknown { url = "x"; }'}, set()),
+        ({"inside": "part p : Unknown;"}, {"P.bdd.puml"}),
+        ({"state": "entry send Unknown() to gate;"}, {"P.Moves.stm.puml", "P.Moves.contract.json"}),
+        ({"beside": "private import Unknown::*;"}, NAMES),
+    ],
+)
+def test_an_unknown_name_withholds_what_holds_it(tmp_path, given, expected):
+    assert expected <= withheld(tmp_path, **given)
+    assert "P.Work.act.puml" not in withheld(tmp_path, **given) or "beside" in given
