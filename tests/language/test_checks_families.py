@@ -136,6 +136,8 @@ def test_a_member_with_the_name_of_an_inherited_one_redefines_it_or_hides_it():
         part rated { @Rated { level { max = 3; } } }
         action def Move { in way; }
         action move : Move { in way; }
+        action def Print { attribute start; }
+        part def Plate { attribute shape; }
     """) == [
         "'motor' of 'Big' is not the 'motor' that it inherits from 'Gate', and hides it",
         "'leaf' of 'big' is not the 'leaf' that it inherits from 'Big', and hides it",

@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
+from sysmlc.language.names.members import is_of_library
 from sysmlc.language.tree import Node
 
 DUPLICATE = rule(
@@ -45,7 +46,10 @@ def check(model: Model, node: Node) -> Iterator[Found]:
 
 
 def check_inherited(model: Model, node: Node) -> Iterator[Found]:
-    """Report members with the name of an inherited member that they do not redefine."""
+    """Report members with the name of an inherited member that they do not redefine.
+
+    Names such as `start` or `shape` that everything has from the library may be taken.
+    """
     inherited = model.lookup.inherited
     if node.owner is not None and (node.owner.kind in _METADATA or node.kind in _METADATA):
         return
@@ -54,7 +58,8 @@ def check_inherited(model: Model, node: Node) -> Iterator[Found]:
         if name is None or member.membership not in _NAMED:
             continue
         for hit in inherited(node, name):
-            if hit.name in (name, None) and not _redefines(model, member, hit):
+            is_ours = hit.name in (name, None) and not is_of_library(hit)
+            if is_ours and not _redefines(model, member, hit):
                 general = name_of(model, hit.owner)
                 facts = {"owner": name_of(model, node), "name": name, "general": general}
                 yield Found(HIDING, member.name_start, facts)

@@ -156,7 +156,7 @@ class Members(Generals):
             found = self._heritable(general, name)
             if found:
                 hits += [hit for hit in found if hit not in hits]
-        if not hits or any(map(_is_of_library, hits)):
+        if not hits or any(map(is_of_library, hits)):
             for general in self._silent_generals(scope):
                 found = self._heritable(general, name)
                 if found:
@@ -202,7 +202,7 @@ class Members(Generals):
         return hit
 
 
-def _is_of_library(node: Node) -> bool:
+def is_of_library(node: Node) -> bool:
     """Whether a member is of a library package: what is implied may give a more special one."""
     owner = node.owner
     while owner is not None and owner.owner is not None:
