@@ -142,7 +142,8 @@ def test_clauses_are_tried_in_the_order_that_they_say(relations, order):
     ("model", "lost"),
     [
         ('<generalization xmi:id="g" general="k" isSubstitutable="false"/>', "'isSubstitutable'"),
-        ('<interfaceRealization xmi:id="g" contract="k" client="x" name="how"/>', ""),
+        ('<interfaceRealization xmi:id="g" contract="k" client="x" name="how"/>', "'name'"),
+        ('<interfaceRealization xmi:id="g" contract="k" client="x" name=""/>', ""),
         ('<profileApplication xmi:id="g" appliedProfile="k" isStrict="true"/>', "'isStrict'"),
         ('<generalization xmi:id="g" general="k" isSubstitutable="true"/>', ""),
     ],

@@ -1,10 +1,11 @@
-"""Attributes that neither UML nor XMI has are told, each name once for each file."""
+"""Attributes that neither UML nor XMI has, or UML elsewhere, are told, each once for each file."""
 
 import pytest
 from lxml import etree
 from reading_xmi import magicdraw, papyrus, read, source
 
 from sysmlc.frontends.xmi import naming
+from sysmlc.frontends.xmi.uml_features import is_misplaced
 
 CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="{}" name="{}" {}/>'
 
@@ -109,3 +110,52 @@ def test_every_feature_of_the_metamodel_is_known(corpus):
     assert len(features) > 400
     assert features - naming.FEATURES == set()
     assert {name for name in features if name[:2] == "is" and name[2].isupper()} == naming.FLAGS
+
+
+def misplaced(reading):
+    return [finding.message for finding in reading.sink if finding.rule.code == "SM154"]
+
+
+def test_an_attribute_of_another_metaclass_is_told_once():
+    properties = "".join(
+        f'<ownedAttribute xmi:type="uml:Property" xmi:id="{x}" name="{x}" isAbstract="true"/>'
+        for x in "pq"
+    )
+    reading = read(
+        papyrus(CLASS.format("a", "A", "").replace("/>", f">{properties}</packagedElement>"))
+    )
+    assert misplaced(reading) == [
+        "attribute 'isAbstract' of 'M::A::p' and 1 more belongs to other elements of UML "
+        "than Property"
+    ]
+    assert reading.totals == {"elements": 5, "mapped": 3, "approximated": 2}
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        CLASS.format("a", "A", 'isAbstract="true" isLeaf="true" visibility="private"'),
+        '<packagedElement xmi:type="uml:AssociationClass" xmi:id="a" isActive="true"/>',
+        '<packagedElement xmi:type="uml:Thing" xmi:id="a" memberEnd=""/>',
+    ],
+)
+def test_what_the_metaclass_or_a_general_one_has_is_not(model):
+    assert misplaced(read(papyrus(model))) == []
+
+
+def test_a_generalization_has_no_name_in_uml():
+    model = (
+        '<packagedElement xmi:type="uml:Class" xmi:id="a"><generalization '
+        'xmi:type="uml:Generalization" xmi:id="g" general="a" name="is"/></packagedElement>'
+    )
+    (message,) = misplaced(read(papyrus(model)))
+    assert message.endswith(" belongs to other elements of UML than Generalization")
+
+
+@pytest.mark.corpus
+def test_the_table_of_features_has_those_of_the_metamodel(corpus):
+    tree = etree.parse(corpus / "xmi" / "metamodel" / "uml.ecore")
+    for metaclass in tree.iter("eClassifiers"):
+        for feature in metaclass.iter("eStructuralFeatures"):
+            if feature.get("containment") != "true":
+                assert not is_misplaced(metaclass.get("name"), feature.get("name"))

@@ -110,6 +110,18 @@ UNKNOWN_ATTRIBUTE = rule(
     wrong="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstrct='true'/>",
     right="<packagedElement xmi:type='uml:Class' xmi:id='g' name='Gate' isAbstract='true'/>",
 )
+MISPLACED_ATTRIBUTE = rule(
+    "SM154",
+    "misplaced-attribute",
+    Severity.WARNING,
+    "attribute '{attribute}' of '{element}'{others} belongs to other elements of UML than "
+    "{metaclass}",
+    why="UML has a feature of this name, but not for this metaclass, so that the attribute says "
+    "nothing: most likely the type of the element was changed, or the name is another one's.",
+    help="look whether the type of the element is meant, and remove the attribute if it is",
+    wrong="<ownedAttribute xmi:type='uml:Property' xmi:id='p' name='size' isAbstract='true'/>",
+    right="<ownedAttribute xmi:type='uml:Property' xmi:id='p' name='size' isDerived='true'/>",
+)
 UNKNOWN_VALUE = rule(
     "SM126",
     "unknown-value",

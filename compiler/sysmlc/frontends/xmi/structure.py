@@ -9,6 +9,7 @@ from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.parts import is_part
 from sysmlc.frontends.xmi.shapes import may_be_value
+from sysmlc.frontends.xmi.uml_features import is_misplaced
 from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
@@ -141,17 +142,21 @@ def _edge(context: Context, row: int) -> None:
             context.link(edge, owner.id, target, row, feature)
     for feature in filter(_SAID_BY_OWNER.__contains__, values):
         context.look(row, feature, values[feature])
-    tell_lost(context, row, _SAID_BY_OWNER | v.FOLDED_REFERENCES.keys())
+    # A name where UML has none, of a generalization, is told as such.
+    is_named = not is_misplaced(context.document.types[row], "name")
+    tell_lost(context, row, _SAID_BY_OWNER | v.FOLDED_REFERENCES.keys(), is_named=is_named)
 
 
-def tell_lost(context: Context, row: int, kept: Collection[str]) -> None:
+def tell_lost(context: Context, row: int, kept: Collection[str], *, is_named: bool = False) -> None:
     """What a row says beyond ``kept`` is not in the graph, unless it is the default anyway.
 
-    Names and visibilities of what is no element are passed over: tools make them.
+    Visibilities of what is no element are passed over, for tools make them, and names unless
+    the row ``is_named`` by people.
     """
     values = context.document.attributes[row]
     lost = [name for name in values if name in _HAS_MEANING and name not in kept]
     lost = [name for name in lost if values[name] != v.default(name)]
+    lost += ["name"] if is_named and values.get("name") else []
     if lost:
         context.approximate(row, ", ".join(f"'{name}'" for name in lost))
 

@@ -1,4 +1,4 @@
-"""Attributes that neither UML nor XMI has: each name is told once for each file.
+"""Attributes that neither UML nor XMI has, or UML elsewhere: each is told once for each file.
 
 Only the shapes of rows are looked at; the rows themselves where a shape has such a name.
 """
@@ -6,10 +6,11 @@ Only the shapes of rows are looked at; the rows themselves where a shape has suc
 from collections.abc import Iterator
 from itertools import compress, islice
 
-from sysmlc.diagnostics import Subject, Verdict
+from sysmlc.diagnostics import Rule, Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.naming import FEATURES
+from sysmlc.frontends.xmi.uml_features import is_misplaced
 from sysmlc.frontends.xmi.vocabulary import NOTATION_FEATURES
 from sysmlc.sources import DEFAULT_LIMITS
 
@@ -25,6 +26,9 @@ _MOST = 50
 
 _READ = (Verdict.MAPPED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
 
+_Odd = tuple[str, str]
+"""Name of an attribute, and the metaclass that does not have it; empty where none has it."""
+
 
 def report(context: Context) -> None:
     """Report them; the elements that have them are approximated.
@@ -32,22 +36,24 @@ def report(context: Context) -> None:
     Tags of stereotypes, what tools keep in extensions, and attributes in namespaces of their
     own are no attributes of UML.
     """
-    shapes = [_unknown(names) for _, _, names in context.document.shapes]
+    shapes = [_unknown(*shape) for shape in context.document.shapes]
     if not any(shapes):
         return
-    found: dict[str, list[int]] = {}
-    for row, names in _rows(context, shapes):
-        _approximate(context, row, names)
-        for name in names:
-            found.setdefault(name, []).append(row)
+    found: dict[_Odd, list[int]] = {}
+    for row, odd in _rows(context, shapes):
+        _approximate(context, row, odd)
+        for one in odd:
+            found.setdefault(one, []).append(row)
     more = len(found) - _MOST
-    for number, (name, rows) in enumerate(islice(found.items(), _MOST), 1):
-        _report(context, name, rows, more if number == _MOST else 0)
+    for number, (one, rows) in enumerate(islice(found.items(), _MOST), 1):
+        _report(context, one, rows, more if number == _MOST else 0)
 
 
-def _unknown(names: tuple[str, ...]) -> tuple[str, ...]:
-    looked_at = islice(names, DEFAULT_LIMITS.attributes)
-    return tuple(name for name in looked_at if name not in FEATURES and not _is_known(name))
+def _unknown(_: str, metaclass: str, names: tuple[str, ...]) -> tuple[_Odd, ...]:
+    looked_at = tuple(islice(names, DEFAULT_LIMITS.attributes))
+    unknown = [(name, "") for name in looked_at if name not in FEATURES and not _is_known(name)]
+    known = [name for name in looked_at if name in FEATURES and name not in _WITH_READERS]
+    return (*unknown, *((name, metaclass) for name in known if is_misplaced(metaclass, name)))
 
 
 def _is_known(name: str) -> bool:
@@ -57,21 +63,24 @@ def _is_known(name: str) -> bool:
     return bool(namespace) or name in _WITH_READERS
 
 
-def _rows(context: Context, shapes: list[tuple[str, ...]]) -> Iterator[tuple[int, tuple[str, ...]]]:
+def _rows(
+    context: Context, shapes: list[tuple[_Odd, ...]]
+) -> Iterator[tuple[int, tuple[_Odd, ...]]]:
     """Rows that are of UML and have such attributes, with these."""
     document, applied = context.document, frozenset(context.applications)
     numbers = document.shape_numbers
     # The last one is for rows whose shape no longer counts.
     is_wanted = [*map(bool, shapes), True]
     for row in compress(range(len(numbers)), map(is_wanted.__getitem__, numbers)):
-        names = shapes[numbers[row]] if numbers[row] >= 0 else _unknown_of(context, row)
-        is_read = bool(names) and row not in applied and context.verdicts[row] in _READ
+        odd = shapes[numbers[row]] if numbers[row] >= 0 else _unknown_of(context, row)
+        is_read = bool(odd) and row not in applied and context.verdicts[row] in _READ
         if is_read and not _is_beside_the_model(context, row, applied):
-            yield row, names
+            yield row, odd
 
 
-def _unknown_of(context: Context, row: int) -> tuple[str, ...]:
-    return _unknown(tuple(context.document.attributes[row]))
+def _unknown_of(context: Context, row: int) -> tuple[_Odd, ...]:
+    """Of a row that was given another type than is written: what no metaclass has."""
+    return _unknown("", "", tuple(context.document.attributes[row]))
 
 
 def _is_beside_the_model(context: Context, row: int, applied: frozenset[int]) -> bool:
@@ -84,25 +93,31 @@ def _is_beside_the_model(context: Context, row: int, applied: frozenset[int]) ->
     return row > 0
 
 
-def _approximate(context: Context, row: int, names: tuple[str, ...]) -> None:
+def _approximate(context: Context, row: int, odd: tuple[_Odd, ...]) -> None:
     if context.verdicts[row] is Verdict.MAPPED:
         context.verdicts[row] = Verdict.APPROXIMATED
-        written = ", ".join(f"'{_shown(name)}'" for name in names[:3])
-        more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-        context.told[row] = rules.UNKNOWN_ATTRIBUTE, f"read without {written}{more}"
+        written = ", ".join(f"'{_shown(name)}'" for name, _ in odd[:3])
+        more = f" and {len(odd) - 3} more" if len(odd) > 3 else ""
+        context.told[row] = _rule(odd[0]), f"read without {written}{more}"
 
 
-def _report(context: Context, name: str, rows: list[int], more: int) -> None:
+def _rule(one: _Odd) -> Rule:
+    return rules.MISPLACED_ATTRIBUTE if one[1] else rules.UNKNOWN_ATTRIBUTE
+
+
+def _report(context: Context, one: _Odd, rows: list[int], more: int) -> None:
+    name, metaclass = one
     first, others = rows[0], len(rows) - 1
     element = context.qualified_name(first)
     context.sink.report(
-        rules.UNKNOWN_ATTRIBUTE,
+        _rule(one),
         Subject(element, context.gids[first], context.place(first)),
         notes=(f"{more} more such names are in the file",) if more > 0 else (),
-        help=_near(name),
+        help="" if metaclass else _near(name),
         attribute=_shown(name),
         element=element,
         others=f" and {others} more" if others else "",
+        **({"metaclass": metaclass} if metaclass else {}),
     )
 
 
