@@ -7,6 +7,7 @@ from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.members import is_of_library
+from sysmlc.language.names.positions import role
 from sysmlc.language.tree import Node
 
 DUPLICATE = rule(
@@ -48,14 +49,15 @@ def check(model: Model, node: Node) -> Iterator[Found]:
 def check_inherited(model: Model, node: Node) -> Iterator[Found]:
     """Report members with the name of an inherited member that they do not redefine.
 
-    Names such as `start` or `shape` that everything has from the library may be taken.
+    Names such as `start` or `shape` that everything has from the library may be taken, and
+    parameters of steps are those of what is performed, by position or name (see ``passing``).
     """
     inherited = model.lookup.inherited
     if node.owner is not None and (node.owner.kind in _METADATA or node.kind in _METADATA):
         return
     for member in node.members:
         name = member.name
-        if name is None or member.membership not in _NAMED:
+        if name is None or member.membership not in _NAMED or role(member) == "parameter":
             continue
         for hit in inherited(node, name):
             is_ours = hit.name in (name, None) and not is_of_library(hit)
