@@ -5,7 +5,11 @@ import json
 import pytest
 
 from sysmlc.config import load
+from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
+from sysmlc.logic.contract import Contract
+from sysmlc.synthesis.check import check
+from sysmlc.synthesis.decide import Options
 
 pytestmark = pytest.mark.corpus
 LEVELS = """
@@ -160,3 +164,20 @@ def test_only_what_an_unknown_name_is_in_is_withheld(laboratory):
 def test_every_condition_and_effect_of_the_laboratory_has_a_meaning(laboratory):
     codes = {one.rule.code for one in laboratory.diagnostics}
     assert codes.isdisjoint({"SM411", "SM412", "SM413", "SM414", "SM415", "SM416", "SM458"})
+
+
+@pytest.mark.parametrize(
+    "component",
+    [
+        "MillingCellBehavior::MillingCellEngravingStates",
+        "RoboticCellStates::RoboticCellStates",
+        "DemoLegoRecipe::DemoLego",
+        "DemoLegoRecipe::TaskQC",
+    ],
+)
+def test_state_machines_and_tasks_can_be_kept_and_are_not_suspicious(laboratory, component):
+    graph, sink = laboratory.graph, Sink()
+    (contract,) = [one for one in graph.derived(Contract) if one.component == component]
+    (result,) = check([contract], lambda origin: graph.subject(graph[origin]), sink, Options())
+    assert result.verdict.is_realizable
+    assert [(one.rule.code, one.message) for one in sink] == []
