@@ -6,13 +6,14 @@ again, the middle (least) ones the layers on the way to one goal, the inner (gre
 in which the system may stay since an assumption does not recur.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from itertools import cycle
 
 from sysmlc.synthesis.arena import Arena, Steps, plain
 from sysmlc.synthesis.game import Game
 from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.symmetry import Exchange, image, orbits
 from sysmlc.values import dataclass
 
 
@@ -42,7 +43,8 @@ class Solution:
     is_complete: bool
     """Whether the fixpoint was computed to its end; it need not be for the verdict."""
     layers: tuple[tuple[Layer, ...], ...]
-    """For each goal (a game without goals has one: to go on) its layers, the nearest first."""
+    """For each goal (a game without goals has one: to go on) its layers, the nearest first.
+    Without ``is_complete`` those of goals that are alike may be missing."""
     rounds: int
     """Times a goal was computed."""
     steps: int
@@ -50,7 +52,7 @@ class Solution:
 
 
 def solve(game: Game, is_complete: bool = True) -> Solution:
-    """Decide a game as it is written; without ``is_complete`` stop as soon as it is lost.
+    """Decide a game as it is written; without ``is_complete`` the verdict is all that counts.
 
     Raises LimitError when a limit of the manager is reached.
     """
@@ -80,17 +82,43 @@ class _Solver:
         self._layers = [() for _ in self._goals]
 
     def run(self, is_complete: bool) -> Solution:
-        """Take the goals in turn until none of them makes the winning states fewer."""
+        """Solve the game, with one goal for all that are alike if strategies are not asked for."""
+        alike = {} if is_complete else orbits(self.arena)
+        winning, is_known = self._settled(alike or self._each(), is_complete)
+        exchanges = [exchange for found in alike.values() for exchange in found]
+        if any(image(self.arena, winning, exchange) != winning for exchange in exchanges):
+            winning, is_known = self._settled(self._each(), is_complete)
+        return self._solution(winning, is_known and self._steps.is_won(winning), is_known)
+
+    def _settled(
+        self, alike: Mapping[int, tuple[Exchange, ...]], is_complete: bool
+    ) -> tuple[Node, bool]:
+        """The goals in turn until none of them makes the winning states fewer.
+
+        False when it was seen before that the game is lost.
+        """
         winning, settled = self.arena.states, 0
-        for goal in cycle(range(len(self._goals))):
-            found = self._attracted(goal, winning)
+        for goal in cycle(alike):
+            found = reached = self._attracted(goal, winning)
+            for exchange in alike[goal]:
+                found = found & image(self.arena, reached, exchange)
             settled = settled + 1 if found == winning else 0
             winning = found
-            if settled == len(self._goals):
-                break
-            if not is_complete and not self._steps.is_won(winning):
-                return self._solution(winning, False, False)
-        return self._solution(winning, self._steps.is_won(winning), True)
+            if settled == len(alike):
+                return winning, True
+            if not is_complete and self._is_lost(winning):
+                return winning, False
+        return winning, True
+
+    def _each(self) -> dict[int, tuple[Exchange, ...]]:
+        """Every goal by itself: strategies need the layers of all."""
+        return dict.fromkeys(range(len(self._goals)), ())
+
+    def _is_lost(self, winning: Node) -> bool:
+        """Whether it is seen without much work that the game is lost."""
+        if self.arena.is_ahead and winning != self.arena.manager.false:
+            return False
+        return not self._steps.is_won(winning)
 
     def _attracted(self, goal: int, winning: Node) -> Node:
         """Those of the winning states from which the goal can be reached, again and again."""
