@@ -7,7 +7,7 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_each_new, put_new
+from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new, with_each_new
 from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
@@ -236,7 +236,9 @@ class Graph:
     ) -> None:
         """Add edges of one kind; those without source or target are not added."""
         out, drawn = self._out[edge], self._drawn.get(edge)
-        if drawn is not None and put_each_new(out, sources, targets):
+        whole = None if drawn is None else with_each_new(out, sources, targets)
+        if whole is not None and drawn is not None:
+            self._out[edge] = whole
             ends = cast("Iterable[tuple[Element, Element]]", zip(sources, targets, strict=True))
             drawn += chain.from_iterable(ends)
             return

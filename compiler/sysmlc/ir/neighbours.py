@@ -49,16 +49,21 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
         index[id] = [known, neighbour]
 
 
-def put_each_new(
+def with_each_new(
     index: Index, ones: Sequence[Element | None], neighbours: Sequence[Element | None]
-) -> bool:
-    """Add a neighbour to each of many that have none; False, and nothing added, when one has."""
+) -> Index | None:
+    """The index with a neighbour of each of many that have none; None when one has.
+
+    The index is changed, but for an empty one, in whose place a new one stands.
+    """
     pairs = zip(ones, neighbours, strict=True)
-    new = {one.id: other for one, other in pairs if one is not None and other is not None}
+    new: Index = {one.id: other for one, other in pairs if one is not None and other is not None}
     if len(new) < len(ones) or not index.keys().isdisjoint(new):
-        return False
+        return None
+    if not index:
+        return new
     index.update(new)
-    return True
+    return index
 
 
 def drop(index: Index, id: str, neighbour: Element) -> bool:

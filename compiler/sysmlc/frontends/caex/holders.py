@@ -94,6 +94,6 @@ def _add_instance(context: Context, site: Site) -> None:
     id = context.id_at(document, site.row, owner) if site.is_known else f"{site.part}#values"
     made = _add(context, site, id, _INSTANCE, owner, subkind="part")
     context.graph.connect_new(_REPRESENTS, made, context.graph[site.part])
-    site.instance = made.id
+    site.instance, site.instance_made = made.id, made
     if site.is_known:
         document.elements[site.row] = made.id

@@ -142,11 +142,10 @@ class Links:
         """The Instance at the top (if any), and the parts that lead down to an element."""
         known = self._steps.get(site)
         if known is None:
-            graph = self._context.graph
             if site.parent is None:
-                known = [graph.get(site.instance)]
+                known = [self._sites.instance(site)]
             else:
-                known = [*self._steps_to(site.parent), graph.get(site.part)]
+                known = [*self._steps_to(site.parent), self._sites.part(site)]
             self._steps[site] = known
         return known
 

@@ -3,7 +3,7 @@
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES
-from sysmlc.ir import AttrValue
+from sysmlc.ir import AttrValue, Element
 
 
 class Site:
@@ -12,6 +12,7 @@ class Site:
     ``declared`` is the class that it refers to; ``own`` the class made for what that one has
     not (for a class at the top: itself). ``part`` is the property that stands for it in the
     class above, ``instance`` the Instance that holds its values (empty while there are none).
+    ``part_made`` and ``instance_made`` are the elements of these ids, where they were made for it.
     ``ppr`` is product, process, resource or empty. ``inner`` are the rows of the internal
     elements in it, ``roles`` those that name a role, ``members`` all others but links.
     """
@@ -22,6 +23,7 @@ class Site:
         "document",
         "inner",
         "instance",
+        "instance_made",
         "interface_ids",
         "is_known",
         "is_mirror",
@@ -29,6 +31,7 @@ class Site:
         "own",
         "parent",
         "part",
+        "part_made",
         "ppr",
         "roles",
         "row",
@@ -43,6 +46,8 @@ class Site:
         self.own: Type | None = None
         self.part = ""
         self.instance = ""
+        self.part_made: Element | None = None
+        self.instance_made: Element | None = None
         self.ppr = ""
         self.is_known = False
         self.is_mirror = False

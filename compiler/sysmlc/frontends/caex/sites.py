@@ -78,7 +78,8 @@ class Sites:
         if self._shows(site):
             return
         site.declared = self._declared(site)
-        site.instance = self._context.add(Kind.INSTANCE, node, document, package.id).id
+        made = self._context.add(Kind.INSTANCE, node, document, package.id)
+        site.instance, site.instance_made = made.id, made
         self._type(site)
         self._lower_below(site)
 
@@ -169,7 +170,7 @@ class Sites:
         key = ("InternalElement", site.name)
         inherited = owner.base.find(*key) if owner.base else None
         owner.members[key] = Member(element.id, site.declared, site.document, site.row)
-        site.part = element.id
+        site.part, site.part_made = element.id, element
         if inherited is not None:
             self._context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
 
@@ -181,22 +182,32 @@ class Sites:
             self._mirror(site)
         for site in self._showing:
             groups.show(self._context, site)
-        parts = [site for site in self if site.part and not site.is_known]
-        self._tie(Edge.TYPED_BY, parts, [site.part for site in parts])
-        instances = [site for site in self if site.instance]
-        self._tie(Edge.INSTANCE_OF, instances, [site.instance for site in instances])
-        for site in self:
-            holder = site.instance or (site.part if not site.is_known else "")
-            if site.interface_ids and holder:
-                element = self._context.graph[holder]
-                element.attrs["interface_ids"] = tuple(site.interface_ids)
+        parts = [site for site in self._all if site.part and not site.is_known]
+        self._tie(Edge.TYPED_BY, parts, list(map(self.part, parts)))
+        instances = [site for site in self._all if site.instance]
+        self._tie(Edge.INSTANCE_OF, instances, list(map(self.instance, instances)))
+        for site in self._all:
+            if site.interface_ids:
+                one = self.instance(site) or (None if site.is_known else self.part(site))
+                if one is not None:
+                    one.attrs["interface_ids"] = tuple(site.interface_ids)
 
-    def _tie(self, edge: Edge, sites: list[Site], ids: list[str]) -> None:
+    def part(self, site: Site) -> Element | None:
+        """The part that stands for an internal element in the class above."""
+        made = site.part_made
+        return made if made and made.id == site.part else self._context.graph.get(site.part)
+
+    def instance(self, site: Site) -> Element | None:
+        """The Instance that holds its values."""
+        made = site.instance_made
+        return made if made and made.id == site.instance else self._context.graph.get(site.instance)
+
+    def _tie(self, edge: Edge, sites: list[Site], elements: list[Element | None]) -> None:
         """Tie each element to the type of its site."""
         graph = self._context.graph
         types = [site.own or site.declared for site in sites]
-        found = [None if type is None else graph.get(type.id) for type in types]
-        graph.connect_each(edge, graph.find_all(ids), found)
+        found = {type: None if type is None else graph.get(type.id) for type in set(types)}
+        graph.connect_each(edge, elements, list(map(found.__getitem__, types)))
 
     def _mirror(self, site: Site) -> None:
         element = self._context.graph[site.instance or site.part]
