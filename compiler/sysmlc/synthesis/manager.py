@@ -23,7 +23,7 @@ _GIBIBYTE = 1 << 30
 _START = 1 << 26
 """Bytes that CUDD is told to expect: it sets aside and clears a share of them at once, which for
 8 GiB takes longer than most games."""
-REORDER_AT = 50_000
+REORDER_AT = 20_000
 """Nodes from which on a better order of bits is worth the search."""
 _CACHE = 1 << 14
 """Slots of the cache at the start; it grows."""

@@ -64,6 +64,8 @@ class _Shift:
     """What the system has to see to before the environment moves."""
     answer: tuple[Node, ...]
     """What binds the other outputs."""
+    is_at_once: bool
+    """Whether plant and invariants are found so for any first command too, allowed later or not."""
 
     @classmethod
     def of(cls, game: Game, commands: tuple[str, ...]) -> "_Shift":
@@ -76,7 +78,9 @@ class _Shift:
         rest = [node for node in promised if node not in bound]
         invariants = _invariants(game, rest, choice)
         answer = tuple(node for node in rest if node not in invariants)
-        return cls(game, commands, choice, _plant(game, choice), tuple(invariants), answer)
+        plant = _plant(game, choice)
+        is_at_once = _plant(game, ()) == plant and _invariants(game, rest, ()) == invariants
+        return cls(game, commands, choice, plant, tuple(invariants), answer, is_at_once)
 
     def arena(self) -> Arena:
         """States without commands; three turns: command and effect, environment, answer."""
@@ -94,13 +98,14 @@ class _Shift:
         chosen = symbols.all_bits(self.commands)
         parts = (*self.choice, *effect, *self.invariants)
         command = Turn(Owner.SYSTEM, (*chosen, *moved), parts)
-        start = (
-            *plain(game).start,
-            # What has been found of plant and invariants holds for commands as they are chosen
-            # from the second step on.
-            Turn(Owner.ENVIRONMENT, game.next_inputs, assumed),
-            Turn(Owner.SYSTEM, answered, (*self.answer, *self.invariants)),
-        )
+        start = plain(game).start
+        if self.is_at_once:
+            first = (*start[1].parts, *effect, *self.invariants)
+            start = (start[0], Turn(Owner.SYSTEM, (*game.outputs, *moved), first), *after)
+        else:
+            answers = (*self.answer, *self.invariants)
+            all_inputs = Turn(Owner.ENVIRONMENT, game.next_inputs, assumed)
+            start = (*start, all_inputs, Turn(Owner.SYSTEM, answered, answers))
         return replace(
             plain(game),
             states=in_range(symbols, _without(names, self.commands)),
