@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import visibility
 from sysmlc.backends.sysml.entry import Entry
@@ -26,17 +27,29 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     is_direct = target.kind is not Kind.CONTROL
     if is_direct and "guard" in element.attrs:
         book.losses.note(UNSAID_ATTRIBUTE, element, attribute="guard", kind="ObjectFlow")
-    start, name, lines = feature(book, entry.parent, source), entry.name, []
-    for one in [target] if is_direct else _reached(book, target):
+    reached = [target] if is_direct else list(_reached(book, target))
+    is_said = not is_direct and _is_said(book, source, reached)
+    start, name = feature(book, entry.parent, source), "" if is_said else entry.name
+    lines: list[Line] = []
+    for one in reached:
         end = feature(book, entry.parent, one)
         if start is None or end is None:
             book.drop(entry, "flow ends")
             continue
         lines.append(Line(_text(book, element, name, (source, start), (one, end))))
         name = ""
-    if lines:
+    if is_said:
+        for line in lines:
+            line.body.append(annotations.ours(book, entry, "Through", {}))
+    elif lines:
         lines[0].body += contents(book, entry)
     return lines
+
+
+def _is_said(book: Book, source: Element, reached: list[Element]) -> bool:
+    """Whether successions say all of the way from pin to pin."""
+    ends = (source, *reached)
+    return bool(reached) and all(one.kind is Kind.PIN for one in ends)
 
 
 def _text(

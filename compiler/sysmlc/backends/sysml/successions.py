@@ -1,13 +1,15 @@
 """Successions: what follows a node, with guards; object flows through control nodes order too."""
 
+from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
+from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.values import literal
 from sysmlc.backends.sysml.words import quoted
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 
@@ -52,15 +54,27 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
             book.lost(flow, "flow-target")
         return None
     own = book.plan.entry(flow)
-    name = own.name if own is not None and flow.kind is Kind.CONTROL_FLOW else ""
+    name = own.name if own is not None else ""
+    body = [] if flow.kind is Kind.CONTROL_FLOW else _objects(book, entry, own, flow)
     is_decision = entry.shape.keyword == "decide"
     guard = _guard(book, entry, flow)
     if guard == "else" and not name and is_decision:
-        return Line(f"else {end}", depth=1)
+        return Line(f"else {end}", body, depth=1)
     test = "" if guard in (None, "else") else f"if {guard} "
     if name:
-        return Line(f"succession {quoted(name)} first {quoted(entry.name)} {test}then {end}")
-    return Line(f"{test}then {end}", depth=1 if is_decision else 0)
+        return Line(f"succession {quoted(name)} first {quoted(entry.name)} {test}then {end}", body)
+    return Line(f"{test}then {end}", body, depth=1 if is_decision else 0)
+
+
+def _objects(book: Book, entry: Entry, own: Entry | None, flow: Element) -> list[Line]:
+    """Metadata of a succession along which objects flow: the pins at its ends."""
+    facts: dict[str, AttrValue] = {}
+    for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
+        end = book.graph.target(flow, edge)
+        pin = book.plan.entry(end) if end is not None and end.kind is Kind.PIN else None
+        facts[key] = "" if pin is None else pin.name
+    inner = [] if own is None else contents(book, own)
+    return [annotations.ours(book, entry, "ObjectFlow", facts), *inner]
 
 
 def _guard(book: Book, entry: Entry, flow: Element) -> str | None:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes
+from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.connections import steps_of
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.parameters import node_of, own_parameter, pin_of
@@ -17,6 +17,9 @@ _NODES = frozenset({Kind.PIN, Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_P
 
 def flow(low: "Lowering", node: Node, owner: Element) -> None:
     """A flow from one object node to another; one that is a succession too orders the steps."""
+    if "Through" in annotations.ours(node):
+        low.skipped.update(id(one) for one in node.members)
+        return
     made = low.add(node, Kind.OBJECT_FLOW, node.name or "", owner, **visibility(node))
     low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
     low.last(lambda: _join(low, node, made, is_turned=False))

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node, Reference
@@ -110,15 +110,30 @@ def _flow(
         return
     for point in (source, target):
         _mention(low, run.owner, point, node)
-    made = low.add(node, Kind.CONTROL_FLOW, node.name or "", run.owner)
+    is_objects = "ObjectFlow" in annotations.ours(node)
+    kind = Kind.OBJECT_FLOW if is_objects else Kind.CONTROL_FLOW
+    made = low.add(node, kind, node.name or "", run.owner)
     if guard is node:
         low.set(made, guard="else")
     elif guard is not None:
         low.later(lambda: low.set(made, guard=values.texts(guard, low)))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.last(lambda: _join(low, made, source, target))
+    if is_objects:
+        low.last(lambda: _flow_between_pins(low, node, made))
     if guard is not None:
         low.last(lambda: low.last(lambda: _meet(low, low.graph.target(made, Edge.FLOW_TARGET))))
+
+
+def _flow_between_pins(low: "Lowering", node: Node, made: Element) -> None:
+    """Let an object flow begin and end at pins of the steps that the succession names."""
+    for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
+        step, name = low.graph.target(made, edge), annotations.said(node, "ObjectFlow", key)
+        inside = [] if step is None or not name else low.graph.owned(step)
+        pin = next((one for one in inside if one.kind is Kind.PIN and one.name == name), None)
+        if step is not None and pin is not None:
+            low.graph.disconnect(edge, made, step)
+            low.graph.connect(edge, made, pin)
 
 
 def _meet(low: "Lowering", step: Element | None) -> None:
