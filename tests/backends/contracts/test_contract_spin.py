@@ -11,7 +11,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sysmlc.logic.formats.spin_text import spin, spin_conjunct
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -23,6 +22,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
+from sysmlc.logic.formats.spin_text import spin, spin_conjunct
 from sysmlc.logic.formula import Apply, Const, Op, Var
 
 spot = pytest.importorskip("spot")
