@@ -1,12 +1,13 @@
 """Whether a contract can be kept: verdict, figures, and findings for what cannot be decided."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduce import reduced
 from sysmlc.synthesis import rules
+from sysmlc.synthesis.core import unrealizable_core
 from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
@@ -25,6 +26,8 @@ class Options:
     engine: str = ""
     limits: Limits = Limits()
     progress: Progress | None = None
+    is_explained: bool = False
+    """Whether guarantees that cannot be kept together are looked for and named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +100,36 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
         _report_limit(contract, problem, manager, doing[0], place, sink)
         return Verdict(contract.component, None)
     if not solution.is_realizable:
-        sink.report(rules.UNREALIZABLE, place(contract.origin), component=contract.component)
+        reasons = tuple(reasons_of(game)) if options.is_explained else ()
+        sink.report(
+            rules.UNREALIZABLE,
+            place(contract.origin),
+            notes=reasons,
+            component=contract.component,
+        )
     figures = _figures(contract, game, solution)
     return Verdict(contract.component, solution.is_realizable, figures)
+
+
+def reasons_of(game: Game) -> Iterator[str]:
+    """The guarantees that cannot be kept together, a line each."""
+    try:
+        core = unrealizable_core(game)
+    except LimitError as problem:
+        yield f"which guarantees cannot be kept together is not known: {problem}"
+        return
+    known = {id(part.conjunct) for part in (*game.init_guarantees, *game.guarantees, *game.goals)}
+    whole = len(known - {id(None)})
+    yield (
+        f"these {len(core)} of {whole} guarantees cannot be kept together; "
+        "without any one of them the rest can:"
+    )
+    for one in core:
+        text = f" ({one.text})" if one.text not in ("", _said(one)) else ""
+        yield f"{_WHEN[one.class_]}: {_said(one)}{text}"
+
+
+_WHEN = {Class.INIT: "at first", Class.SAFETY: "always", Class.LIVENESS: "again and again"}
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:

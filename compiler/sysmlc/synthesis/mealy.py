@@ -4,7 +4,7 @@ State 0 is before the first step; its moves take the first inputs. What the assu
 no move.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.formula import Literal
@@ -64,6 +64,7 @@ class _Exploration:
         self._most = most_states, most_moves
         self._found: list[State] = []
         self._places: dict[State, int] = {}
+        self._futures: dict[Hashable, int] = {}
         self._rows: dict[tuple[Owner, tuple[bool, ...]], Row] = {}
         self._count = 0
         variables = controller.symbols.variables.values()
@@ -85,13 +86,20 @@ class _Exploration:
         moves: dict[Row, Move] = {}
         for given, state in found:
             if state not in self._places:
-                self._found.append(state)
-                self._places[state] = len(self._found)
+                self._places[state] = self._place(state)
             row = self._row(Owner.ENVIRONMENT, tuple(given.values()))
             count = len(self._controller.inputs)
             moves[row] = Move(self._row(Owner.SYSTEM, state.code[count:]), self._places[state])
             self._limit()
         return moves
+
+    def _place(self, state: State) -> int:
+        """The number of the state, that of an earlier one with the same future if there is one."""
+        future = self._controller.future(state)
+        if future not in self._futures:
+            self._found.append(state)
+            self._futures[future] = len(self._found)
+        return self._futures[future]
 
     def _limit(self) -> None:
         self._count += 1

@@ -7,7 +7,7 @@ whatever the library and the order of bits.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.logic.contract import Owner
 from sysmlc.logic.formula import Literal
@@ -85,6 +85,14 @@ class Controller:
         """What the variables are in a state."""
         return self.symbols.decode(self._bits(state))
 
+    def future(self, state: State) -> Hashable:
+        """What all later steps depend on: states with the same future are answered the same."""
+        view, now = self._view(state), self._bits(state)
+        if self._holds(self._goals[state.goal], now):
+            return view, state.goal
+        here, waiting = self._layer(state.goal, now)
+        return view, state.goal, here, waiting
+
     def first_inputs(self) -> Iterator[Bits]:
         """All first inputs that the assumptions allow."""
         return assignments(self._manager, _all(self._manager, self._first_inputs), self.inputs)
@@ -116,12 +124,17 @@ class Controller:
         rank, found = self._nearest(possible, inputs, state.goal)
         if self._holds(self._goals[state.goal], now):
             return found
-        layers = self._solution.layers[state.goal]
-        here = bisect_left(layers, True, key=lambda layer: self._holds(layer.states, now))
+        here, waiting = self._layer(state.goal, now)
         if rank < here:
             return found
-        waiting = next(one for one in layers[here].waiting if self._holds(one, now))
         return possible & self._manager.assign(waiting, inputs)
+
+    def _layer(self, goal: int, now: Bits) -> tuple[int, Node]:
+        """The layer of a state, and where the system may wait there, for the first assumption."""
+        layers = self._solution.layers[goal]
+        here = bisect_left(layers, True, key=lambda layer: self._holds(layer.states, now))
+        found = (one for one in layers[here].waiting if self._holds(one, now))
+        return here, next(found, self._manager.false)
 
     def _nearest(self, possible: Node, inputs: Bits, goal: int) -> tuple[int, Node]:
         """The first layer that some answer leads to, and the answers that do."""
