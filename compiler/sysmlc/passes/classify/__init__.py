@@ -22,6 +22,7 @@ from sysmlc.passes.classify.requirements import check_requirements, give_require
 from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
 from sysmlc.passes.classify.tags import HANDLERS, give_tags, optional_with_value
+from sysmlc.passes.classify.undefined_tags import check_tags
 from sysmlc.passes.classify.units import give_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
 from sysmlc.values import dataclass
@@ -59,6 +60,7 @@ class Classify:
         add_bindings(graph)
         add_allocations(graph)
         add_relations(graph, sink)
+        check_tags(graph, sink)
         check_requirements(graph, sink)
         check_constraints(graph, sink)
 
