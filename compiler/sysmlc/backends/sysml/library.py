@@ -130,8 +130,8 @@ _OURS = """
     AutomationML Facet Group Kind ObjectFlow Through External Unit Units Requirement Partition
     Call fullPort blockPort shared realization generalization trace copies satisfies verifies
     derives allocates conforms exposes substitution usage abstraction manifestation deployment
-    roleBinding extension internalLink processLink orderLink constrains precondition postcondition bodyCondition
-    invariant choice junction forking joining shallowHistory deepHistory entryPoint exitPoint
+    roleBinding extension internalLink processLink orderLink constrains precondition postcondition
+    bodyCondition invariant choice junction forking joining shallowHistory deepHistory entryPoint exitPoint
     connectionPoint termination
 """
 _REST = """
