@@ -131,8 +131,8 @@ _OURS = """
     Call fullPort blockPort shared realization generalization trace copies satisfies verifies
     derives allocates conforms exposes substitution usage abstraction manifestation deployment
     roleBinding extension internalLink processLink orderLink constrains precondition postcondition
-    bodyCondition invariant choice junction forking joining shallowHistory deepHistory entryPoint exitPoint
-    connectionPoint termination
+    bodyCondition invariant choice junction forking joining shallowHistory deepHistory entryPoint
+    exitPoint connectionPoint termination
 """
 _REST = """
     FullPort BlockPort SharedAggregation Realization Generalization Trace Copies Satisfies
