@@ -93,6 +93,7 @@ def test_what_history_bits_can_say_is_decided(here):
     ("args", "words"),
     [
         (["none.gr1.json", "--realizable"], "cannot read 'none.gr1.json'"),
+        (["plant.ir", "--realizable", "-o", "out"], "--realizable decides only"),
         (["plant.ir", "--realizable", "--from", "cobol"], "'cobol' is no form that is read"),
         (["plant.ir", "--realizable"], "no behaviour and no requirement that gives a contract"),
     ],
@@ -114,3 +115,19 @@ def test_the_engine_can_be_chosen(here):
     assert (
         here.sysmlc("synth", "lamp.gr1.json", "--realizable", "--engine", "autoref").exit_code == 0
     )
+
+
+def test_machines_are_written_when_asked_for(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
+    assert made.exit_code == 0
+    assert made.stdout.endswith("; machine: 2 states, 4 moves, checked\n")
+    assert here.files() == ["lamp.machine.json", "lamp.machine.puml"]
+
+
+def test_nothing_is_written_of_what_cannot_be_kept_and_the_core_is_named(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
+    assert made.exit_code == 1
+    assert here.files() == []
+    assert "always: lamp <-> go'" in made.stderr

@@ -1,4 +1,4 @@
-"""``sysmlc synth``: whether a contract can be kept."""
+"""``sysmlc synth``: whether a contract can be kept, and a machine that keeps it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,28 +8,39 @@ import click
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.decide import Options, Verdict
+    from sysmlc.synthesis.synthesise import Synthesis
 
 _GIBIBYTE = 1 << 30
 
 
 @click.command(
     "synth",
-    short_help="Say whether a contract can be kept.",
+    short_help="Say whether a contract can be kept, make a machine that does.",
     epilog="""\b
 Examples:
   sysmlc synth gate.contract.json --realizable
+  sysmlc synth gate.contract.json -o out
   sysmlc synth plant.uml -c Plant::Gate --realizable
   sysmlc synth amba.tlsf --realizable --time-limit 60
 
 Exit codes: 0 realizable, 1 unrealizable, 2 outside GR(1), beyond a limit,
-or the work could not be done.""",
+no machine, or the work could not be done.""",
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @click.option("--realizable", "is_decided_only", is_flag=True, help="Decide, write nothing.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Write the machines there.",
+)
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
 @click.option(
     "--engine",
@@ -48,6 +59,7 @@ def command(
     file: Path,
     component: str,
     is_decided_only: bool,
+    output: Path | None,
     language: str,
     engine: str | None,
     seconds: float,
@@ -55,9 +67,11 @@ def command(
     nodes: int,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Decide whether there is a system that keeps the contracts in FILE.
+    """Decide whether there is a system that keeps the contracts in FILE, and make a machine.
 
-    FILE is a model or a contract, in one of the forms of docs/synthesis.md.
+    FILE is a model or a contract, in one of the forms of docs/synthesis.md. Each machine is
+    checked against its contract; with -o it is written, as JSON and, when it is small, as a
+    diagram in PlantUML.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
@@ -65,15 +79,18 @@ def command(
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decide import Options
 
-    if not is_decided_only:
-        session.fail("controllers are not written yet; --realizable decides")
+    if is_decided_only and output is not None:
+        session.fail("--realizable decides only: nothing can be written to a folder")
     settings = session.Settings(**given)
     config = session.load_config((file,), settings.config)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, int(memory * _GIBIBYTE), seconds)
     read = read_contracts(file, language, config, settings)
+    options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
-        ctx.exit(_decided(read, component, settings, Options(engine or "", limits, progress.note)))
+        if is_decided_only:
+            ctx.exit(_decided(read, component, settings, options))
+        ctx.exit(_synthesised(read, component, settings, options, output))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
@@ -81,13 +98,50 @@ def command(
 
 
 def _decided(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
-    from sysmlc.cli import session
     from sysmlc.cli.contract_files import chosen
-    from sysmlc.diagnostics.render import make_report
     from sysmlc.synthesis.decide import decide
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
-    verdicts = [decide(one, read.place, read.sink, options) for one in contracts]
+    return _told(read, settings, [decide(one, read.place, read.sink, options) for one in contracts])
+
+
+def _synthesised(
+    read: "ContractFile",
+    component: str,
+    settings: "Settings",
+    options: "Options",
+    output: Path | None,
+) -> int:
+    from sysmlc.cli.contract_files import chosen
+    from sysmlc.synthesis.synthesise import synthesised
+
+    contracts = chosen(read.contracts, component) if read.contracts else ()
+    made = [synthesised(one, read.place, read.sink, options) for one in contracts]
+    if output is not None:
+        _write(made, output)
+    return _told(read, settings, made)
+
+
+def _write(made: "Sequence[Synthesis]", out: Path) -> None:
+    """Write each machine there is; ends the process when a file cannot be written."""
+    from sysmlc.cli.session import fail
+    from sysmlc.output import write_if_changed
+    from sysmlc.synthesis.machine_text import files
+
+    try:
+        for name, text in files((one.machine, one.contract) for one in made if one.machine):
+            write_if_changed(out / name, text)
+    except OSError as problem:
+        fail(f"cannot write to '{out}': {problem.strerror}")
+
+
+def _told(
+    read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis]"
+) -> int:
+    """Show findings and verdicts; the exit code."""
+    from sysmlc.cli import session
+    from sysmlc.diagnostics.render import make_report
+
     found = session.named(read.root, make_report(read.sink, read.sources).findings)
     session.show([*read.findings, *found], settings)
     for verdict in verdicts:

@@ -41,3 +41,14 @@ UNREALIZABLE = rule(
     wrong=_LAMP + '"guarantees": {"safety": ["lamp <-> go\'"]}}',
     right=_LAMP + '"guarantees": {"safety": ["lamp\' <-> go\'"]}}',
 )
+NO_MACHINE = rule(
+    "SM543",
+    "machine-not-written",
+    Severity.ERROR,
+    "the contract of '{component}' can be kept, but no machine is written: {why}",
+    why="A machine lists what is done for every input in every state; ranges and goals multiply. "
+    "It is checked against its contract first, and is not written when the check fails.",
+    help="give more (--time-limit, --memory, --nodes), make ranges smaller, or synthesise parts",
+    wrong="sysmlc synth wide.contract.json -o out --nodes 1000",
+    right="sysmlc synth wide.contract.json -o out",
+)

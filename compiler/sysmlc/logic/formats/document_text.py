@@ -36,7 +36,7 @@ def _variables(contract: Contract) -> dict[str, object]:
     return {
         variable.name: {
             "owner": str(variable.owner),
-            "type": _type(variable.domain),
+            "type": type_of(variable.domain),
             "origin": variable.origin,
         }
         for variable in contract.variables
@@ -59,7 +59,8 @@ def _side_text(name: str, conjuncts: Iterable[Conjunct]) -> str:
     return f',\n  "{name}": {{{",".join(rows)}\n  }}'
 
 
-def _type(domain: Domain) -> str | list[int] | list[str]:
+def type_of(domain: Domain) -> str | list[int] | list[str]:
+    """A domain as JSON: ``bool``, least and greatest value, or the literals."""
     match domain:
         case BooleanDomain():
             return "bool"
@@ -72,7 +73,8 @@ def _type(domain: Domain) -> str | list[int] | list[str]:
 def neutral(contract: Contract) -> str:
     """JSON of the contract in the form of corpus/gr1, indented by one."""
     variables = {
-        one.name: {"owner": str(one.owner), "type": _type(one.domain)} for one in contract.variables
+        one.name: {"owner": str(one.owner), "type": type_of(one.domain)}
+        for one in contract.variables
     }
     sides = {
         side: {
