@@ -23,6 +23,14 @@ LAMP = """
     promise always press' -> lamp'!=lamp
     promise always !press' -> lamp'=lamp
 """
+TURNS = """
+    env a: bool
+    sys x: bool
+    assume at first a
+    assume always a <-> !a'
+    promise at first x
+    promise always x' <-> a'
+"""
 DOOR = """
     env arrived: bool
     env blocked: bool
@@ -151,6 +159,19 @@ def test_too_many_states_or_moves_are_said():
 def test_states_that_no_allowed_input_tells_apart_are_one():
     toggle = minimised(machines.machine(contract(LAMP)))
     assert toggle.size == 3
-    told = "env a: bool\nsys x: bool\nassume at first a\nassume always a <-> !a'\n"
-    both = contract(told + "promise at first x\npromise always x' <-> a'")
-    assert minimised(machines.machine(both)).size == 1
+    assert minimised(machines.machine(contract(TURNS))).size == 1
+
+
+def test_what_time_does_not_suffice_to_join_stays_apart():
+    made = contract(TURNS)
+    machine = machines.machine(made)
+    hasty = minimised(machine, most=0)
+    assert hasty.size > minimised(machine).size
+    assert machines.said(hasty, made) == []
+
+
+def test_many_bits_are_no_deep_recursion():
+    names = [f"x{at}" for at in range(600)]
+    wide = contract("\n".join(["env a: bool", *(f"sys {one}: bool" for one in names)]))
+    state = machines.controller(wide).start({"a": True})
+    assert len(state.code) == 601

@@ -53,7 +53,7 @@ def explored(
 ) -> Machine:
     """The machine of a controller, with the states that some environment can lead it to.
 
-    Raises LimitError when there are more states or moves.
+    Raises LimitError when there are more states or moves, or a limit of the manager is reached.
     """
     return _Exploration(controller, most_states, most_moves).run()
 
@@ -103,6 +103,7 @@ class _Exploration:
 
     def _limit(self) -> None:
         self._count += 1
+        self._controller.symbols.manager.check("listing the states of a machine")
         for what, used, most in (
             ("states", len(self._found), self._most[0]),
             ("moves", self._count, self._most[1]),

@@ -11,14 +11,13 @@ from collections.abc import Mapping
 from sysmlc.synthesis.mealy import Machine, Move, Row
 from sysmlc.values import replace
 
-MOST_JOINED = 3_000
-"""States up to which don't-cares are used: it takes time with the square of their number."""
+MOST_COMPARED = 20_000_000
+"""Moves that are compared to use don't-cares: that takes time with the square of the states."""
 
 
-def minimised(machine: Machine, most: int = MOST_JOINED) -> Machine:
-    """The machine with equal states joined, and if there are no more than ``most``, the others."""
-    smaller = _quotient(machine, _classes(machine))
-    return _Joining(smaller).run() if smaller.size <= most else smaller
+def minimised(machine: Machine, most: int = MOST_COMPARED) -> Machine:
+    """The machine with equal states joined, then the others until ``most`` moves are compared."""
+    return _Joining(_quotient(machine, _classes(machine)), most).run()
 
 
 def _classes(machine: Machine) -> list[int]:
@@ -55,8 +54,9 @@ def _quotient(machine: Machine, classes: list[int]) -> Machine:
 class _Joining:
     """Classes of states that grow; a trial that fails is taken back."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, most: int) -> None:
         self._machine = machine
+        self._left = most
         self._heads = list(range(machine.size))
         self._moves: list[Mapping[Row, Move]] = list(machine.moves)
 
@@ -64,6 +64,8 @@ class _Joining:
         """Join each state with the first earlier one that it can be joined with."""
         kept: list[int] = []
         for state in range(self._machine.size):
+            if self._left <= 0:
+                break
             if self._head(state) != state or any(self._join(one, state) for one in kept):
                 continue
             kept.append(state)
@@ -96,11 +98,17 @@ class _Joining:
 
     def _demanded(self, one: int, other: int) -> list[tuple[int, int]] | None:
         """The states that must be one as well; None when the two answer an input differently."""
-        mine, yours = self._moves[one], self._moves[other]
-        shared = [(move, yours[row]) for row, move in mine.items() if row in yours]
-        if any(move.output != its.output for move, its in shared):
-            return None
-        return [(move.state, its.state) for move, its in shared]
+        fewer, more = sorted((self._moves[one], self._moves[other]), key=len)
+        self._left -= len(fewer)
+        found: list[tuple[int, int]] = []
+        for row, move in fewer.items():
+            its = more.get(row)
+            if its is None:
+                continue
+            if move.output != its.output:
+                return None
+            found.append((move.state, its.state))
+        return found
 
     def _take_back(self, undo: list[tuple[int, int, Mapping[Row, Move]]]) -> None:
         for one, other, moves in reversed(undo):

@@ -193,15 +193,16 @@ def assignments(manager: Manager, node: Node, bits: Sequence[str]) -> Iterator[d
 
     ``bits`` must contain the support.
     """
-    if node == manager.false:
-        return
-    if not bits:
-        yield {}
-        return
-    bit, *rest = bits
-    for value in (False, True):
-        for found in assignments(manager, manager.assign(node, {bit: value}), rest):
-            yield {bit: value} | found
+    waiting: list[tuple[Node, tuple[bool, ...]]] = [(node, ())]
+    while waiting:
+        left, values = waiting.pop()
+        if left == manager.false:
+            continue
+        if len(values) == len(bits):
+            yield dict(zip(bits, values, strict=True))
+            continue
+        bit = bits[len(values)]
+        waiting += ((manager.assign(left, {bit: one}), (*values, one)) for one in (True, False))
 
 
 def _joined(manager: Manager, turn: Turn) -> tuple[Node, ...]:
