@@ -64,6 +64,19 @@ def test_a_diagram_tells_only_the_inputs_that_matter():
     assert "dark" not in text
 
 
+def test_conditions_have_as_few_words_as_they_need():
+    both = contract("env a: bool\nenv b: bool\nsys x: bool\npromise always x' <-> a' & b'")
+    text = plantuml_of(minimised(machines.machine(both)), both)
+    assert "S1 --> S1 : b=false\\na=false\\n/ x=false" in text
+    assert "S1 --> S1 : a=true b=true\\n/ x=true" in text
+
+
+def test_many_conditions_are_cut():
+    wide = contract("env n: 0..15\nsys x: bool\npromise always x' <-> n' mod 2 = 0")
+    text = plantuml_of(minimised(machines.machine(wide)), wide)
+    assert "S1 --> S1 : n=0\\nn=2\\nn=4\\nor more\\n/ x=true" in text
+
+
 def test_small_machines_have_a_diagram_large_ones_do_not():
     lamp = minimised(machines.machine(LAMP))
     assert [name for name, _ in files([(lamp, LAMP)])] == [

@@ -1,6 +1,7 @@
 """Machines as JSON (metamodels/sysmlc-machine.schema.json) and as state machines in PlantUML."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 
 from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.formats.document_text import type_of
@@ -13,7 +14,7 @@ FORMAT = "sysmlc-machine/1"
 MOST_SHOWN = 12
 """States up to which a diagram can be read."""
 _MOST_LINES = 4
-"""Inputs that an arrow tells one by one; more are counted."""
+"""Conditions that an arrow tells one by one."""
 
 
 def files(made: Iterable[tuple[Machine, Contract]]) -> Iterator[tuple[str, str]]:
@@ -63,7 +64,7 @@ def _row(row: Row) -> str:
 
 def plantuml_of(machine: Machine, contract: Contract) -> str:
     """The machine as a state diagram: on an arrow what is given, and below it what is answered."""
-    lines = ["@startuml", f"title {contract.component}", "hide empty description"]
+    lines = ["@startuml", f"title {' '.join(contract.component.split())}", "hide empty description"]
     lines += [f"state S{at}" for at in range(machine.size)]
     lines += ["[*] --> S0"]
     for state, moves in enumerate(machine.moves):
@@ -71,42 +72,37 @@ def plantuml_of(machine: Machine, contract: Contract) -> str:
     return "\n".join((*lines, "@enduml", ""))
 
 
-def _arrows(state: int, moves: Mapping[Row, Move], machine: Machine) -> Iterable[str]:
-    names = [one.name for one in machine.inputs]
-    shown = _telling(moves, len(names))
-    groups: dict[Move, dict[str, None]] = {}
+def _arrows(state: int, moves: Mapping[Row, Move], machine: Machine) -> Iterator[str]:
+    groups: dict[Move, list[Row]] = {}
     for row, move in moves.items():
-        said = " ".join(f"{names[at]}={print_literal(row[at])}" for at in shown)
-        groups.setdefault(move, {})[said or "any"] = None
-    for move, given in groups.items():
-        label = "\\n".join([*_shortened(tuple(given)), f"/ {_answer(move, machine)}"])
+        groups.setdefault(move, []).append(row)
+    for move, rows in groups.items():
+        others = [row for row, other in moves.items() if other != move]
+        given = list(islice(_conditions(rows, others, machine), _MOST_LINES + 1))
+        if len(given) > _MOST_LINES:
+            given[_MOST_LINES - 1 :] = ["or more"]
+        label = "\\n".join([*given, f"/ {_answer(move, machine)}"])
         yield f"S{state} --> S{move.state} : {label}"
 
 
-def _shortened(said: Sequence[str]) -> Sequence[str]:
-    if len(said) <= _MOST_LINES:
-        return said
-    return [*said[: _MOST_LINES - 1], f"or {len(said) - _MOST_LINES + 1} more"]
+def _conditions(rows: Sequence[Row], others: Sequence[Row], machine: Machine) -> Iterator[str]:
+    """What the rows have in common that none of the others has, in as few words as is simple."""
+    left = rows
+    while left:
+        row, kept = left[0], tuple(range(len(machine.inputs)))
+        for place in kept:
+            fewer = tuple(one for one in kept if one != place)
+            if not any(_is_same(row, other, fewer) for other in others):
+                kept = fewer
+        said = (f"{machine.inputs[at].name}={print_literal(row[at])}" for at in kept)
+        yield " ".join(said) or "any"
+        left = [one for one in left if not _is_same(row, one, kept)]
+
+
+def _is_same(one: Row, other: Row, places: Iterable[int]) -> bool:
+    return all(one[place] == other[place] for place in places)
 
 
 def _answer(move: Move, machine: Machine) -> str:
     pairs = zip(machine.outputs, move.output, strict=True)
     return " ".join(f"{one.name}={print_literal(value)}" for one, value in pairs)
-
-
-def _telling(moves: Mapping[Row, Move], count: int) -> list[int]:
-    """Places of inputs that suffice to tell which move is made."""
-    kept = list(range(count))
-    for place in range(count):
-        fewer = [one for one in kept if one != place]
-        if _is_told(moves, fewer):
-            kept = fewer
-    return kept
-
-
-def _is_told(moves: Mapping[Row, Move], places: Sequence[int]) -> bool:
-    seen: dict[Row, Move] = {}
-    return all(
-        seen.setdefault(tuple(row[at] for at in places), move) == move
-        for row, move in moves.items()
-    )

@@ -15,7 +15,7 @@ from sysmlc.values import dataclass
 Row = tuple[Literal, ...]
 """Values of variables, in their order."""
 MOST_STATES = 100_000
-MOST_MOVES = 500_000
+MOST_MOVES = 200_000
 
 
 @dataclass(frozen=True, slots=True)
