@@ -14,7 +14,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.counting import in_order
+from sysmlc.logic.formats.counting import in_order
 from sysmlc.logic.formula import Apply, Const, Op, Var
 
 VARIABLES = (

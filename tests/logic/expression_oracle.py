@@ -9,7 +9,7 @@ from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
 from sysmlc import resources
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Assignment,
     Binary,
     Call,

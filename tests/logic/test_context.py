@@ -3,10 +3,10 @@
 import pytest
 
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.context import context_of
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition
-from sysmlc.logic.expression import parse_expression
+from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, Symbol, condition
+from sysmlc.logic.expressions.expression import parse_expression
 from sysmlc.logic.formula import Const, Var
 from sysmlc.logic.printing import print_formula
 

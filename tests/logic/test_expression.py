@@ -5,7 +5,7 @@ from expression_oracle import oracle_effect, oracle_expression
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Assignment,
     Binary,
     Call,

@@ -5,10 +5,10 @@ from activity_models import activity, tokens_of
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.activity_contract import derive
+from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_sketch import sketch
 

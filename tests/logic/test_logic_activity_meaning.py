@@ -6,12 +6,13 @@ from activity_models import activity, blocks, tokens_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sysmlc.logic import evaluate, token_game
-from sysmlc.logic.activity_contract import derive
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities import token_game
+from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
 
 Trace = list[dict[str, Literal]]

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
-from sysmlc.logic import evaluate, token_game, token_net
-from sysmlc.logic.activity_contract import derive
-from sysmlc.logic.tokens import ACTIVITY_REGION, TokenGraph
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities import token_game, token_net
+from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes import activity_drawing, activity_tokens
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_expressions import Scope

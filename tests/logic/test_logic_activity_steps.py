@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import print_text
-from sysmlc.logic import domains, evaluate, token_game, token_search
-from sysmlc.logic.activity_contract import derive
+from sysmlc.logic import domains, evaluate
+from sysmlc.logic.activities import token_game, token_search
+from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.activities import Activities
 
 Valuation = dict[str, Literal]

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, EnumerationDomain, IntegerDomain
-from sysmlc.logic.counting import counted, in_bits
 from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.formats.counting import counted, in_bits
+from sysmlc.logic.formats.lower import TooManyValuesError, renamed, without_arithmetic, written_out
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.lower import TooManyValuesError, renamed, without_arithmetic, written_out
 
 
 def number(variable, value):

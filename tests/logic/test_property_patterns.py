@@ -9,10 +9,10 @@ from test_reductions import ltl
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
-from sysmlc.logic.history import History
 from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
-from sysmlc.logic.reduce import NotReducibleError, parts_of
-from sysmlc.logic.sentences import read_sentence
+from sysmlc.logic.reduction.history import History
+from sysmlc.logic.reduction.reduce import NotReducibleError, parts_of
+from sysmlc.logic.texts.sentences import read_sentence
 
 DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
 SCOPES = {

@@ -9,10 +9,10 @@ from test_formats_spot import for_spot
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Apply, Op, Var
-from sysmlc.logic.history import History
 from sysmlc.logic.ltl import parse_formula
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduce import NotReducibleError, parts_of, reduced
+from sysmlc.logic.reduction.history import History
+from sysmlc.logic.reduction.reduce import NotReducibleError, parts_of, reduced
 
 DOMAINS = {name: BooleanDomain() for name in "abcd"}
 SAFE, LIVE, INIT = "safety", "liveness", "init"

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from machines import machines
 
 from sysmlc.diagnostics import Sink
-from sysmlc.logic import domains, step
+from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import violation
-from sysmlc.logic.machine_reader import read_machine
-from sysmlc.logic.statemachine import derive
+from sysmlc.logic.machines import step
+from sysmlc.logic.machines.derivation import derive
+from sysmlc.logic.machines.reader import read_machine
 
 STEPS = 7
 

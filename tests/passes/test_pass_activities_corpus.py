@@ -11,11 +11,12 @@ from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.text import print_text
-from sysmlc.logic import evaluate, token_game
-from sysmlc.logic.activity_contract import derive
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities import token_game
+from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.domains import values
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

@@ -12,9 +12,9 @@ from sysmlc.backends.recipe.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes import pipeline
 from sysmlc.recipe.model import Model
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.logic.tokens import TokenGraph
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_expressions import Scope

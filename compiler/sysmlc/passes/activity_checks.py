@@ -6,8 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.formula import Formula, variables
-from sysmlc.logic.tokens import (
+from sysmlc.logic.activities.tokens import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,
@@ -15,6 +14,7 @@ from sysmlc.logic.tokens import (
     TokenGraph,
     TokenNode,
 )
+from sysmlc.logic.formula import Formula, variables
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes import activity_search
 from sysmlc.passes.activity_drawing import CannotPlayError

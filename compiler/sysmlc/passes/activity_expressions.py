@@ -2,10 +2,10 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.logic.context import Feature, context_of, note_range
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
-from sysmlc.logic.elaborate import ElaborationError, Fault, Symbol, condition
-from sysmlc.logic.expression import ExpressionError, parse_expression
+from sysmlc.logic.expressions.context import Feature, context_of, note_range
+from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, Symbol, condition
+from sysmlc.logic.expressions.expression import ExpressionError, parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)

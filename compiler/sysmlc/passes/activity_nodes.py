@@ -1,8 +1,8 @@
 """Token nodes of what is drawn, with their variables; and what UML asks to be drawn otherwise."""
 
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.logic.activities.tokens import Duration, NodeKind, TokenNode
 from sysmlc.logic.names import identifier
-from sysmlc.logic.tokens import Duration, NodeKind, TokenNode
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft, least
 from sysmlc.passes.activity_inputs import events

@@ -5,9 +5,9 @@ The others are played in all ways (``token_search``): the game moves everything 
 flow may be empty again before the next token comes.
 """
 
-from sysmlc.logic import token_net
+from sysmlc.logic.activities import token_net
+from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.logic.names import Names
-from sysmlc.logic.tokens import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.passes.activity_collapse import collapse
 from sysmlc.values import dataclass, replace
 
@@ -102,7 +102,7 @@ def _in_any_order(tokens: TokenGraph, limit: int) -> Found:
 
 
 def _step_by_step(tokens: TokenGraph, limit: int) -> Found:
-    from sysmlc.logic import token_search
+    from sysmlc.logic.activities import token_search
 
     reached = token_search.explore(tokens, limit)
     moving = {node.id for node in tokens.nodes if node.firing is not Firing.NEVER}

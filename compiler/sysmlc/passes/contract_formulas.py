@@ -7,8 +7,8 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
-from sysmlc.logic.formal import is_formal, read_formal, told
 from sysmlc.logic.formula import Formula
+from sysmlc.logic.texts.formal import is_formal, read_formal, told
 from sysmlc.values import replace
 
 _MACHINE = """\
@@ -101,7 +101,7 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
-    from sysmlc.logic.reduce import is_reducible, remembering
+    from sysmlc.logic.reduction.reduce import is_reducible, remembering
     from sysmlc.logic.spelling import FormulaError
 
     name = constraint.name or "<Constraint>"

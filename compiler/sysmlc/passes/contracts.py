@@ -11,11 +11,12 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic import activity_contract, statemachine
+from sysmlc.logic.activities import derivation as activity_contract
+from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Contract
-from sysmlc.logic.machine_reader import MachineOptions, read_machine
+from sysmlc.logic.machines import derivation as statemachine
+from sysmlc.logic.machines.reader import MachineOptions, read_machine
 from sysmlc.logic.requirements import derivation as requirements
-from sysmlc.logic.tokens import TokenGraph
 from sysmlc.passes.contract_formulas import add_formulas
 from sysmlc.values import dataclass, replace
 

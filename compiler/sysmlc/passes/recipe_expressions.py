@@ -1,8 +1,8 @@
 """From the expression grammar to the trees of recipes, and types of parameters."""
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.logic import expression as source
-from sysmlc.logic.machine_time import milliseconds
+from sysmlc.logic.expressions import expression as source
+from sysmlc.logic.machines.clock import milliseconds
 from sysmlc.passes.recipe_context import Context
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Opaque, Var
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType

@@ -5,7 +5,10 @@ from typing import Protocol
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic import activity_contract, evaluate, step, token_game
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities import derivation as activity_contract
+from sysmlc.logic.activities import token_game
+from sysmlc.logic.activities.tokens import TokenEdge, TokenGraph, TokenNode
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -15,9 +18,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, values
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.machine import Machine
-from sysmlc.logic.machine_reader import read_machine
-from sysmlc.logic.tokens import TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.machines import step
+from sysmlc.logic.machines.machine import Machine
+from sysmlc.logic.machines.reader import read_machine
 from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]

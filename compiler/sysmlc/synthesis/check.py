@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.logic.reduce import reduced
+from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduce import reduced
+from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.core import unrealizable_core
 from sysmlc.synthesis.derived import without_derived
@@ -78,7 +78,7 @@ class Verdict:
 def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
     """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported.
 
-    What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduce``).
+    What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduction``).
     """
     doing = ["translating the contract"]
 

@@ -3,7 +3,7 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduce import reduced
+from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.game import make_game

@@ -16,7 +16,7 @@ from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND as XMI
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
-from sysmlc.logic.expression import ExpressionError, parse_expression, print_expression
+from sysmlc.logic.expressions.expression import ExpressionError, parse_expression, print_expression
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

@@ -4,7 +4,7 @@ from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import UnknownNameError, resolved, written
 from sysmlc.ir import Element
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Assignment,
     Call,
     Expression,

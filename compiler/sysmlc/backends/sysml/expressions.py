@@ -5,7 +5,7 @@ from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.references import lookup, meant, reference
 from sysmlc.backends.sysml.words import quoted, string
 from sysmlc.ir import Kind
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Binary,
     Call,
     Conditional,

@@ -9,7 +9,7 @@ from sysmlc.frontends.sysml.events import trigger
 from sysmlc.frontends.sysml.successions import steps
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
-from sysmlc.logic.expression import print_statement
+from sysmlc.logic.expressions.expression import print_statement
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering

@@ -4,7 +4,7 @@ from functools import reduce
 
 from sysmlc.frontends.sysml import nodes
 from sysmlc.language.tree import Node, Reference
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Binary,
     Call,
     Conditional,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sysmlc.frontends.sysml import expressions, nodes
 from sysmlc.language.tree import Node
-from sysmlc.logic.expression import (
+from sysmlc.logic.expressions.expression import (
     Assignment,
     Call,
     Expression,

@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.formats.lower import TooManyValuesError
 from sysmlc.logic.formats.spelt import Spelling
 from sysmlc.logic.formula import Formula, variables
-from sysmlc.logic.lower import TooManyValuesError
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduce import is_plain, reduced
+from sysmlc.logic.reduction.reduce import is_plain, reduced
 from sysmlc.values import dataclass
 
 

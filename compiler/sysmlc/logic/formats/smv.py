@@ -21,11 +21,7 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import File, lowered
 from sysmlc.logic.formats.draft import Draft
-from sysmlc.logic.formats.spelt import LTL, Spelling
-from sysmlc.logic.formats.spot import implication, sides
-from sysmlc.logic.formula import Apply, Formula, Op, Var
-from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.lower import (
+from sysmlc.logic.formats.lower import (
     each_conjunct,
     each_formula,
     known,
@@ -33,6 +29,10 @@ from sysmlc.logic.lower import (
     without_weak_until,
     written_out,
 )
+from sysmlc.logic.formats.spelt import LTL, Spelling
+from sysmlc.logic.formats.spot import implication, sides
+from sysmlc.logic.formula import Apply, Formula, Op, Var
+from sysmlc.logic.infix import Part, Reader
 from sysmlc.logic.spelling import (
     COMPARING,
     CONNECTIVES,

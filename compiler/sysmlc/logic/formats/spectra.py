@@ -21,8 +21,8 @@ from sysmlc.logic.formats.spectra_counter import counter_rules
 from sysmlc.logic.formats.spectra_reader import SYNTAX, Meaning, SpectraReader
 from sysmlc.logic.formats.spectra_types import Types
 from sysmlc.logic.formula import Const, Formula, Op, Var
-from sysmlc.logic.history import History
 from sysmlc.logic.infix import Part, kind_of
+from sysmlc.logic.reduction.history import History
 from sysmlc.logic.spelling import Cursor, FormulaError, Token, tokens
 from sysmlc.values import dataclass
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.logic.history import History
 from sysmlc.logic.infix import TRUTH, Part, Reader
+from sysmlc.logic.reduction.history import History
 from sysmlc.logic.spelling import (
     COMPARING,
     CONNECTIVES,

@@ -19,11 +19,11 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import File, lowered
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.lower import TooManyValuesError, without_arithmetic
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.logic.formats.spot import OWNERS, PARTS, parts, read_implication
 from sysmlc.logic.formula import Op
 from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.lower import TooManyValuesError, without_arithmetic
 from sysmlc.logic.spelling import NEUTRAL, FormulaError
 from sysmlc.values import replace
 

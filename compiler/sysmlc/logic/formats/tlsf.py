@@ -10,16 +10,16 @@ from pathlib import PurePath
 from sysmlc.depth import room_for
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, Owner
-from sysmlc.logic.counting import in_bits
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import File, conjuncts_of, lowered, said_ltl
+from sysmlc.logic.formats.counting import in_bits
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.lower import renamed
 from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
 from sysmlc.logic.formats.tlsf_tree import INFIX, PREFIX, QUANTIFIERS, Tree, expression
 from sysmlc.logic.formats.tlsf_values import DEEPEST_CALL, Bus, Definition, Value, Values
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST
-from sysmlc.logic.lower import renamed
 from sysmlc.logic.spelling import Cursor, Syntax, tokens
 from sysmlc.values import replace
 

@@ -6,8 +6,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.classes import classified
-from sysmlc.logic.context import context_of
 from sysmlc.logic.contract import Class, Conjunct, Contract
+from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.requirements.meaning import is_temporal, meaning
@@ -83,7 +83,7 @@ def _contract(
     assumptions: list[Conjunct],
     demands: list[Conjunct],
 ) -> Contract:
-    from sysmlc.logic.reduce import remembering
+    from sysmlc.logic.reduction.reduce import remembering
 
     used = scope.used(one.formula for one in (*assumptions, *demands))
     starts = list(_starts(scope, {one.name for one in used}))

@@ -2,13 +2,13 @@
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph
-from sysmlc.logic.context import note_range
-from sysmlc.logic.elaborate import ElaborationError, Fault, condition
-from sysmlc.logic.expression import ExpressionError, parse_expression
-from sysmlc.logic.formal import is_formal, read_formal, told
+from sysmlc.logic.expressions.context import note_range
+from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, condition
+from sysmlc.logic.expressions.expression import ExpressionError, parse_expression
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.logic.requirements.scope import Scope
 from sysmlc.logic.requirements.statements import Statement
+from sysmlc.logic.texts.formal import is_formal, read_formal, told
 
 _MODEL = """\
 Package p "Plant"

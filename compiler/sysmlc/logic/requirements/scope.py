@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Mapping
 
 from sysmlc.ir import Element, Kind
-from sysmlc.logic.context import Context, Feature
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
-from sysmlc.logic.elaborate import Symbol, literal_of
+from sysmlc.logic.expressions.context import Context, Feature
+from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Const, Formula, Literal, var, variables
 from sysmlc.logic.simplify import substitute
 from sysmlc.values import dataclass

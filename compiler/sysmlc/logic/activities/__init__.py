@@ -1,0 +1,1 @@
+"""Activities as token graphs: played, and derived to contracts."""

@@ -1,0 +1,88 @@
+"""Loops of token graphs that the environment decides, each with the edges that lead out of it."""
+
+from collections.abc import Collection, Iterator
+
+from sysmlc.ir.components import strong_components
+from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.formula import Const, variables
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """Nodes (ids, in the order of the graph) that reach each other, and the exits."""
+
+    nodes: tuple[str, ...]
+    exits: tuple[TokenEdge, ...]
+
+
+def loops(graph: TokenGraph) -> list[Loop]:
+    """Loops with at least one exit that the environment opens, outer before inner.
+
+    A loop is a strongly connected component; inner loops are the components that are left
+    when the decisions with exits are taken out.
+    """
+    return list(_loops(graph, [node.id for node in graph.nodes]))
+
+
+def endless_entries(graph: TokenGraph) -> list[TokenNode]:
+    """Where loops without an exit are entered: they are gone through again and again."""
+    heads = (_entry(graph, part) for part in _components(graph, [n.id for n in graph.nodes]))
+    return [head for head in heads if head is not None]
+
+
+def _entry(graph: TokenGraph, component: Collection[str]) -> TokenNode | None:
+    if any(_is_exit(graph, edge, component) for edge in graph.edges):
+        return None
+    nodes = [graph.node(id) for id in component]
+    entered = [n for n in nodes if any(_enters(e, component) for e in graph.incoming(n))]
+    return next(iter(entered), nodes[0])
+
+
+def _enters(edge: TokenEdge, component: Collection[str]) -> bool:
+    return edge.source not in component or edge.marked
+
+
+def _loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:
+    for component in _components(graph, nodes):
+        exits = [edge for edge in graph.edges if _is_exit(graph, edge, component)]
+        if any(map(_is_decided_outside, exits)):
+            yield Loop(component, tuple(exits))
+        deciders = {edge.source for edge in exits}
+        if deciders:
+            yield from _loops(graph, [node for node in component if node not in deciders])
+
+
+def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ...]]:
+    kept = frozenset(nodes)
+    steps = [*((edge.source, edge.target) for edge in graph.edges), *_starts(graph)]
+    following: dict[str, dict[str, None]] = {id: {} for id in nodes}
+    for source, target in steps:
+        if source in kept and target in kept:
+            following[source][target] = None
+    order = {node.id: place for place, node in enumerate(graph.nodes)}
+    found = [
+        tuple(sorted(part, key=order.__getitem__))
+        for part in strong_components(following)
+        if len(part) > 1 or part[0] in following[part[0]]
+    ]
+    return sorted(found, key=lambda part: order[part[0]])
+
+
+def _starts(graph: TokenGraph) -> Iterator[tuple[str, str]]:
+    """A structured node leads to what starts in it: flows may leave from there."""
+    for edge in graph.edges:
+        if edge.marked and edge.region != ACTIVITY_REGION:
+            yield edge.region, edge.target
+
+
+def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> bool:
+    is_choice = graph.node(edge.source).firing is Firing.CHOICE
+    return is_choice and edge.source in component and edge.target not in component
+
+
+def _is_decided_outside(edge: TokenEdge) -> bool:
+    guard = edge.guard
+    if guard is None or isinstance(guard.condition, Const):
+        return False
+    return guard.condition is None or any(True for _ in variables(guard.condition))

@@ -1,0 +1,261 @@
+"""Reference interpreter of token graphs: plays the game on the diagram, not on formulas.
+
+First the regions that are complete are ended; what is in them does nothing more. All other nodes
+then move what they can move, interrupted nodes lose their tokens, and what has been started gets
+its first ones.
+
+The interpreter is the judge of the contracts that ``activity_contract`` derives: a run that it
+plays must satisfy every conjunct, and a changed run must not.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from sysmlc.logic.activities.tokens import (
+    ACTIVITY_REGION,
+    Duration,
+    Firing,
+    NodeKind,
+    TokenEdge,
+    TokenGraph,
+    TokenNode,
+)
+from sysmlc.logic.formula import Formula, Literal
+from sysmlc.values import dataclass
+
+Inputs = Mapping[str, Literal]
+Choose = Callable[[TokenNode, Sequence[TokenEdge]], TokenEdge]
+
+
+class NotSafeError(RuntimeError):
+    """A second token reached an edge or a merge, or an action was started while it ran."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where the tokens are: ids of the edges that hold one and of the nodes that run."""
+
+    tokens: frozenset[str]
+    running: frozenset[str]
+
+
+def first(node: TokenNode, branches: Sequence[TokenEdge]) -> TokenEdge:
+    """The first of several open branches."""
+    del node
+    return branches[0]
+
+
+def start(graph: TokenGraph) -> State:
+    """The state in which the activity starts."""
+    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset())
+
+
+def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
+    """The value of every variable that the state decides."""
+    runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
+    quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
+    return runs | {edge.variable: edge.id in state.tokens for edge in graph.edges} | quiet
+
+
+def state_of(graph: TokenGraph, valuation: Inputs) -> State:
+    """The state that decides these values: the inverse of ``values``."""
+    return State(
+        frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
+        frozenset(node.id for node in graph.workers() if valuation[node.run]),
+    )
+
+
+def step(
+    graph: TokenGraph,
+    state: State,
+    inputs: Inputs,
+    holds: Callable[[Formula, Inputs], bool],
+    choose: Choose = first,
+) -> State:
+    """The state after one step; ``holds`` evaluates a condition on the inputs.
+
+    Raises NotSafeError when the graph is not 1-safe.
+    """
+    return _Step(graph, state, inputs, holds, choose).play()
+
+
+def finishes(graph: TokenGraph, state: State) -> bool:
+    """Whether the activity ends in this state, so that the next step starts it anew."""
+    return is_complete(graph, state, ACTIVITY_REGION)
+
+
+def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
+    """A token is at a final node of the region, or nothing in the region can move."""
+    if any(edge.id in state.tokens for edge in graph.ends(region)):
+        return True
+    return not any(_is_active(graph, state, node) for node in graph.members(region))
+
+
+def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
+    """The node runs, or it has all tokens that it can get from inside its region."""
+    if node.id in state.running:
+        return True
+    if node.firing is Firing.NEVER:
+        return False
+    if node.firing in (Firing.ANY, Firing.END):
+        return any(edge.id in state.tokens for edge in graph.incoming(node))
+    triggers = graph.triggers(node)
+    return bool(triggers) and all(edge.id in state.tokens for edge in triggers)
+
+
+def _marked(graph: TokenGraph, region: str) -> list[str]:
+    return [edge.id for edge in graph.edges if edge.marked and edge.region == region]
+
+
+class _Step:
+    """One step: everything looks at ``old``; ``tokens`` and ``running`` become the new state."""
+
+    def __init__(
+        self,
+        graph: TokenGraph,
+        old: State,
+        inputs: Inputs,
+        holds: Callable[[Formula, Inputs], bool],
+        choose: Choose,
+    ) -> None:
+        self.graph = graph
+        self.old = old
+        self.inputs = inputs
+        self.holds = holds
+        self.choose = choose
+        self.tokens = set(old.tokens)
+        self.running = set(old.running)
+        self.started: list[TokenNode] = []
+        self.ended: list[TokenNode] = []
+        self.interrupted: list[str] = []
+
+    def play(self) -> State:
+        if finishes(self.graph, self.old):
+            return start(self.graph)
+        self.ended = [node for node in self.graph.workers() if self._ends(node)]
+        alive = [node for node in self.graph.nodes if self._is_alive(node)]
+        # Taking comes before giving: a token may arrive where another has just left.
+        gifts = [edge for node in alive for edge in self._fire(node)]
+        for edge in gifts:
+            self._give(edge)
+        for node in self.ended:
+            self._clear_region(node.id)
+        for region in self.interrupted:
+            self._interrupt(region)
+        for node in self.started:
+            self._open(node)
+        return State(frozenset(self.tokens), frozenset(self.running))
+
+    def _ends(self, node: TokenNode) -> bool:
+        runs = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
+        return runs and is_complete(self.graph, self.old, node.id)
+
+    def _is_alive(self, node: TokenNode) -> bool:
+        """All regions around it run, and none of them ends in this step."""
+        around = list(self.graph.regions_around(node.region))
+        return all(one.id in self.old.running and one not in self.ended for one in around)
+
+    def _fire(self, node: TokenNode) -> Sequence[TokenEdge]:
+        incoming, outgoing = self.graph.incoming(node), self.graph.outgoing(node)
+        ready = [edge for edge in incoming if edge.id in self.old.tokens]
+        match node.firing:
+            case Firing.ANY if ready:
+                self._take(ready)
+                self._check_single(node, ready, outgoing)
+                return outgoing
+            case Firing.ALL if incoming and len(ready) == len(incoming):
+                self._take(ready)
+                return outgoing
+            case Firing.CHOICE if incoming and len(ready) == len(incoming):
+                return self._decide(node, ready, outgoing)
+            case Firing.WORK:
+                return self._work(node, incoming, ready, outgoing)
+            case _:
+                return ()
+
+    def _check_single(
+        self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
+    ) -> None:
+        # Of several flows that interrupt one region at once, UML lets one pass.
+        apart = {edge.interrupts or edge.id for edge in ready}
+        if len(apart) > 1 and any(not edge.keeps for edge in outgoing):
+            raise NotSafeError(f"two tokens reach {node.label} at once")
+
+    def _decide(
+        self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
+    ) -> Sequence[TokenEdge]:
+        branches = self._open_branches(outgoing)
+        if outgoing and not branches:
+            return ()
+        self._take(ready)
+        if not outgoing:
+            return ()
+        return (branches[0] if len(branches) == 1 else self.choose(node, branches),)
+
+    def _open_branches(self, outgoing: list[TokenEdge]) -> list[TokenEdge]:
+        stated = [edge for edge in outgoing if not edge.is_else]
+        true = [edge for edge in stated if self._is_open(edge)]
+        return true or [edge for edge in outgoing if edge.is_else]
+
+    def _is_open(self, edge: TokenEdge) -> bool:
+        guard = edge.guard
+        return guard is None or guard.condition is None or self.holds(guard.condition, self.inputs)
+
+    def _work(
+        self,
+        node: TokenNode,
+        incoming: list[TokenEdge],
+        ready: list[TokenEdge],
+        outgoing: list[TokenEdge],
+    ) -> Sequence[TokenEdge]:
+        is_running = node.id in self.old.running
+        has_all = bool(incoming) and len(ready) == len(incoming)
+        if has_all and is_running and not node.queues:
+            raise NotSafeError(f"{node.label} is started while it runs")
+        if has_all and not is_running:
+            self._take(ready)
+            self.running.add(node.id)
+            self.started.append(node)
+        if not is_running or not self._is_done(node):
+            return ()
+        self.running.discard(node.id)
+        return outgoing
+
+    def _is_done(self, node: TokenNode) -> bool:
+        if node.kind is NodeKind.STRUCTURED:
+            return node in self.ended
+        if node.duration is Duration.PULSE or node.done is None:
+            return True
+        return self.holds(node.done, self.inputs)
+
+    def _take(self, edges: Sequence[TokenEdge]) -> None:
+        self.tokens.difference_update(edge.id for edge in edges if not edge.keeps)
+
+    def _give(self, edge: TokenEdge) -> None:
+        if edge.id in self.tokens and not edge.keeps:
+            raise NotSafeError(f"a second token reaches the flow {edge.label}")
+        self.tokens.add(edge.id)
+        if edge.interrupts:
+            self.interrupted.append(edge.interrupts)
+
+    def _open(self, node: TokenNode) -> None:
+        if node.kind is NodeKind.STRUCTURED and node.id in self.running:
+            self.tokens.update(_marked(self.graph, node.id))
+
+    def _clear_region(self, region: str) -> None:
+        edges, nodes = self.graph.inside(region)
+        self.tokens.difference_update(edge.id for edge in edges)
+        self._stop(nodes)
+
+    def _interrupt(self, region: str) -> None:
+        found = next(r for r in self.graph.interruptibles if r.id == region)
+        members = frozenset(found.nodes)
+        self.tokens.difference_update(
+            edge.id for edge in self.graph.edges if {edge.source, edge.target} <= members
+        )
+        self._stop([node for node in self.graph.workers() if node.id in members])
+
+    def _stop(self, nodes: Sequence[TokenNode]) -> None:
+        for node in nodes:
+            self.running.discard(node.id)
+            if node.kind is NodeKind.STRUCTURED:
+                self._clear_region(node.id)

@@ -1,0 +1,1 @@
+"""State machines: read, checked, stepped, and derived to contracts."""

@@ -1,0 +1,77 @@
+"""Time triggers: durations in steps, and what only the environment can time."""
+
+import re
+from math import ceil
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.ir import Element
+from sysmlc.logic.machines.actions import Reading
+from sysmlc.logic.samples import arrow, machine
+
+
+def _waiting(after: str) -> str:
+    return machine(arrow("a", "b", after=after))
+
+
+OPAQUE_TIME = rule(
+    "SM417",
+    "opaque-time",
+    Severity.WARNING,
+    "time '{text}' is no constant relative time; the environment says when it comes, as "
+    "'{variable}'",
+    why="A contract counts a duration in steps, so that it has to be a number.",
+    help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
+    wrong=_waiting("after cooling"),
+    right=_waiting("after 5 s"),
+)
+_SECONDS = {
+    "ms": 0.001,
+    "msec": 0.001,
+    "millisecond": 0.001,
+    "milliseconds": 0.001,
+    "s": 1.0,
+    "sec": 1.0,
+    "second": 1.0,
+    "seconds": 1.0,
+    "min": 60.0,
+    "minute": 60.0,
+    "minutes": 60.0,
+    "m": 60.0,
+    "h": 3600.0,
+    "hour": 3600.0,
+    "hours": 3600.0,
+}
+_TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
+
+
+def ticks_of(reading: Reading, trigger: Element) -> int | None:
+    """Steps after which a time trigger occurs, at least 1; None when it is no constant.
+
+    A number without unit counts steps; with a unit, steps last ``tick_seconds``.
+    """
+    text = str(trigger.attrs.get("when", ""))
+    relative = trigger.attrs.get("relative") is True or text.strip().startswith("after")
+    found = _TIME.match(text)
+    if not relative or found is None or (found[2] and found[2].lower() not in _SECONDS):
+        return None
+    number = float(found[1])
+    if found[2]:
+        number = number * _SECONDS[found[2].lower()] / reading.tick_seconds
+    return max(1, ceil(number))
+
+
+def milliseconds(text: str) -> int | None:
+    """A duration with a unit, ``5 s``, in milliseconds; None for any other text."""
+    found = _TIME.match(text)
+    if found is None or found[2].lower() not in _SECONDS:
+        return None
+    return round(float(found[1]) * _SECONDS[found[2].lower()] * 1000)
+
+
+def told_time(reading: Reading, trigger: Element) -> str:
+    """The Boolean by which the environment says that a time has come."""
+    text = str(trigger.attrs.get("when", "")) or trigger.name
+    variable = reading.told(f"time {text}", f"time_{text}", trigger.id)
+    subject = reading.graph.subject(trigger)
+    reading.sink.report(OPAQUE_TIME, subject, text=text, variable=variable)
+    return variable

@@ -1,0 +1,251 @@
+"""Which transitions of a state machine are taken, as conditions over one step.
+
+Enabled by occurrence, guard and an open way through pseudostates; inner before outer,
+completion before triggers; chosen where several compete.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Graph
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import (
+    Domain,
+)
+from sysmlc.logic.domains import valuations
+from sysmlc.logic.expressions.elaborate import condition
+from sysmlc.logic.formula import Const, Formula, Op
+from sysmlc.logic.machines import words as words
+from sysmlc.logic.machines.checks import simultaneous
+from sysmlc.logic.machines.machine import (
+    NO_EVENT,
+    AfterTicks,
+    Machine,
+    Occurrence,
+    OnEvent,
+    OnRise,
+    Transition,
+    Vertex,
+    WhenTold,
+)
+from sysmlc.logic.machines.paths import LIMIT, Explorer, Path, TooManyPaths
+from sysmlc.logic.samples import arrow, choice, machine
+from sysmlc.logic.simplify import simplified, tidy
+from sysmlc.values import dataclass, replace
+
+SATURATES = rule(
+    "SM428",
+    "assignment-leaves-range",
+    Severity.WARNING,
+    "{transition} can take '{variable}' out of its range; it stops at the bound",
+    why="The contract has finite domains: a value beyond them is taken as the nearest bound.",
+    help="guard the transition, or give the property a wider range",
+    wrong=machine(arrow("a", "b", "start", effect="level := level + 1")),
+    right=machine(arrow("a", "b", "start", "level < 9", "level := level + 1")),
+)
+BLOCKED = rule(
+    "SM429",
+    "choice-without-way-out",
+    Severity.WARNING,
+    "{transition}: the guards of '{vertex}' do not cover all cases; in the others the "
+    "transition is not taken",
+    why="UML calls a choice without an enabled way out ill-formed (2.5.1, 14.2.3.7).",
+    help="add a transition with the guard else",
+    wrong=machine(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
+    right=machine(
+        *(choice(), arrow("a", "x", "start"), arrow("x", "b", guard="ready")),
+        arrow("x", "a", guard="else"),
+    ),
+)
+TOO_LARGE = rule(
+    "SM430",
+    "too-many-paths",
+    Severity.WARNING,
+    "{transition} has more than {limit} ways through choices and inner states; the component "
+    "gets no contract",
+    why="A contract of that size helps nobody.",
+    help="split the machine",
+    wrong=machine(
+        *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(9))),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(8) for g in ("ready", "not ready")),
+        arrow("x8", "b"),
+    ),
+    right=machine(
+        *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(3))),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(2) for g in ("ready", "not ready")),
+        arrow("x2", "b"),
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """A transition with its paths and the condition under which it is taken."""
+
+    transition: Transition
+    paths: tuple[Path, ...]
+    enabled: Formula
+    fires: Formula = f.FALSE
+
+
+@dataclass(frozen=True, slots=True)
+class Derivation:
+    machine: Machine
+    domains: Mapping[str, Domain]
+    moves: tuple[Move, ...]
+    starts: tuple[Path, ...]
+
+
+def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
+    domains = {one.name: one.domain for one in machine.variables}
+    explorer = Explorer(machine, domains)
+    found: list[Move] = []
+    for one in machine.transitions():
+        if machine.vertices[one.source].kind != "state":
+            continue
+        try:
+            paths = explorer.transition(one)
+        except TooManyPaths:
+            _give_up(graph, one.id, words.name_transition(one), sink)
+            return None
+        found.append(Move(one, tuple(paths), _enabled(machine, domains, one, paths)))
+        _report(graph, machine, domains, one, paths, sink)
+    moves = tuple(replace(m, fires=tidy(_fires(machine, m, found), domains)) for m in found)
+    try:
+        starts = tuple(_starts(machine, domains, explorer))
+    except TooManyPaths:
+        _give_up(graph, machine.id, f"the start of '{machine.name}'", sink)
+        return None
+    return Derivation(machine, domains, moves, starts)
+
+
+def _give_up(graph: Graph, id: str, named: str, sink: Sink) -> None:
+    sink.report(TOO_LARGE, graph.subject(graph[id]), transition=named, limit=LIMIT)
+
+
+def _starts(machine: Machine, domains: Mapping[str, Domain], explorer: Explorer) -> Iterator[Path]:
+    """Paths into the initial states; a property without default that they read is tried with
+    each of its values."""
+    given = {name: Const(value) for name, value in machine.initial.items()}
+    paths = explorer.start(given)
+    read = {one for path in paths for one in _read_at_start(path)}
+    unknown = {n: domains[n] for n in machine.assigned if n in read and n not in given}
+    for values in valuations(unknown):
+        chosen = {name: Const(value) for name, value in values.items()}
+        yield from explorer.start(given | chosen)
+
+
+def _read_at_start(path: Path) -> Iterator[str]:
+    for formula in (path.branch, path.case, *path.values.values()):
+        yield from (one.name for one in f.variables(formula))
+
+
+def _enabled(
+    machine: Machine, domains: Mapping[str, Domain], one: Transition, paths: list[Path]
+) -> Formula:
+    occurs = _occurrence(machine, one)
+    way = _way(machine, domains, one, paths)
+    return tidy(f.both(active(machine, one.source), occurs, way), domains)
+
+
+def _way(
+    machine: Machine, domains: Mapping[str, Domain], one: Transition, paths: list[Path]
+) -> Formula:
+    """Some way through the pseudostates is open; the guard alone when it opens one always."""
+    guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
+    way = f.either(*(path.when for path in paths))
+    if way == guard:
+        return simplified(guard, domains)
+    always_open = simplified(f.implies(guard, way), domains) == f.TRUE
+    return simplified(guard if always_open else way, domains)
+
+
+def active(machine: Machine, vertex: str) -> Formula:
+    """The vertex is the state of its region."""
+    one = machine.vertices[vertex]
+    return f.eq(f.var(machine.regions[one.region].variable), Const(one.literal))
+
+
+def _occurrence(machine: Machine, one: Transition) -> Formula:
+    state = machine.vertices[one.source]
+    if not one.occurrences:
+        return _complete(machine, state)
+    return f.either(*(_occurs(machine, state, each) for each in one.occurrences))
+
+
+def _complete(machine: Machine, state: Vertex) -> Formula:
+    ended = f.var(state.done) if state.done else f.TRUE
+    inner = []
+    for region in state.regions:
+        finals = [v for v in machine.vertices.values() if v.region == region and v.kind == "final"]
+        inner.append(f.either(*(active(machine, one.id) for one in finals)))
+    return f.both(ended, *inner)
+
+
+def _occurs(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
+    match occurrence:
+        case OnEvent(None):
+            return f.compare(Op.NE, f.var("event"), Const(NO_EVENT))
+        case OnEvent(literal):
+            return f.eq(f.var("event"), Const(literal or ""))
+        case AfterTicks(count):
+            return f.eq(f.var(state.timer), Const(count - 1))
+        case OnRise(memory, expression):
+            truth = condition(expression, machine.scope)
+            return f.both(truth, f.negate(f.var(memory)))
+        case WhenTold(variable):
+            return f.var(variable)
+
+
+def _fires(machine: Machine, move: Move, moves: list[Move]) -> Formula:
+    """Enabled, before nothing that goes first, and chosen where there is a choice."""
+    source = machine.vertices[move.transition.source]
+    chosen = is_picked(source.pick, move.transition.literal) if source.pick else f.TRUE
+    return f.both(_eligible(machine, move, moves), chosen)
+
+
+def _eligible(machine: Machine, move: Move, moves: list[Move]) -> Formula:
+    return f.both(move.enabled, *(f.negate(one) for one in _before(machine, move, moves)))
+
+
+def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Formula]:
+    """What goes first: transitions of inner states, and the completion of the same state."""
+    mine = move.transition
+    for other in moves:
+        if machine.contains(mine.source, other.transition.source):
+            if simultaneous(mine, other.transition):
+                yield other.enabled
+        elif other.transition.source == mine.source and _is_later(mine, other.transition):
+            yield other.enabled
+
+
+def _is_later(one: Transition, other: Transition) -> bool:
+    return bool(one.occurrences) and not other.occurrences
+
+
+def is_picked(pick: str, literal: str) -> Formula:
+    """A choice was made in favour of a transition; seen in the next step."""
+    return f.primed(f.eq(f.var(pick), Const(literal)))
+
+
+def _report(
+    graph: Graph,
+    machine: Machine,
+    domains: Mapping[str, Domain],
+    one: Transition,
+    paths: list[Path],
+    sink: Sink,
+) -> None:
+    subject = graph.subject(graph[one.id])
+    named = words.name_transition(one)
+    for path in paths:
+        for variable, _ in path.saturated:
+            sink.report(SATURATES, subject, transition=named, variable=variable)
+    target = machine.vertices[one.target] if one.target else None
+    if target is None or target.is_stable or one.kind == "internal":
+        return
+    guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
+    way = _way(machine, domains, one, paths)
+    if simplified(f.implies(guard, way), domains) != f.TRUE:
+        name = graph[target.id].name or target.kind
+        sink.report(BLOCKED, subject, transition=named, vertex=name)

@@ -1,0 +1,1 @@
+"""Temporal logic as GR(1), with history bits for what games have no other words for."""

@@ -1,0 +1,1 @@
+"""Formal texts in models: temporal logic with the past, and property patterns as sentences."""
