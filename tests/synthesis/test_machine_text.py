@@ -3,7 +3,7 @@
 import json
 
 import jsonschema
-import machines
+import made_machines as machines
 import small_games
 from contracts_in_lines import contract
 

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-import machines
+import made_machines as machines
 import pytest
 import small_games
 from contracts_in_lines import contract
