@@ -28,3 +28,16 @@ def test_a_loss_is_counted_and_told_once():
     assert saved(refined(gate + machines))[1] == [
         "SM740 AutomationML has no place for StateMachine (3 left out of the saved plant)"
     ]
+
+
+def test_an_interface_that_holds_itself_is_written_once():
+    texts, _ = saved(
+        refined(
+            'Package p "Plant"\n  Class gate "Gate" role="block"\n    -> feature a\n'
+            '    Port a "a"\n      -> typed-by t\n'
+            '    Class t "a" subkind="external-interface"\n      -> feature b\n'
+            '      Port b "b"\n        -> typed-by t\n'
+        )
+    )
+    (text,) = texts.values()
+    assert [text.count(f'<ExternalInterface Name="{name}"') for name in "ab"] == [1, 1]

@@ -506,3 +506,19 @@ def test_a_row_of_types_ends_however_long_it_is():
     last = '    Property f2000 "f2000" role="part"'
     lines = lines_of("\n".join(['Package p "P"', '  Class a "A" role="block"', *rows, last]))
     assert lines[-4:-2] == ["ref f1999 :> f2000;", "part f2000;"]
+
+
+def test_associations_of_one_another_are_written():
+    rows = [
+        f'  Association {one} "{one}"\n'
+        + "".join(
+            f'    -> end {one}.{other}\n    Property {one}.{other} "{other}"\n'
+            f"      -> typed-by {other}\n"
+            for other in "kmn"
+        )
+        for one in "kmn"
+    ]
+    lines = lines_of('Package p "P"\n' + "".join(rows))
+    assert [line for line in lines if line.startswith("connection def")] == [
+        f"connection def {one} {{" for one in "kmn"
+    ]

@@ -14,15 +14,18 @@ _VALUE = "value."
 
 
 def write(book: Book, port: Element, file: File, above: Node) -> Node:
-    """Add the external interface of a port, with those below it."""
+    """Add the external interface of a port, with those below it, up to one that holds itself."""
     top = _interface(book, port, file, above)
-    waiting = [(top, _own_type(book, port))]
+    waiting: list[tuple[Node, Element | None, frozenset[str]]]
+    waiting = [(top, _own_type(book, port), frozenset())]
     while waiting:
-        node, type_ = waiting.pop()
+        node, type_, around = waiting.pop()
+        if type_ is None or type_.id in around:
+            continue
         for one in book.owned(type_):
             if one.kind is Kind.PORT:
                 inner = _interface(book, one, file, node)
-                waiting.append((inner, _own_type(book, one)))
+                waiting.append((inner, _own_type(book, one), around | {type_.id}))
     return top
 
 

@@ -104,7 +104,7 @@ _USED_BY_KEYWORD = {
     "occurrence": "occurrence",
 }
 """Keyword of features by that of the definition, or behaviour, that types them; else ``ref``."""
-_TYPES = 30
+_TYPES = 12
 """Features typed by features: so many decide how the first one is written."""
 HOLDERS = (Kind.PACKAGE, Kind.PROFILE)
 
@@ -189,7 +189,8 @@ def _shape_of_type(graph: Graph, element: Element, type_: Element | None) -> Sha
         return None if type_ is None else shape_of(graph, type_)
     level = [element]
     for _ in range(_TYPES):
-        level = [t for one in level for t in _types(graph, one) if t.kind not in _DEFINITIONS]
+        found = (type_ for one in level for type_ in _types(graph, one))
+        level = list({one.id: one for one in found if one.kind not in _DEFINITIONS}.values())
         if not level:
             return shape_of(graph, type_)
     return None
@@ -220,8 +221,9 @@ def _parameter(graph: Graph, element: Element) -> Shape | None:
 
 
 def _association(graph: Graph, element: Element) -> Shape:
-    ends = [type_of(graph, end) for end in graph.targets(element, Edge.END)]
-    shapes = [_shape_of_type(graph, element, end) for end in ends]
+    ends = (type_of(graph, end) for end in graph.targets(element, Edge.END))
+    types = {"" if one is None else one.id: one for one in ends}
+    shapes = [_shape_of_type(graph, element, one) for one in types.values()]
     joins_ports = bool(shapes) and all(one and one.keyword == "port def" for one in shapes)
     return Shape("interface def" if joins_ports else "connection def", is_named=False)
 
