@@ -79,6 +79,11 @@ def test_a_constant_of_the_model_bounds_a_range():
     assert contract.variables[-1].domain == IntegerDomain(0, 9)
 
 
+def test_a_constant_is_the_same_in_the_next_step():
+    (contract,), _ = derived(model('language="LTL" body="G (filling -> X (level < size))"'))
+    assert lines(contract.guarantees)[-1] == "safety: filling -> level'<9"
+
+
 def test_what_specialises_the_subject_has_the_contract_with_constants_of_its_own():
     small = (
         '  Class s "Small" role="block"\n    -> specializes c\n    -> feature own\n'

@@ -6,8 +6,8 @@ from sysmlc.ir import Element, Kind
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, Feature
 from sysmlc.logic.expressions.elaborate import Symbol, literal_of
-from sysmlc.logic.formula import Const, Formula, Literal, var, variables
-from sysmlc.logic.simplify import substitute
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
+from sysmlc.logic.simplify import rebuild
 from sysmlc.values import dataclass
 
 
@@ -42,9 +42,14 @@ class Scope:
         return known.get(name) or known.get(name.partition(".")[2])
 
     def settled(self, formula: Formula) -> Formula:
-        """The formula with the values of constants in their places."""
-        fixed = {name: Const(value) for name, value in self.constants.items()}
-        return substitute(formula, fixed)
+        """The formula with the values of constants in their places, in this step and the next."""
+        match formula:
+            case Var(name) if name in self.constants:
+                return Const(self.constants[name])
+            case Apply(op, args):
+                return rebuild(op, tuple(self.settled(arg) for arg in args))
+            case _:
+                return formula
 
     def used(self, formulas: Iterable[Formula]) -> tuple[Variable, ...]:
         """The variables of the formulas, in the order in which the subject declares them."""
