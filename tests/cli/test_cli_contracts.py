@@ -49,3 +49,12 @@ def test_only_one_component(here, all_passes):
     assert made.stdout == "Plant::Gate.requirements: realizable\n"
     made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gat")
     assert [made.exit_code, made.stdout] == [2, ""]
+
+
+def test_a_component_alone_is_compared_with_its_requirements_too(here, all_passes):
+    here.write("lamp.ir", check.BREAKS.wrong)
+    made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate")
+    assert [made.exit_code, made.stdout] == [
+        1,
+        "Plant::Gate: realizable, breaks its requirements\n",
+    ]

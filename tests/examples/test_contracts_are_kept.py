@@ -15,9 +15,8 @@ MODELS = [*EXAMPLES, PLANT, TEXT]
 def test_the_contracts_of_an_example_are_kept_and_not_suspicious(path):
     made, sink = compile_example(path), Sink()
     graph = made.graph
-    results = check(
-        graph.derived(Contract), lambda origin: graph.subject(graph[origin]), sink, Options()
-    )
+    found = graph.derived(Contract)
+    results = check(found, found, lambda origin: graph.subject(graph[origin]), sink, Options())
     verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
     assert [name for name, is_kept in verdicts.items() if not is_kept] == []
     assert [(one.rule.code, one.message) for one in sink] == []

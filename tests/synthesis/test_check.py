@@ -18,9 +18,8 @@ def checked(text):
     graph, sink = parse_text(text), Sink()
     pipeline.run(graph, sink, verify_each=True)
     sink = Sink()
-    results = check(
-        graph.derived(Contract), lambda origin: graph.subject(graph[origin]), sink, Options()
-    )
+    made = graph.derived(Contract)
+    results = check(made, made, lambda origin: graph.subject(graph[origin]), sink, Options())
     return {one.verdict.component: one for one in results}, list(sink)
 
 

@@ -4,9 +4,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
@@ -110,3 +114,14 @@ def _from_text(origin: str) -> "Subject":
         return Subject()
     place = Place(found["file"], line=int(found["line"]), column=int(found["column"]))
     return Subject(place=place)
+
+
+def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
+    """Show the findings about a file and its contracts, then a line for each contract."""
+    from sysmlc.cli import session
+    from sysmlc.diagnostics.render import make_report
+
+    found = session.named(read.root, make_report(read.sink, read.sources).findings)
+    session.show([*read.findings, *found], settings)
+    for line in lines:
+        click.echo(line, err=not session.says_more(settings))

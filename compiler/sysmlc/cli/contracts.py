@@ -81,18 +81,13 @@ def check_command(
 
 
 def _checked(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
-    from sysmlc.cli import session
-    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.contract_files import chosen, show
     from sysmlc.diagnostics import Severity
-    from sysmlc.diagnostics.render import make_report
     from sysmlc.synthesis.check import check
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
-    results = list(check(contracts, read.place, read.sink, options))
-    found = session.named(read.root, make_report(read.sink, read.sources).findings)
-    session.show([*read.findings, *found], settings)
-    for result in results:
-        click.echo(_line(result), err=not session.says_more(settings))
+    results = list(check(contracts, read.contracts, read.place, read.sink, options))
+    show(read, settings, map(_line, results))
     is_undecided = any(one.verdict.is_realizable is None for one in results)
     has_errors = any(one.severity is Severity.ERROR for one in read.sink)
     return 2 if is_undecided or not results else int(has_errors)

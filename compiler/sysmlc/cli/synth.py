@@ -139,11 +139,7 @@ def _told(
     read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis]"
 ) -> int:
     """Show findings and verdicts; the exit code."""
-    from sysmlc.cli import session
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.cli.contract_files import show
 
-    found = session.named(read.root, make_report(read.sink, read.sources).findings)
-    session.show([*read.findings, *found], settings)
-    for verdict in verdicts:
-        click.echo(verdict.text(), err=not session.says_more(settings))
+    show(read, settings, (verdict.text() for verdict in verdicts))
     return max((verdict.exit_code for verdict in verdicts), default=2)

@@ -91,12 +91,18 @@ class Checked:
 
 
 def check(
-    contracts: Iterable[Contract], place: Place, sink: Sink, options: Options
+    chosen: Iterable[Contract],
+    contracts: Iterable[Contract],
+    place: Place,
+    sink: Sink,
+    options: Options,
 ) -> Iterator[Checked]:
-    """Decide each contract, tell what is suspicious in it, compare behaviours with requirements."""
-    given = tuple(contracts)
-    demanded = {one.component.removesuffix(SUFFIX): one for one in given if _is_demand(one)}
-    for contract in given:
+    """Decide the chosen contracts, tell what is suspicious in them, compare them with requirements.
+
+    ``contracts`` are all that there are: the requirements of a chosen behaviour may not be chosen.
+    """
+    demanded = {one.component.removesuffix(SUFFIX): one for one in contracts if _is_demand(one)}
+    for contract in chosen:
         verdict = decide(contract, place, sink, options)
         if verdict.is_realizable is not None:
             _lint(contract, place, sink, options)

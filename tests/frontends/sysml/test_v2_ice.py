@@ -178,6 +178,8 @@ def test_every_condition_and_effect_of_the_laboratory_has_a_meaning(laboratory):
 def test_state_machines_and_tasks_can_be_kept_and_are_not_suspicious(laboratory, component):
     graph, sink = laboratory.graph, Sink()
     (contract,) = [one for one in graph.derived(Contract) if one.component == component]
-    (result,) = check([contract], lambda origin: graph.subject(graph[origin]), sink, Options())
+    (result,) = check(
+        [contract], [contract], lambda origin: graph.subject(graph[origin]), sink, Options()
+    )
     assert result.verdict.is_realizable
     assert [(one.rule.code, one.message) for one in sink] == []
