@@ -1,0 +1,35 @@
+"""Blocks whose parts have contracts: the parts' contracts over shared variables, and their wiring.
+
+Design section 7 (structure): the direction of ports decides ownership, connectors rename.
+"""
+
+from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part with the contract of its type, in the variables of the whole.
+
+    What two parts share has one name in both contracts; what only one knows is named behind the
+    part (``gate.state``). ``origin`` is the id of the part.
+    """
+
+    name: str
+    contract: Contract
+    origin: str
+
+
+@dataclass(frozen=True, slots=True)
+class Composite:
+    """A block with parts. ``whole`` is what it promises itself, in the same variables.
+
+    ``wiring`` is what connectors make true and no renaming says, as that an event of the receiver
+    occurs when the sender sends it; it restricts no part.
+    """
+
+    component: str
+    origin: str
+    parts: tuple[Part, ...]
+    wiring: tuple[Conjunct, ...] = ()
+    whole: Contract | None = None
