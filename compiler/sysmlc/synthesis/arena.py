@@ -40,6 +40,9 @@ class Arena:
     goals: tuple[Node, ...]
     fairness: tuple[Node, ...]
     is_ahead: bool = False
+    command: Turn | None = None
+    """With ``is_ahead`` the first turn with all that is chosen in it: of ``turns`` commands may
+    have been quantified away."""
 
 
 def plain(game: Game) -> Arena:

@@ -112,6 +112,7 @@ class _Shift:
             turns=(_used_up(game.manager, command, chosen, after), *after),
             start=start,
             is_ahead=True,
+            command=command,
         )
 
 
