@@ -5,7 +5,7 @@ from dataclasses import field
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.values import dataclass
 
@@ -38,15 +38,18 @@ class Recipe:
 
     def _store(self, context: Context, found: list[Element], sink: Sink) -> None:
         # Most models have no recipes: what makes and checks them takes 0.03 s to import.
+        from sysmlc.passes.recipe_derived import tell, with_derived
         from sysmlc.passes.recipe_model import recipe_model
         from sysmlc.passes.recipe_remarks import remark
         from sysmlc.passes.recipe_tags import check_tags
         from sysmlc.recipe.model import Model
         from sysmlc.recipe.validate import validate
 
-        models = sorted((recipe_model(context, one) for one in found), key=lambda m: m.recipe.id)
-        if models:
+        if found:
+            context, derived = with_derived(context)
+            tell(context, derived, sink)
             check_tags(context, sink)
+        models = sorted((recipe_model(context, one) for one in found), key=lambda m: m.recipe.id)
         for model in models:
             remark(context, model, sink)
             validate(model, sink, lambda id: _subject(context.graph, id), self.tolerance)
@@ -54,11 +57,21 @@ class Recipe:
 
 
 def recipes(context: Context) -> Iterator[Element]:
-    """Activities at the level recipe, and those that only call tasks without being one."""
+    """Activities at the level recipe, and those that only call tasks without being one.
+
+    What has no steps and only says what recipes are, by being their general, is none.
+    """
     for activity in context.graph.of_kind(Kind.ACTIVITY):
         level = context.own_level(activity)
+        if level == "recipe" and _only_names(context, activity):
+            continue
         if level == "recipe" or (not level and _has_task(context, activity)):
             yield activity
+
+
+def _only_names(context: Context, activity: Element) -> bool:
+    is_general = bool(context.graph.sources(activity, Edge.SPECIALIZES))
+    return is_general and not activity_nodes(context, activity)
 
 
 def _has_task(context: Context, activity: Element) -> bool:

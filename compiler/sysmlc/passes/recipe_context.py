@@ -44,6 +44,8 @@ class Context:
 
     graph: Graph
     levels: Mapping[str, str] = field(default_factory=dict)
+    derived: Mapping[str, str] = field(default_factory=dict)
+    """Levels by id that follow from others; what is said wins over them."""
     _segments: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
@@ -60,6 +62,9 @@ class Context:
         found = str(element.attrs.get("level", ""))
         if found in LEVELS.values():
             return found
+        return self._applied_level(element) or self.derived.get(element.id, "")
+
+    def _applied_level(self, element: Element) -> str:
         if not query.applications(self.graph, element):
             return ""
         applied = (name for name in LEVELS if self.applied(element, name))

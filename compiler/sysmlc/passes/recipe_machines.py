@@ -181,7 +181,8 @@ _OF_SPACE = ("parentNodeId", "nodeId")
 
 def _call(context: Context, element: Element) -> Element | None:
     found = context.applied(element, "OpcUaCall")
-    for one in query.applications(context.graph, element) if context.levels else ():
+    has_levels = context.levels or context.derived
+    for one in query.applications(context.graph, element) if has_levels else ():
         stereotype = context.graph.target(one, Edge.INSTANCE_OF)
         if stereotype is not None and context.own_level(stereotype) in _OPC_UA:
             found = found or one

@@ -148,3 +148,17 @@ def task(nodes: str = NODES, steps: tuple[str, ...] = STEPS, **parts: str) -> st
 def recipe(*order: str, supplier: str = "robot") -> str:
     """The sample with two tasks; flows and the supplier of the first may differ."""
     return RECIPE.format(flows=flows(*(order or ORDER)), supplier=supplier)
+
+
+def _inside_the_robot() -> str:
+    """The sample with a task whose function ``close`` belongs to the robot, a machine unsaid."""
+    before, mark, rest = task().partition('  Activity close "Close"')
+    function, open_, after = rest.partition('  Activity open "Open"')
+    inner = "".join(f"  {line}\n" for line in (mark + function).splitlines())
+    machines, camera = '  Class robot "Robot" level="machine"\n', '  Class camera "Camera"'
+    outer = before.replace(machines, f'  Class robot "Robot"\n{inner}')
+    return outer.replace(f'{camera} level="machine"\n', f"{camera}\n") + open_ + after
+
+
+OWNED_FUNCTION = _inside_the_robot()
+"""A machine that only its machine function tells."""

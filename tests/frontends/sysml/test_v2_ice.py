@@ -12,12 +12,14 @@ from sysmlc.synthesis.check import check
 from sysmlc.synthesis.decide import Options
 
 pytestmark = pytest.mark.corpus
-LEVELS = """
+LEVELS = """\
 [recipe.levels]
-recipe = "RecipePrimitives::Recipe"
 task = "RecipePrimitives::Task"
 machine-service = "RecipePrimitives::MachineService"
 machine-function = "RecipePrimitives::MachineFunction"
+"""
+ALL_LEVELS = f"""{LEVELS}
+recipe = "RecipePrimitives::Recipe"
 machine = "ISA95EquipmentHierarchy::ProductionEquipment"
 opc-ua-call = "OpcUaBinding::OpcUaMethod"
 opc-ua-variable = "OpcUaBinding::OpcUaVariable"
@@ -25,20 +27,30 @@ delay = "RecipePrimitives::Delay"
 """
 
 
+def compiled(corpus, folder, levels, *backends):
+    file = folder / "sysmlc.toml"
+    file.write_text(levels)
+    laboratory = corpus / "sysml2" / "ice-lab"
+    chosen = tuple(select_backends(backends))
+    return compile_model(Request((laboratory,), config=load(file), backends=chosen))
+
+
 @pytest.fixture(scope="module")
 def laboratory(corpus, tmp_path_factory):
-    file = tmp_path_factory.mktemp("ice") / "sysmlc.toml"
-    file.write_text(LEVELS)
-    folder = corpus / "sysml2" / "ice-lab"
-    backends = tuple(select_backends(("recipe", "contracts", "plantuml")))
-    request = Request((folder,), config=load(file), backends=backends)
-    return compile_model(request)
+    folder = tmp_path_factory.mktemp("ice")
+    return compiled(corpus, folder, LEVELS, "recipe", "contracts", "plantuml")
 
 
 @pytest.fixture(scope="module")
 def recipe(laboratory):
     made = {one.path: one.text for one in laboratory.written()}
     return json.loads(made["recipes/DemoLegoRecipe.DemoLego.json"])
+
+
+def test_four_lines_say_as_much_as_nine(corpus, tmp_path, recipe):
+    assert len(LEVELS.splitlines()) == 4
+    (told,) = compiled(corpus, tmp_path, ALL_LEVELS, "recipe").written()
+    assert json.loads(told.text) == recipe
 
 
 def test_the_recipe_has_its_five_tasks_in_their_order(recipe):
