@@ -1,0 +1,108 @@
+"""Parallel composition: what the parts of a block keep together, and whether that is enough.
+
+Parts run in step, each with the values of the others (thesis 2.2.1; Benveniste et al. 2018,
+section 6). What a part assumes of the others is discharged by what they promise; what is left is
+assumed by the composition.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.composite import Composite, Part
+from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
+from sysmlc.synthesis.algebra.discharge import Open, discharge, outputs
+from sysmlc.synthesis.algebra.entail import Entailment
+from sysmlc.synthesis.algebra.observed import observed
+from sysmlc.synthesis.algebra.relations import Failure
+from sysmlc.synthesis.algebra.systems import Universe
+from sysmlc.synthesis.manager import Manager
+from sysmlc.values import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class Composition:
+    """What became of a composition.
+
+    ``contract`` is that of the parts together; ``open`` are the assumptions of parts that nothing
+    discharges, ``failures`` what the whole promises and the parts do not keep.
+    """
+
+    contract: Contract
+    open: tuple[Open, ...]
+    failures: tuple[Failure, ...]
+
+
+class DriverError(Exception):
+    """Two parts decide the same variable."""
+
+    def __init__(self, variable: str, parts: tuple[str, ...]) -> None:
+        super().__init__(f"'{variable}' is decided by {' and '.join(parts)}")
+        self.variable = variable
+        self.parts = parts
+
+
+def composition(composite: Composite, manager: Manager) -> Composition:
+    """Compose the parts, in the environment of the whole where that has a contract.
+
+    Without one, what parts assume of things that no part decides is assumed by the composition.
+    Raises DriverError, DomainError, OutsideGr1Error, LimitError.
+    """
+    _one_driver_each(composite.parts)
+    whole = composite.whole or _open_to_outside(composite)
+    wiring = Contract("", "", (), composite.wiring, ())
+    made = observed((*(one.contract for one in composite.parts), wiring, whole))
+    *contracts, wiring, seen = made.contracts
+    parts = [_with(p, c) for p, c in zip(composite.parts, contracts, strict=True)]
+    universe = Universe(made.contracts, manager)
+    given = (*seen.assumptions, *wiring.assumptions, *made.definitions)
+    found = discharge(parts, given, universe)
+    runs = Entailment(universe, universe.system(found.facts))
+    failures = tuple(_broken(seen.guarantees, runs))
+    return Composition(_together(composite, whole), found.open, failures)
+
+
+def _open_to_outside(composite: Composite) -> Contract:
+    """The contract of a whole that has none: what parts assume of things that no part decides."""
+    inside = {name for part in composite.parts for name in outputs(part)}
+    assumed = (one for part in composite.parts for one in part.contract.assumptions)
+    of_outside = tuple(
+        one for one in assumed if not any(v.name in inside for v in f.variables(one.formula))
+    )
+    return Contract(composite.component, composite.origin, (), of_outside, ())
+
+
+def _with(part: Part, contract: Contract) -> Part:
+    """The part with a contract in GR(1); its history bits are nobody's outputs."""
+    return replace(part, contract=replace(contract, variables=part.contract.variables))
+
+
+def _together(composite: Composite, whole: Contract) -> Contract:
+    """What the parts promise, where the whole's assumptions hold."""
+    promised = tuple(one for part in composite.parts for one in part.contract.guarantees)
+    variables = _variables(composite.parts)
+    kept = (*promised, *composite.wiring)
+    return Contract(composite.component, composite.origin, variables, whole.assumptions, kept)
+
+
+def _one_driver_each(parts: Sequence[Part]) -> None:
+    deciding = Counter(name for part in parts for name in sorted(outputs(part)))
+    for name, number in deciding.items():
+        if number > 1:
+            raise DriverError(name, tuple(one.name for one in parts if name in outputs(one)))
+
+
+def _broken(wanted: Iterable[Conjunct], runs: Entailment) -> Iterator[Failure]:
+    for conjunct in wanted:
+        trace = runs.violation(conjunct)
+        if trace is not None:
+            yield Failure(conjunct, False, trace)
+
+
+def _variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
+    """All variables; one that a part decides is the composition's own."""
+    found: dict[str, Variable] = {}
+    for one in (one for part in parts for one in part.contract.variables):
+        if one.name not in found or one.owner is Owner.SYSTEM:
+            found[one.name] = one
+    return tuple(found.values())

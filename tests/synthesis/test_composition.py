@@ -1,0 +1,132 @@
+"""Parts that run together: what they rely on is discharged by the others, or a run tells why."""
+
+import pytest
+from contracts_in_lines import contract
+
+from sysmlc.logic.composite import Composite, Part
+from sysmlc.synthesis import Manager
+from sysmlc.synthesis.algebra.composition import DriverError, composition
+
+FEEDER = """
+    env taken: bool
+    sys ready: bool
+    promise at first !ready
+    promise always ready & !taken -> ready'
+    promise recurs ready
+"""
+PICKER = """
+    env ready: bool
+    sys taken: bool
+    assume recurs ready
+    promise at first !taken
+    promise always taken' -> ready
+    promise recurs taken
+"""
+OTHERS = {"feeder": FEEDER, "picker": PICKER}
+
+
+def composed(whole="", **parts):
+    made = tuple(Part(name, contract(text, name), name) for name, text in parts.items())
+    stated = contract(whole) if whole else None
+    return composition(Composite("Cell", "", made, (), stated), Manager())
+
+
+def open_ones(found):
+    return [f"{one.part.name}: {one.conjunct.text}" for one in found.open]
+
+
+def broken(found):
+    return [one.conjunct.text for one in found.failures]
+
+
+def test_what_one_part_promises_another_may_assume():
+    found = composed("sys taken: bool\npromise recurs taken", **OTHERS)
+    assert open_ones(found) == []
+    assert broken(found) == []
+
+
+def test_what_no_part_promises_stays_open_and_a_run_shows_it():
+    lazy = FEEDER.replace("promise recurs ready", "")
+    found = composed("sys taken: bool\npromise recurs taken", feeder=lazy, picker=PICKER)
+    assert open_ones(found) == ["picker: ready"]
+    ((only),) = found.open
+    assert all(not one["ready"] for one in only.trace.steps[only.trace.loop :])
+    assert broken(found) == ["taken"]
+
+
+def test_a_part_that_waits_for_something_to_recur_keeps_its_steps_meanwhile():
+    lazy = FEEDER.replace("promise recurs ready", "")
+    found = composed("sys taken: bool\npromise at first !taken", feeder=lazy, picker=PICKER)
+    assert broken(found) == []
+
+
+def test_a_part_that_is_not_established_is_not_relied_upon():
+    fragile = PICKER + "assume always ready'"
+    found = composed("sys taken: bool\npromise at first !taken", feeder=FEEDER, picker=fragile)
+    assert open_ones(found) == ["picker: ready'"]
+    assert broken(found) == ["!taken"]
+
+
+def test_liveness_is_never_taken_in_a_circle():
+    one = "env b: bool\nsys a: bool\nassume recurs b\npromise recurs a"
+    other = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
+    found = composed(one=one, other=other)
+    assert open_ones(found) == ["one: b", "other: a"]
+    assert [one.trace for one in found.open] == [None, None]
+
+
+SAFE = """
+    env {it}: bool
+    sys {me}: bool
+    assume at first !{it}
+    assume always !{it}'
+    promise at first !{me}
+    promise always !{me}'
+"""
+
+
+def test_safety_is_taken_in_a_circle_step_by_step():
+    found = composed(one=SAFE.format(me="a", it="b"), other=SAFE.format(me="b", it="a"))
+    assert open_ones(found) == []
+
+
+def test_not_when_both_read_in_the_step_what_the_other_writes():
+    copy = SAFE + "\n promise always {me}' <-> {it}'\n promise at first {me} <-> {it}"
+    parts = {"1": copy.format(me="a", it="b"), "2": copy.format(me="b", it="a")}
+    assert open_ones(composed(**parts)) == ["1: !b", "1: !b'", "2: !a", "2: !a'"]
+
+
+def test_a_chain_within_a_step_is_no_circle():
+    copy = SAFE + "\n promise always {me}' <-> {it}'"
+    found = composed(one=SAFE.format(me="a", it="b"), other=copy.format(me="b", it="a"))
+    assert open_ones(found) == []
+
+
+def test_what_a_part_assumes_of_the_outside_the_composition_assumes():
+    needing = PICKER.replace("env ready: bool", "env ready: bool\nenv power: bool")
+    needing += "assume always power"
+    found = composed(feeder=FEEDER, picker=needing)
+    assert open_ones(found) == []
+    assert [one.text for one in found.contract.assumptions] == ["power"]
+    whole = "env power: bool\nsys taken: bool\npromise recurs taken"
+    assert open_ones(composed(whole, feeder=FEEDER, picker=needing)) == ["picker: power"]
+
+
+def test_what_is_outside_gr1_is_observed_on_both_sides():
+    answering = "env ask: bool\nsys done: bool\npromise G (ask -> F done)"
+    asking = "env done: bool\nsys ask: bool\nassume G (ask -> F done)\npromise recurs !ask"
+    found = composed(server=answering, client=asking)
+    assert open_ones(found) == []
+
+
+def test_a_variable_is_decided_by_one_part():
+    with pytest.raises(DriverError, match="'a' is decided by one and other"):
+        composed(one="sys a: bool\npromise always a", other="sys a: bool\npromise recurs a")
+
+
+def test_variables_of_the_composition_are_the_parts():
+    found = composed(**OTHERS)
+    assert {one.name: str(one.owner) for one in found.contract.variables} == {
+        "taken": "sys",
+        "ready": "sys",
+    }
