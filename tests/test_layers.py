@@ -7,7 +7,18 @@ import sysmlc
 
 ROOT = Path(sysmlc.__file__).parent
 LAYERS = [
-    {"", "values", "resources", "output", "naming", "suggest", "cache", "depth", "collecting"},
+    {
+        "",
+        "values",
+        "resources",
+        "output",
+        "naming",
+        "suggest",
+        "cache",
+        "depth",
+        "collecting",
+        "plantuml",
+    },
     {"sources"},
     {"diagnostics"},
     {"ir"},

@@ -5,6 +5,7 @@ from dataclasses import field
 from xml.etree import ElementTree
 
 from sysmlc.logic.formula import Literal
+from sysmlc.plantuml import plain
 from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
@@ -128,10 +129,10 @@ def _show(value: Literal | None) -> str:
 
 def _diagram(result: Result) -> Iterator[str]:
     yield "@startuml"
-    yield f"title {_plain(result.name)}"
+    yield f"title {plain(result.name)}"
     yield "hide footbox"
     yield "participant environment"
-    yield f'participant "{_plain(result.component)}" as component'
+    yield f'participant "{plain(result.component)}" as component'
     before: Valuation = {}
     for number, now in enumerate(result.trace):
         messages = list(_messages(result, before, now))
@@ -150,18 +151,13 @@ def _messages(result: Result, before: Valuation, now: Valuation) -> Iterator[str
     changed = [name for name in now if now[name] != before.get(name, False)]
     for name in sorted(changed, key=lambda name: name not in result.inputs):
         arrow = "environment -> component" if name in result.inputs else "component -> environment"
-        yield f"{arrow} : {_plain(name)} = {_plain(_show(now[name]))}"
+        yield f"{arrow} : {plain(name)} = {plain(_show(now[name]))}"
 
 
 def _note(result: Result) -> Iterator[str]:
     assert result.difference is not None
     difference = result.difference
     yield "note over component #FFDDDD"
-    yield f"  {_plain(difference.variable)} is {_plain(_show(difference.found))}"
-    yield f"  expected: {_plain(_show(difference.expected))}"
+    yield f"  {plain(difference.variable)} is {plain(_show(difference.found))}"
+    yield f"  expected: {plain(_show(difference.expected))}"
     yield "end note"
-
-
-def _plain(text: str) -> str:
-    """One line without the characters that PlantUML takes as markup."""
-    return "".join(f"<U+{ord(c):04X}>" if c in '"<>~\\*' else c for c in " ".join(text.split()))

@@ -9,8 +9,8 @@ from drawing import texts
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
-from sysmlc.backends.plantuml.text import plain
 from sysmlc.ir.text import parse_text
+from sysmlc.plantuml import plain
 
 NASTY = (
     '**bold** //it// __u__ ""mono"" ~~w~~ --s-- ~x',

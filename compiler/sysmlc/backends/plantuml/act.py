@@ -9,9 +9,9 @@ from sysmlc.backends.plantuml.bdd import ACTIVITY_NODES
 from sysmlc.backends.plantuml.lanes import tint
 from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
-from sysmlc.backends.plantuml.text import label, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.plantuml import label, plain, small, stack
 from sysmlc.values import dataclass
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
-from sysmlc.backends.plantuml.text import label, lines
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.plantuml import label, lines
 from sysmlc.values import dataclass
 
 _CONTROL = {

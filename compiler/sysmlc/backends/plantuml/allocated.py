@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.text import lines
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.plantuml import lines
 
 _WIDTH = 44
 _PLACES = (Kind.PROPERTY, Kind.PORT)

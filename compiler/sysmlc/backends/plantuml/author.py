@@ -15,7 +15,6 @@ from sysmlc.backends.plantuml import (
 from sysmlc.backends.plantuml.author_choice import Choice
 from sysmlc.backends.plantuml.bindings import Binding, bindings
 from sysmlc.backends.plantuml.relations import Relation
-from sysmlc.backends.plantuml.text import plain
 from sysmlc.backends.plantuml.views import (
     BoxView,
     Diagram,
@@ -27,6 +26,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
+from sysmlc.plantuml import plain
 from sysmlc.values import dataclass, replace
 
 NOT_DRAWN = rule(

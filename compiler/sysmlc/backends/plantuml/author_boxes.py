@@ -7,11 +7,11 @@ from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author_choice import FEATURES, LINES, Choice
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.text import lines
 from sysmlc.backends.plantuml.uc_relations import use_case_relations
 from sysmlc.backends.plantuml.views import Box, BoxView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
+from sysmlc.plantuml import lines
 
 _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
 _TEXT = 44

@@ -8,10 +8,10 @@ from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author_choice import Choice
 from sysmlc.backends.plantuml.connections import Connection, Path, connections, free_flows
 from sysmlc.backends.plantuml.guides import guides
-from sysmlc.backends.plantuml.text import keyword_label, label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
+from sysmlc.plantuml import keyword_label, label, lines, plain, small, stack
 from sysmlc.values import dataclass
 
 _Ids = tuple[str, ...]

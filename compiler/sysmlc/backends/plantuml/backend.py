@@ -18,12 +18,12 @@ from sysmlc.backends.plantuml import (
     uc,
 )
 from sysmlc.backends.plantuml.render import Renderer
-from sysmlc.backends.plantuml.text import comment
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.output import Output
+from sysmlc.plantuml import comment
 from sysmlc.values import dataclass
 
 BAD_TEMPLATE = rule(

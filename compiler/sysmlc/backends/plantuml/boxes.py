@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from sysmlc.backends.plantuml import allocated, labels, measured
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.text import lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.plantuml import lines, plain, small, stack
 
 _BY_ROLE = {
     "value": "values",

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.domains import coloured, styled
 from sysmlc.backends.plantuml.relations import conveyed
-from sysmlc.backends.plantuml.text import keyword_label, label, stack
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import runs_both_ways
+from sysmlc.plantuml import keyword_label, label, stack
 from sysmlc.values import dataclass
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import Relation
-from sysmlc.backends.plantuml.text import lines
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Graph
+from sysmlc.plantuml import lines
 from sysmlc.values import replace
 
 MOST = 3

@@ -12,11 +12,11 @@ from sysmlc.backends.plantuml.connections import Connection, Path, connections, 
 from sysmlc.backends.plantuml.domains import in_order
 from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.sides import sides
-from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
+from sysmlc.plantuml import label, lines, plain, small, stack
 from sysmlc.values import dataclass
 
 FORMS = {"in": "portin", "out": "portout"}

@@ -2,9 +2,9 @@
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.text import label, lines, stack
 from sysmlc.backends.plantuml.views import Note
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.plantuml import label, lines, stack
 
 _WIDTH = 48
 _FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.RECEPTION)

@@ -11,10 +11,10 @@ from sysmlc.backends.plantuml import labels, measured, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.bindings import OWNERS, Binding, bindings, usages
 from sysmlc.backends.plantuml.connections import Path
-from sysmlc.backends.plantuml.text import label, lines, plain, small, stack
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
+from sysmlc.plantuml import label, lines, plain, small, stack
 from sysmlc.values import dataclass, replace
 
 _ROW = 40

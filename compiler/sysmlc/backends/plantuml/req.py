@@ -6,10 +6,10 @@ from sysmlc.backends.plantuml import bdd, boxes, labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
-from sysmlc.backends.plantuml.text import lines, plain
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
+from sysmlc.plantuml import lines, plain
 
 _WORDS = {"derive": "deriveReqt"}
 _EDGES = {

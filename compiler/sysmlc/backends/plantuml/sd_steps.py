@@ -8,10 +8,10 @@ from sysmlc.backends.plantuml.sd_bars import operands
 from sysmlc.backends.plantuml.sd_messages import message_steps
 from sysmlc.backends.plantuml.sd_texts import arguments, operand_text
 from sysmlc.backends.plantuml.sd_walk import Walk
-from sysmlc.backends.plantuml.text import label, lines, plain, stack
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Edge, Element, Kind, sequence
 from sysmlc.ir.graph import Graph
+from sysmlc.plantuml import label, lines, plain, stack
 
 _FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
 """Operators that PlantUML has words for; others are groups."""

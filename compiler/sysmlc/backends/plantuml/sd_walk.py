@@ -6,9 +6,9 @@ from dataclasses import field
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.sd_texts import notes, time_text, times
-from sysmlc.backends.plantuml.text import label, lines, stack
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Element, Graph, sequence
+from sysmlc.plantuml import label, lines, stack
 from sysmlc.values import dataclass
 
 _WIDTH = 44

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.text import keyword_label, label, lines, padded, plain, small, stack
 from sysmlc.backends.plantuml.uc_relations import use_case_relations
 from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.plantuml import keyword_label, label, lines, padded, plain, small, stack
 
 FIGURES = (Kind.USE_CASE, Kind.ACTOR)
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
