@@ -63,6 +63,11 @@ class Contracts:
             graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink
         )
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
+        if found:
+            from sysmlc.logic.composite import Composite
+            from sysmlc.logic.composition.derivation import compose
+
+            graph.store(Composite, list(compose(graph, found, assumed, sink)))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
         options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))

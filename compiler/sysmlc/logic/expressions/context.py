@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import contains, describe
-from sysmlc.logic.expressions.context_objects import of_objects
+from sysmlc.logic.expressions.context_objects import direction_at, of_objects, of_ports
 from sysmlc.logic.expressions.mentioned import BEHAVIOURS, Mentioned, mentioned
 from sysmlc.logic.expressions.ranges import declared_range, integer
 from sysmlc.logic.formula import Literal
@@ -57,6 +57,8 @@ class Feature:
     """Whether the range is assumed; ``note_range`` says so when the property is used."""
     refused: str = ""
     """A default value that is not in the domain."""
+    direction: str = ""
+    """``in``, ``out`` or ``inout`` as its owner sees it; empty when it has none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,15 +87,21 @@ def context_of(
     numbers = _numbers(graph)
     if classifier is None:
         return Context("", {}, _literals(graph), numbers)
-    named = _named(graph, classifier) | of_objects(graph, classifier)
+    named = of_ports(graph, classifier) | _named(graph, classifier)
+    named |= of_objects(graph, classifier)
     if within is not None and within is not classifier:
         named |= _named(graph, within) | of_objects(graph, within)
     names = sorted(named, key=lambda name: (named[name].ordinal, name))
     variables = unique(names, "value", "event", "none")
     fixed = {one.name: value for one in named.values() if (value := _fixed(one)) is not None}
     features = {
-        name: _feature(graph, named[name], variable, assumed, fixed)
+        name: _feature(graph, named[name], variable, assumed, fixed, _seen(classifier, name))
         for name, variable in zip(names, variables, strict=True)
+    }
+    features |= {
+        name: replace(one, direction=direction_at(graph, classifier, name, one.element))
+        for name, one in features.items()
+        if "direction" in one.element.attrs
     }
     behaviour = within or classifier
     if behaviour.kind in BEHAVIOURS and any(_is_open(graph, one) for one in features.values()):
@@ -101,9 +109,14 @@ def context_of(
         for name, one in features.items():
             if one.is_assumed and name in said.numbers:
                 wide = _widened(assumed, said, name)
-                features[name] = _feature(graph, one.element, one.variable, wide, fixed)
+                made = _feature(graph, one.element, one.variable, wide, fixed)
+                features[name] = replace(made, direction=one.direction)
         features |= _texts(graph, features, said)
     return Context(classifier.name, features, _literals(graph), numbers)
+
+
+def _seen(classifier: Element, name: str) -> tuple[Element, str] | None:
+    return (classifier, name) if "." in name else None
 
 
 def _is_open(graph: Graph, feature: Feature) -> bool:
@@ -175,12 +188,13 @@ def _feature(
     variable: str,
     assumed: tuple[int, int],
     fixed: Mapping[str, int],
+    seen: tuple[Element, str] | None = None,
 ) -> Feature:
     type_ = query.type_of(graph, element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
     names = _names(family)
     is_integer = bool(names & _INTEGER) or _untyped_default(element, type_, int)
-    domain = _domain(graph, element, family, names, is_integer, fixed)
+    domain = _domain(graph, element, family, names, is_integer, fixed, seen)
     is_assumed = domain is None and is_integer
     if is_assumed:
         domain = _assume(element, names, assumed)
@@ -199,6 +213,7 @@ def _domain(
     names: set[str],
     is_integer: bool,
     fixed: Mapping[str, int],
+    seen: tuple[Element, str] | None,
 ) -> Domain | None:
     type_ = family[0] if family else None
     if type_ is not None and type_.kind is Kind.ENUMERATION:
@@ -206,7 +221,7 @@ def _domain(
         return EnumerationDomain(literals) if literals else None
     if names & _BOOLEAN or _untyped_default(element, type_, bool):
         return BooleanDomain()
-    return declared_range(graph, element, family, fixed) if is_integer else None
+    return declared_range(graph, element, family, fixed, seen) if is_integer else None
 
 
 def _names(family: list[Element]) -> set[str]:

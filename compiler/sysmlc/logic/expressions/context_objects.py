@@ -26,6 +26,39 @@ def of_objects(graph: Graph, behaviour: Element) -> dict[str, Element]:
     return found
 
 
+def of_ports(graph: Graph, classifier: Element) -> dict[str, Element]:
+    """What flows through the ports of a classifier, by the name of the port before its own.
+
+    ``level.value`` is a flow property of the type of port ``level`` (SysML 1.6 clause 9.3.2.7).
+    """
+    found: dict[str, Element] = {}
+    for port in query.ports(graph, classifier):
+        type_ = query.type_of(graph, port) if port.name else None
+        for one in () if type_ is None or type_.kind not in _OBJECTS else _items(graph, type_):
+            found.setdefault(f"{port.name}.{one.name}", one)
+    return found
+
+
+def _items(graph: Graph, type_: Element) -> Iterator[Element]:
+    for one in query.features(graph, type_):
+        if one.name and (query.is_flow_property(one) or one.role == "value"):
+            yield one
+
+
+def direction_at(graph: Graph, classifier: Element, name: str, element: Element) -> str:
+    """Direction of a feature as the classifier has it: a conjugated port turns round what flows
+    through it (SysML 1.6 clause 9.3.2.15). Empty when it has none.
+    """
+    given = element.attrs.get("direction")
+    direction = given if isinstance(given, str) else ""
+    head, dot, _ = name.partition(".")
+    if not dot or not direction:
+        return direction
+    port = next((one for one in query.ports(graph, classifier) if one.name == head), None)
+    turned = port is not None and port.attrs.get("conjugated")
+    return (query.opposite(direction) or direction) if turned else direction
+
+
 def _values_of_all(
     graph: Graph, objects: Iterable[tuple[str, Element]]
 ) -> Iterator[tuple[str, Element]]:

@@ -24,10 +24,21 @@ _ARITHMETIC: dict[str, Callable[..., int]] = {"+": add, "-": sub, "*": mul}
 _MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
+Seen = tuple[Element, str]
+"""A classifier and the dotted name that a feature has in it."""
+
+
 def declared_range(
-    graph: Graph, element: Element, types: list[Element], fixed: Mapping[str, int]
+    graph: Graph,
+    element: Element,
+    types: list[Element],
+    fixed: Mapping[str, int],
+    seen: Seen | None = None,
 ) -> Domain | None:
-    """Range from tagged values, a bounded default, or constraints, in this order."""
+    """Range from tagged values, a bounded default, or constraints, in this order.
+
+    Constraints of the element's owner count, of its types, and of who has it by a dotted name.
+    """
     for one in (element, *types):
         found = _tagged_range(graph, one)
         if found is not None:
@@ -35,7 +46,7 @@ def declared_range(
     bounded = _RANGE.match(str(element.attrs.get("default", "")))
     if bounded and ".." in bounded[0]:
         return _range(int(bounded[1]), int(bounded[2]))
-    return _constrained_range(graph, element, types, fixed)
+    return _constrained_range(graph, element, types, fixed, seen)
 
 
 def _range(low: int, high: int) -> Domain | None:
@@ -63,11 +74,15 @@ def integer(value: AttrValue) -> int | None:
 
 
 def _constrained_range(
-    graph: Graph, element: Element, types: list[Element], fixed: Mapping[str, int]
+    graph: Graph,
+    element: Element,
+    types: list[Element],
+    fixed: Mapping[str, int],
+    seen: Seen | None,
 ) -> Domain | None:
     low: int | None = None
     high: int | None = None
-    for names, body in _constraints(graph, element, types):
+    for names, body in _constraints(graph, element, types, seen):
         for op, bound in _bounds(body, names, fixed):
             least = {">": bound + 1, ">=": bound, "==": bound}.get(op)
             most = {"<": bound - 1, "<=": bound, "==": bound}.get(op)
@@ -77,12 +92,15 @@ def _constrained_range(
 
 
 def _constraints(
-    graph: Graph, element: Element, types: list[Element]
+    graph: Graph, element: Element, types: list[Element], seen: Seen | None
 ) -> Iterator[tuple[frozenset[str], Expression]]:
     owner = graph.owner(element)
     if owner is not None:
         names = frozenset([element.name, f"self.{element.name}"])
         yield from _bodies(graph, owner, names, element.name)
+    if seen is not None:
+        names = frozenset([seen[1], f"self.{seen[1]}"])
+        yield from _bodies(graph, seen[0], names, element.name)
     yield from _bodies(graph, element, frozenset([element.name, "self", "value"]))
     for type_ in types:
         yield from _bodies(graph, type_, frozenset(["self", "value", "self.value", type_.name]))

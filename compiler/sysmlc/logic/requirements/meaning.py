@@ -77,7 +77,7 @@ def _temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> F
 
     body = str(statement.constraint.attrs["body"])
     try:
-        read = read_formal(body, _language(statement.constraint), scope.domains)
+        read = read_formal(scope.undotted(body), _language(statement.constraint), scope.domains)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,

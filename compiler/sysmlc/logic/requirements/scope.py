@@ -1,14 +1,17 @@
 """What the names in a requirement mean: features of its subject, variables of its behaviour."""
 
+import re
 from collections.abc import Iterable, Mapping
 
-from sysmlc.ir import Element, Kind
+from sysmlc.ir import Kind
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, Feature
 from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild
 from sysmlc.values import dataclass
+
+_DOTTED = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +44,17 @@ class Scope:
         known = self.context.features
         return known.get(name) or known.get(name.partition(".")[2])
 
+    def undotted(self, text: str) -> str:
+        """A formula with variables for dotted names (``level.value``, ``tank.filling``).
+
+        What follows stays in its column, where there is room.
+        """
+        return _DOTTED.sub(self._variable, text)
+
+    def _variable(self, found: re.Match[str]) -> str:
+        feature = self.feature(found[0])
+        return found[0] if feature is None else feature.variable.ljust(len(found[0]))
+
     def settled(self, formula: Formula) -> Formula:
         """The formula with the values of constants in their places, in this step and the next."""
         match formula:
@@ -70,15 +84,13 @@ def scope_of(context: Context, behaviour: Contract | None) -> Scope:
         if one.constant and one.default is not None:
             fixed[one.variable] = one.default
         elif one.domain is not None:
-            own[one.variable] = Variable(
-                one.variable, _owner(one.element), one.domain, one.element.id
-            )
+            own[one.variable] = Variable(one.variable, _owner(one), one.domain, one.element.id)
     known = () if behaviour is None else behaviour.variables
     return Scope(context, own | {one.name: one for one in known}, fixed)
 
 
-def _owner(element: Element) -> Owner:
+def _owner(feature: Feature) -> Owner:
     """Inputs are the environment's; outputs and what the subject has itself are its own."""
-    usual = "in" if element.kind is Kind.PARAMETER else "out"
-    is_input = element.attrs.get("direction", usual) == "in"
+    usual = "in" if feature.element.kind is Kind.PARAMETER else "out"
+    is_input = (feature.direction or usual) == "in"
     return Owner.ENVIRONMENT if is_input else Owner.SYSTEM

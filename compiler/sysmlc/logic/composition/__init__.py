@@ -1,0 +1,1 @@
+"""Blocks with parts: what connectors, bindings and flows make of the contracts of their parts."""

@@ -1,0 +1,240 @@
+"""Composites: for each block with parts the contracts that make it up, in shared variables.
+
+Design section 7: the direction of ports decides who owns a variable, connectors rename; what
+flows from a sender's output is the receiver's input (SysML 1.6 clause 9.3.2).
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.composite import Composite, Part
+from sysmlc.logic.composition.members import Block, Member, behaviour, itself, read_block, required
+from sysmlc.logic.composition.messages import wiring
+from sysmlc.logic.composition.naming import Wire, is_one_type, renamed, wires
+from sysmlc.logic.composition.structure import unclear_flows
+from sysmlc.logic.contract import Contract, Owner
+from sysmlc.logic.domains import describe
+
+_LINE = """\
+Package p "Line"
+  Class s "Sensor" role="block"
+    Property s.level "level" direction="out" role="flow property"
+      -> typed-by int
+    Property s.high "high" direction="out" role="flow property"
+      -> typed-by bool
+    Constraint s.r body="0 <= level <= 7"
+  Class d "Display" role="block"
+    Property d.shown "shown" direction="in" role="flow property"
+      -> typed-by int
+    Property d.lamp "lamp" direction="out" role="flow property"
+      -> typed-by bool
+    Constraint d.r body="0 <= shown <= 7"
+  Class l "Panel" role="block"
+    Property l.s "sensor" role="part" aggregation="composite"
+      -> typed-by s
+    Property l.d "display" role="part" aggregation="composite"
+      -> typed-by d
+    Property l.b "spare" role="part" aggregation="composite"
+      -> typed-by {spare}
+    {joins}
+  Class q "Measured" role="requirement" req_id="R1"
+    -> subject s
+    Constraint q.c language="LTL" body="G F level=0 & G F !high"
+  Class r "Shown" role="requirement" req_id="R2"
+    -> subject d
+    Constraint r.c language="LTL" body="G (shown=0 -> X lamp)"
+  DataType bool "Boolean"
+  DataType int "Integer"
+"""
+
+
+def _line(*ends: tuple[str, str], spare: str = "int") -> str:
+    """A panel in which features of parts are joined, in IR text."""
+    text = "Connector k"
+    for number, (part, feature) in enumerate(ends):
+        text += f"\n      -> end k{number}\n      ConnectorEnd k{number}"
+        text += f"\n        -> path l.{part}\n        -> role {feature}"
+    return _LINE.format(joins=text, spare=spare)
+
+
+TWO_DRIVERS = rule(
+    "SM524",
+    "joined-outputs",
+    Severity.ERROR,
+    "'{first}' and '{second}' of '{block}' both decide '{variable}'",
+    why="What connectors join is one value, and one part decides it: the others have it as an "
+    "input. The parts of the block are not composed.",
+    help="give one of the two ends direction 'in', or join another feature",
+    wrong=_line(("s", "s.high"), ("d", "d.lamp")),
+    right=_line(("s", "s.level"), ("d", "d.shown")),
+)
+OTHER_VALUES = rule(
+    "SM525",
+    "joined-values-differ",
+    Severity.ERROR,
+    "'{first}' and '{second}' of '{block}' are joined, and have values of different kinds: "
+    "{domains}",
+    why="What connectors join is one value. The parts of the block are not composed.",
+    help="give both ends one type",
+    wrong=_line(("s", "s.high"), ("d", "d.shown")),
+    right=_line(("s", "s.level"), ("d", "d.shown")),
+)
+_FLOWS = "ItemFlow f\n      -> flow-source s.level\n      -> flow-target d.shown"
+UNCLEAR_FLOW = rule(
+    "SM526",
+    "flow-between-unclear-parts",
+    Severity.WARNING,
+    "the flow from '{source}' to '{target}' joins no parts of '{block}': {count} of them have "
+    "'{feature}'",
+    why="A flow names features of definitions; which parts it leads between is clear when one "
+    "part has them, or when it follows a connector.",
+    help="draw a connector between the parts, and let the flow be realised by it",
+    wrong=_LINE.format(joins=_FLOWS, spare="d"),
+    right=_LINE.format(joins=_FLOWS, spare="int"),
+)
+
+
+def compose(
+    graph: Graph, contracts: Iterable[Contract], assumed: tuple[int, int], sink: Sink
+) -> Iterator[Composite]:
+    """A composite for each block that has parts with contracts, and something to compare.
+
+    A block takes part in itself by a contract whose outputs its parts read and none of them
+    decides (a controller, a coordinator), and by its behaviour; what its parts decide is what
+    they make up together. ``assumed`` is the range of Integers that have none.
+    """
+    known = {one.origin: one for one in contracts}
+    for element in _blocks(graph, known):
+        block = read_block(graph, element, known, assumed)
+        composite = _composite(block, sink)
+        if composite is not None:
+            yield composite
+
+
+def _blocks(graph: Graph, known: Mapping[str, Contract]) -> list[Element]:
+    """Classifiers with a part, or an action, that has a contract, at whatever depth."""
+    types = [graph[id] for id in known]
+    waiting = list(types)
+    found: dict[str, Element] = {}
+    while waiting:
+        one = waiting.pop()
+        for owner in _owners(graph, one):
+            if owner.id not in found:
+                found[owner.id] = owner
+                waiting.append(owner)
+    blocks = [one for one in found.values() if one.kind in (Kind.CLASS, Kind.COMPONENT)]
+    shown = (one for one in blocks if not one.attrs.get("external"))
+    return sorted(shown, key=lambda one: (graph.qualified_name(one), one.id))
+
+
+def _owners(graph: Graph, one: Element) -> Iterator[Element]:
+    """What has it as a part or an action, what specialises it, whose behaviour it is."""
+    yield from graph.sources(one, Edge.SPECIALIZES)
+    yield from graph.sources(one, Edge.CLASSIFIER_BEHAVIOR)
+    usages = [one] if one.kind is Kind.OPERATION else graph.sources(one, Edge.TYPED_BY)
+    for usage in usages:
+        if usage.kind in (Kind.PROPERTY, Kind.PORT, Kind.OPERATION):
+            yield from graph.sources(usage, Edge.FEATURE)
+
+
+def _composite(block: Block, sink: Sink) -> Composite | None:
+    if not block.members:
+        return None
+    whole = _take_part(block)
+    known = wires(block, [*block.members, *([whole] if whole else [])])
+    if len(block.members) < 2 and whole is None:
+        return None
+    _report_flows(block, sink)
+    if list(_faults(block, whole, known, sink)):
+        return None
+    return Composite(
+        component=query.component_name(block.graph, block.element),
+        origin=block.element.id,
+        parts=tuple(Part(one.name, renamed(one, known), one.origin) for one in block.members),
+        wiring=tuple(wiring(block, block.members, known)),
+        whole=None if whole is None else renamed(whole, known),
+    )
+
+
+def _take_part(block: Block) -> Member | None:
+    """Let the block's own contracts take part, and return what the parts make up together."""
+    demanded, own = (_own(block, of(block, block.element)) for of in (required, behaviour))
+    inner = tuple(block.members)
+    if own is not None and (demanded is not None or not _is_made(block, own, inner)):
+        block.members.append(own)
+        own = None
+    if demanded is None:
+        return own
+    if _is_read(block, demanded, inner) and not _is_made(block, demanded, inner):
+        if len(block.members) == len(inner):
+            block.members.append(demanded)
+        return None
+    return demanded
+
+
+def _own(block: Block, contract: Contract | None) -> Member | None:
+    return None if contract is None else itself(block, contract)
+
+
+def _is_made(block: Block, one: Member, inner: Iterable[Member]) -> bool:
+    """Whether parts decide some of its outputs."""
+    return _meets(block, one, inner, Owner.SYSTEM)
+
+
+def _is_read(block: Block, one: Member, inner: Iterable[Member]) -> bool:
+    """Whether parts have some of its outputs as inputs."""
+    return _meets(block, one, inner, Owner.ENVIRONMENT)
+
+
+def _meets(block: Block, one: Member, inner: Iterable[Member], owner: Owner) -> bool:
+    outputs = {block.features.find(slot) for slot in one.slots(Owner.SYSTEM)}
+    return any(
+        block.features.find(slot) in outputs for member in inner for slot in member.slots(owner)
+    )
+
+
+# -- what stands against it ----------------------------------------------------------------------
+
+
+def _faults(block: Block, whole: Member | None, known: Iterable[Wire], sink: Sink) -> Iterator[str]:
+    subject, name = block.graph.subject(block.element), block.element.name
+    for wire in known:
+        drivers = [one.name for one in wire.drivers if one is not whole]
+        if not is_one_type(wire):
+            (one, first), *_ = wire.ends
+            other, second = next(end for end in wire.ends if end[1].domain != first.domain)
+            shown = f"{describe(first.domain)} and {describe(second.domain)}"
+            left, right = _full(one, first.name), _full(other, second.name)
+            sink.report(OTHER_VALUES, subject, block=name, domains=shown, first=left, second=right)
+            yield wire.name
+        elif len(drivers) > 1:
+            sink.report(
+                TWO_DRIVERS,
+                subject,
+                block=name,
+                first=drivers[0],
+                second=drivers[1],
+                variable=wire.name,
+            )
+            yield wire.name
+
+
+def _full(member: Member, variable: str) -> str:
+    return f"{member.path}.{variable}" if member.path else variable
+
+
+def _report_flows(block: Block, sink: Sink) -> None:
+    graph = block.graph
+    for flow, feature, count in unclear_flows(graph, block.element):
+        ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+        source, target = (end.name if end is not None else "" for end in ends)
+        sink.report(
+            UNCLEAR_FLOW,
+            graph.subject(flow),
+            block=block.element.name,
+            source=source,
+            target=target,
+            feature=feature.name,
+            count=count,
+        )

@@ -1,0 +1,142 @@
+"""Who takes part in a block: its parts, and the block itself, each with a contract."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field
+
+from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.logic.composition.joints import Joints
+from sysmlc.logic.composition.structure import ITSELF, End, Usage, links, usages
+from sysmlc.logic.contract import Contract, Owner
+from sysmlc.logic.expressions.context import Context, context_of
+from sysmlc.logic.machines.reader import context_classifier
+from sysmlc.logic.requirements.statements import definition_of
+from sysmlc.values import dataclass
+
+Slot = tuple[str, str]
+"""A feature (dotted name) of a usage (path)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A contract that takes part, with the variables that its features are, by dotted name."""
+
+    path: str
+    name: str
+    origin: str
+    contract: Contract
+    features: Mapping[str, str]
+
+    def owner(self, variable: str) -> Owner:
+        """Who decides the variable, as the member sees it."""
+        return next(one.owner for one in self.contract.variables if one.name == variable)
+
+    def slots(self, *owners: Owner) -> Iterator[Slot]:
+        """The features that its contract speaks of and that one of the owners decides."""
+        for name, variable in self.features.items():
+            if self.owner(variable) in owners:
+                yield self.path, name
+
+
+@dataclass(slots=True)
+class Block:
+    """A block with what is in it; parts that have no contract are opened."""
+
+    graph: Graph
+    element: Element
+    contracts: Mapping[str, Contract]
+    """Contracts by the id of what they are contracts of."""
+    assumed: tuple[int, int]
+    members: list[Member] = field(default_factory=list)
+    names: dict[str, list[str]] = field(default_factory=dict)
+    """Dotted names of the features of each usage."""
+    features: Joints[Slot] = field(default_factory=Joints)
+    channels: Joints[Slot] = field(default_factory=Joints)
+    """Ends between which messages pass."""
+
+
+def read_block(
+    graph: Graph,
+    element: Element,
+    contracts: Mapping[str, Contract],
+    assumed: tuple[int, int] = (0, 15),
+) -> Block:
+    """A block with its members and what of them is joined.
+
+    ``contracts`` are those of behaviours and of requirements, by the id of the behaviour and of
+    the requirements' subject; ``assumed`` is the range of Integers that have none.
+    """
+    block = Block(graph, element, contracts, assumed)
+    block.names[ITSELF] = list(context_of(graph, element, assumed).features)
+    _open(block, element, ITSELF, {element.id})
+    return block
+
+
+def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
+    for usage in usages(block.graph, element, path):
+        context = context_of(block.graph, usage.type_, block.assumed)
+        block.names[usage.path] = list(context.features)
+        contract = contract_of(block, usage)
+        if contract is not None:
+            block.members.append(_member(block, usage.path, usage.element, contract, context))
+        elif usage.type_.id not in around and usage.element.kind is not Kind.OPERATION:
+            _open(block, usage.type_, usage.path, around | {usage.type_.id})
+    for side, other in links(block.graph, element, path):
+        for one in side:
+            for two in other:
+                _join(block, one, two)
+
+
+def contract_of(block: Block, usage: Usage) -> Contract | None:
+    """What a usage promises: what requirements demand of its type, else what its behaviour is."""
+    if usage.element.kind is Kind.OPERATION:
+        return block.contracts.get(usage.element.id)
+    return required(block, usage.type_) or behaviour(block, usage.type_)
+
+
+def required(block: Block, type_: Element) -> Contract | None:
+    """The contract that requirements make with a type, or with what it specialises."""
+    family = (type_, *query.generals(block.graph, type_))
+    return next((found for one in family if (found := block.contracts.get(one.id))), None)
+
+
+def behaviour(block: Block, type_: Element) -> Contract | None:
+    """The contract of the behaviour of a type, its own or inherited."""
+    found = query.classifier_behavior(block.graph, type_)
+    return None if found is None else block.contracts.get(found.id)
+
+
+def itself(block: Block, contract: Contract) -> Member:
+    """The block as one that takes part, by its behaviour or by what is demanded of it."""
+    context = context_of(block.graph, block.element, block.assumed)
+    return _member(block, ITSELF, block.element, contract, context)
+
+
+def _member(
+    block: Block, path: str, element: Element, contract: Contract, context: Context
+) -> Member:
+    origin = block.graph[contract.origin]
+    if origin.kind in query.BEHAVIORS:
+        around = context_classifier(block.graph, origin)
+        context = context_of(block.graph, around, block.assumed, origin)
+    elif origin.kind is Kind.OPERATION:
+        context = context_of(block.graph, definition_of(block.graph, origin), block.assumed)
+    known = {one.name for one in contract.variables}
+    found = {n: one.variable for n, one in context.features.items() if one.variable in known}
+    return Member(path, path or element.name, element.id, contract, found)
+
+
+def _join(block: Block, one: End, other: End) -> None:
+    block.channels.unite((one.path, one.feature), (other.path, other.feature))
+    if not (one.feature and other.feature):
+        return
+    theirs = set(_behind(block, other))
+    for rest in _behind(block, one):
+        if rest in theirs:
+            block.features.unite((one.path, one.feature + rest), (other.path, other.feature + rest))
+
+
+def _behind(block: Block, end: End) -> Iterator[str]:
+    """What of dotted names follows the feature of an end."""
+    for name in block.names.get(end.path, ()):
+        if name == end.feature or name.startswith(f"{end.feature}."):
+            yield name[len(end.feature) :]

@@ -1,0 +1,124 @@
+"""Usages inside a block, and which of their features connectors, bindings and flows join."""
+
+from collections.abc import Iterator
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.values import dataclass
+
+ITSELF = ""
+"""Path of the block whose parts are looked at."""
+_MOST_COPIES = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Usage:
+    """A part, or an action that a block has, by the path of names from the block to it."""
+
+    path: str
+    element: Element
+    type_: Element
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """Where something is attached: a usage, and the dotted name of a feature of it (or nothing)."""
+
+    path: str
+    feature: str
+
+
+def usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
+    """The parts of a block and the actions that it performs, each copy of a part by itself."""
+    for one in query.features(graph, block):
+        type_ = _type(graph, one)
+        if type_ is not None and one.name:
+            for name in _copies(one):
+                yield Usage(joined(path, name), one, type_)
+
+
+def _type(graph: Graph, feature: Element) -> Element | None:
+    if feature.kind is Kind.OPERATION:
+        return graph.target(feature, Edge.METHOD)
+    is_part = feature.role == "part" and feature.kind in (Kind.PROPERTY, Kind.PORT)
+    return query.type_of(graph, feature) if is_part else None
+
+
+def _copies(part: Element) -> Iterator[str]:
+    """Names of the copies of a part; one of which nobody says how many there are counts once."""
+    limits = query.bounds(part.attrs.get("multiplicity"))
+    number = limits[1] if limits is not None and limits[0] == limits[1] else 1
+    if number is None or not 1 < number <= _MOST_COPIES:
+        yield part.name
+        return
+    yield from (f"{part.name}[{at}]" for at in range(1, number + 1))
+
+
+def joined(path: str, name: str) -> str:
+    """A path with one more step."""
+    return f"{path}.{name}" if path and name else path or name
+
+
+Link = tuple[list[End], list[End]]
+"""What is joined: the ends on either side, several where a side leads to a part with copies."""
+
+
+def links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
+    """What connectors, bindings and flows of a block join."""
+    for owner in (block, *query.generals(graph, block)):
+        for one in graph.owned(owner):
+            if one.kind is Kind.CONNECTOR:
+                sides = [list(_ends(graph, block, end, path)) for end in query.ends(graph, one)]
+                for number, side in enumerate(sides):
+                    for other in sides[number + 1 :]:
+                        yield side, other
+            elif one.kind is Kind.ITEM_FLOW and not graph.targets(one, Edge.REALIZING):
+                yield from _flow(graph, block, one, path)
+
+
+def _ends(graph: Graph, block: Element, end: Element, path: str) -> Iterator[End]:
+    steps = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
+    yield from _along(graph, block, steps, path)
+
+
+def _along(graph: Graph, block: Element, steps: list[Element], path: str) -> Iterator[End]:
+    """The ends to which features lead, parts first."""
+    if steps and _type(graph, steps[0]) is not None:
+        for name in _copies(steps[0]):
+            yield from _along(graph, block, steps[1:], joined(path, name))
+        return
+    yield End(path, ".".join(step.name for step in steps))
+
+
+def _flow(graph: Graph, block: Element, flow: Element, path: str) -> Iterator[Link]:
+    """A flow that no connector realises leads between features: of the parts that have them."""
+    sides = []
+    for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
+        feature = graph.target(flow, edge)
+        sides.append([] if feature is None else list(_holders(graph, block, feature, path)))
+    if all(len(side) == 1 for side in sides):
+        yield sides[0], sides[1]
+
+
+def _holders(graph: Graph, block: Element, feature: Element, path: str) -> Iterator[End]:
+    if feature in query.features(graph, block):
+        yield End(path, feature.name)
+        return
+    for usage in usages(graph, block, path):
+        known = (*query.features(graph, usage.type_), *query.parameters(graph, usage.type_))
+        if feature in known:
+            yield End(usage.path, feature.name)
+
+
+def unclear_flows(graph: Graph, block: Element) -> Iterator[tuple[Element, Element, int]]:
+    """Flows of a block of which it is not clear between what they lead: the flow, the feature
+    that several usages have, how many.
+    """
+    for owner in (block, *query.generals(graph, block)):
+        for one in graph.owned(owner):
+            if one.kind is not Kind.ITEM_FLOW or graph.targets(one, Edge.REALIZING):
+                continue
+            for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
+                feature = graph.target(one, edge)
+                count = 0 if feature is None else len(list(_holders(graph, block, feature, "")))
+                if feature is not None and count > 1:
+                    yield one, feature, count

@@ -1,0 +1,216 @@
+"""Blocks with parts: which contracts make them up, and what connectors make one variable."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.diagnostics import Sink, catalogue
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.composite import Composite
+from sysmlc.logic.contract import IntegerDomain
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+
+pipeline.load("contracts")
+PANEL = """
+package Line {
+    private import ScalarValues::*;
+    port def Level { out attribute value : Integer; }
+    part def Sensor {
+        port level : Level;
+        out attribute busy : Boolean := false;
+        constraint { 0 <= level.value and level.value <= 7 }
+    }
+    part def Display {
+        port shown : ~Level;
+        in attribute waits : Boolean;
+        out attribute lamp : Boolean := false;
+        constraint { 0 <= shown.value and shown.value <= 7 }
+    }
+    part def Panel {
+        part sensor : Sensor;
+        part display : Display;
+        out attribute light : Boolean := false;
+        INSIDE
+    }
+    requirement def Measures {
+        subject it : Sensor;
+        require constraint { language "ltl" /* G F (level.value > 3 & !busy) */ }
+    }
+    requirement def Shows {
+        subject it : Display;
+        assume constraint { language "ltl" /* G F !waits */ }
+        require constraint { language "ltl" /* G (it.shown.value > 3 -> X lamp) */ }
+    }
+    requirement def Lights {
+        subject it : Panel;
+        require constraint { language "ltl" /* G F light */ }
+    }
+}
+"""
+JOINED = """
+        connect sensor.level to display.shown;
+        bind light = display.lamp;
+        flow from sensor.busy to display.waits;
+"""
+
+
+def composites(text):
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink)
+    codes = [one.rule.code for one in reading.sink if one.rule.code.startswith("SM5")]
+    return {one.component: one for one in reading.graph.derived(Composite)}, codes
+
+
+def variables(contract):
+    return [f"{one.owner.value} {one.name}" for one in contract.variables]
+
+
+def formulas(conjuncts):
+    return [print_formula(one.formula) for one in conjuncts]
+
+
+def panel(inside=JOINED):
+    found, codes = composites(PANEL.replace("INSIDE", inside))
+    assert codes == []
+    return found["Line::Panel"]
+
+
+def test_what_connectors_bindings_and_flows_join_is_one_variable():
+    sensor, display = panel().parts
+    assert (sensor.name, display.name) == ("sensor", "display")
+    assert variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
+    assert variables(display.contract) == [
+        "env sensor.level_value",
+        "env sensor.busy",
+        "sys light",
+    ]
+    assert formulas(display.contract.assumptions) == ["!sensor.busy"]
+    assert formulas(display.contract.guarantees)[-1] == "sensor.level_value>3 -> light'"
+
+
+def test_what_the_parts_make_up_together_is_what_the_block_demands():
+    whole = panel().whole
+    assert variables(whole) == ["sys light"]
+    assert formulas(whole.guarantees) == ["!light", "light"]
+
+
+def test_what_nothing_joins_is_the_parts_own():
+    sensor, display = panel("bind light = display.lamp;").parts
+    assert variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
+    assert variables(display.contract) == [
+        "env display.shown_value",
+        "env display.waits",
+        "sys light",
+    ]
+
+
+def test_what_a_reader_does_not_know_it_assumes_not_to_come():
+    text = PANEL.replace("INSIDE", JOINED).replace("shown.value <= 7", "shown.value <= 5")
+    found, codes = composites(text)
+    _, display = found["Line::Panel"].parts
+    level = next(one for one in display.contract.variables if one.name.endswith("value"))
+    assert level.domain == IntegerDomain(0, 7)
+    assert [(str(one.class_), print_formula(one.formula)) for one in display.contract.assumptions][
+        :2
+    ] == [("init", "sensor.level_value<=5"), ("safety", "sensor.level_value'<=5")]
+    assert codes == []
+
+
+def test_copies_of_a_part_are_parts_each():
+    found = panel("part spare : Sensor [2]; bind light = display.lamp;")
+    assert [one.name for one in found.parts] == ["sensor", "display", "spare[1]", "spare[2]"]
+
+
+def test_a_part_without_a_contract_is_opened():
+    text = PANEL.replace("INSIDE", JOINED).replace(
+        "part def Panel {",
+        """part def Rack { part panel : Board; part spare : Sensor; }
+    part def Board {
+        port inner : Level;
+        part one : Sensor;
+        part two : Display;
+        connect one.level to two.shown;
+    }
+    part def Panel {""",
+    )
+    found, _ = composites(text)
+    rack = found["Line::Rack"]
+    assert [one.name for one in rack.parts] == ["panel.one", "panel.two", "spare"]
+    assert "env panel.one.level_value" in variables(rack.parts[1].contract)
+    assert rack.whole is None
+
+
+@pytest.mark.parametrize("code", ["SM524", "SM525", "SM526"])
+def test_rules_report_their_wrong_model_and_not_their_right_one(code):
+    rule = catalogue()[code]
+    for text, expected in ((rule.wrong, True), (rule.right, False)):
+        sink = Sink()
+        graph = parse_text(text)
+        pipeline.run(graph, sink, verify_each=True)
+        assert (code in [one.rule.code for one in sink]) is expected
+        is_composed = len(graph.derived(Composite)) == 1
+        assert is_composed is (code == "SM526" or not expected)
+
+
+GATE = """
+package Plant {
+    private import ScalarValues::*;
+    attribute def start;
+    attribute def opened;
+    port def Told { in ref start; out ref opened; }
+    part def Gate {
+        port told : Told;
+        exhibit state life {
+            entry; then shut;
+            state shut;
+            transition first shut accept start do send opened() to told then open;
+            state open;
+            transition first open accept start then shut;
+        }
+    }
+    part def Operator {
+        port tells : ~Told;
+        exhibit state life {
+            entry; then idle;
+            state idle;
+            transition first idle accept after 2 do send start() to tells then waiting;
+            state waiting;
+            transition first waiting accept opened then idle;
+        }
+    }
+    part def Yard {
+        part gate : Gate;
+        part operator : Operator;
+        connect gate.told to operator.tells;
+    }
+}
+"""
+
+
+def test_what_one_part_sends_occurs_at_the_other():
+    found, _ = composites(GATE)
+    yard = found["Plant::Yard"]
+    assert [one.name for one in yard.parts] == ["gate", "operator"]
+    assert formulas(yard.wiring) == [
+        "gate.event=start -> operator.send_start",
+        "operator.send_start -> gate.event=start & operator.send_start",
+        "operator.event=opened -> gate.send_opened",
+        "gate.send_opened -> operator.event=opened & gate.send_opened",
+    ]
+    assert yard.wiring[0].text == "'start' occurs at 'gate' only when 'operator' sends it."
+
+
+def test_parts_that_nothing_joins_hear_nothing_of_one_another():
+    found, _ = composites(GATE.replace("connect gate.told to operator.tells;", ""))
+    assert found["Plant::Yard"].wiring == ()
+
+
+def test_a_block_is_a_composite_only_when_there_is_something_to_compare():
+    assert (
+        composites(
+            GATE.replace("part operator : Operator;", "").replace(
+                "connect gate.told to operator.tells;", ""
+            )
+        )[0]
+        == {}
+    )
