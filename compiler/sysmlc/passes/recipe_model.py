@@ -9,6 +9,7 @@ from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_machines import machine, material
+from sysmlc.passes.recipe_performances import performances
 from sysmlc.passes.recipe_services import function, service
 from sysmlc.passes.recipe_steps import activity_flows, refinement, step_kind
 from sysmlc.passes.recipe_tasks import (
@@ -49,7 +50,7 @@ def recipe_model(context: Context, activity: Element) -> Model:
     for step in found:
         if step.refinement is not None:
             _refine(context, step.refinement, "task", closure)
-    recipe = _recipe(context, activity, found)
+    recipe = _recipe(context, activity, found, closure)
     services = [service(context, *one) for one in closure.services.values()]
     functions = [function(context, *one) for one in closure.functions.values()]
     named = {m for one in recipe.tasks for mode in one.equipment for m in mode.machines}
@@ -66,7 +67,7 @@ def recipe_model(context: Context, activity: Element) -> Model:
     return derive(with_variables(context, model))
 
 
-def _recipe(context: Context, activity: Element, found: list[Step]) -> Recipe:
+def _recipe(context: Context, activity: Element, found: list[Step], closure: _Closure) -> Recipe:
     tags = context.tags(activity, "Recipe")
     product = tags.text("product")
     data = Data.of(context, activity)
@@ -83,6 +84,7 @@ def _recipe(context: Context, activity: Element, found: list[Step]) -> Recipe:
         tags.integer("priority"),
         bool(tags.flag("noWait")),
         activity.id,
+        performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
     )
 
 

@@ -180,6 +180,20 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
+class Performance:
+    """A block that performs a recipe: which of its parts, or operations of parts, do what.
+
+    ``arguments`` are the parameters of the recipe and ``steps`` the nodes of its graphs, each
+    with the dotted path of a feature from the block on.
+    """
+
+    block: str
+    arguments: tuple[tuple[str, str], ...] = ()
+    steps: tuple[tuple[str, str], ...] = ()
+    element: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Recipe:
     """Tasks and the order between them; variables carry values from task to task."""
 
@@ -194,6 +208,7 @@ class Recipe:
     priority: int | None = None
     no_wait: bool = False
     element: str = ""
+    performances: tuple[Performance, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from sysmlc.recipe.model import (
     Mode,
     Model,
     OpcUa,
+    Performance,
     Provider,
     Range,
     Recipe,
@@ -80,7 +81,17 @@ def _recipe(recipe: Recipe) -> Json:
         **found,
         "tasks": _each(_task, recipe.tasks),
         "precedence": [list(pair) for pair in recipe.precedence],
+        **_without_absent({"performedBy": _each(_performance, recipe.performances)}),
         **trace(recipe.element),
+    }
+
+
+def _performance(performance: Performance) -> Json:
+    given = {"arguments": dict(performance.arguments), "steps": dict(performance.steps)}
+    return {
+        "block": performance.block,
+        **_without_absent(given),
+        **trace(performance.element),
     }
 
 

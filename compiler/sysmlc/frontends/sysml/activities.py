@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, statements
+from sysmlc.frontends.sysml.allocated import arguments, assign_steps
 from sysmlc.frontends.sysml.definitions import flags, generalize, marked
 from sysmlc.frontends.sysml.features import give_types
 from sysmlc.frontends.sysml.kinds import BEHAVIOURS, FUNCTIONS
@@ -62,36 +63,12 @@ def perform(low: "Lowering", node: Node, owner: Element) -> None:
         return
     if typed is not None and is_instance(node):
         low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, typed)
+        arguments(low, node, owner)
         assign_steps(low, node, owner)
         return
     made = activity(low, node, owner)
     if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
         low.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, made)
-
-
-def assign_steps(low: "Lowering", node: Node, owner: Element) -> None:
-    """Steps that a usage binds to actions of the plant are allocated to them.
-
-    ``action :>> place references cell.place`` says who does the step of the definition.
-    """
-    for one in node.walk():
-        step = nodes.target(one, "Redefinition")
-        found = nodes.reference(one, "ReferenceSubsetting")
-        if one is not node and step is not None and found is not None:
-            made = low.add(one, Kind.DEPENDENCY, "", owner, role="allocate", subkind="abstraction")
-            low.later(lambda made=made, step=step: low.lead(Edge.CLIENT, made, _step_of(low, step)))  # type: ignore[misc]
-            low.refer(Edge.SUPPLIER, made, found)
-        elif one is not node and not nodes.is_text(one) and one.kind not in nodes.EXPRESSIONS:
-            low.repeated.add(id(one))
-
-
-def _step_of(low: "Lowering", step: Node) -> Node:
-    """The step that a redefinition leads to in the end."""
-    seen = set()
-    while low.elements.get(id(step)) is None and id(step) not in seen:
-        seen.add(id(step))
-        step = nodes.target(step, "Redefinition") or step
-    return step
 
 
 def is_instance(node: Node) -> bool:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, statements, values
 from sysmlc.frontends.sysml.activities import fill
+from sysmlc.frontends.sysml.allocated import arguments
 from sysmlc.frontends.sysml.definitions import flags, generalize, marked, visibility
 from sysmlc.frontends.sysml.events import trigger
 from sysmlc.frontends.sysml.successions import guard_of, is_of_library
@@ -46,6 +47,7 @@ def exhibit(low: "Lowering", node: Node, owner: Element) -> None:
     if found is not None and not inside:
         low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, found)
         low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), owner)
+        arguments(low, node, owner)
         return
     made = machine(low, node, owner)
     if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):

@@ -1,0 +1,71 @@
+"""What a use of a behaviour says about the plant: who does its steps, what its parameters are."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.ir import Edge
+
+LINE = """
+package P {
+    private import RecipeLevels::*;
+    part def Robot :> Machine { attribute busy : ScalarValues::Boolean; action place : Place; }
+    part def Cell { part robot : Robot; action place : Place; }
+    action def Place :> MachineService { in ref robot : Robot; }
+    action def Assemble :> Task {
+        in ref arm : Robot;
+        action put : Place { in ref :>> robot = arm; }
+    }
+    action def Make :> Recipe {
+        in ref arm : Robot;
+        action build : Assemble { in ref :>> arm = Make::arm; }
+    }
+    state def Watch { in ref arm : Robot; inout busy : ScalarValues::Boolean; state on; }
+    part def Line {
+        part cell : Cell;
+        part spare : Robot;
+        perform action make : Make {
+            in ref :>> arm = cell.robot;
+            action :>> build { action :>> put references cell.place; }
+        }
+        exhibit state watch : Watch {
+            in ref :>> arm = spare;
+            inout :>> busy = %s;
+        }
+    }
+}
+"""
+
+
+def allocations(reading):
+    """From what to what, with the path on the way, of each allocation of the line."""
+    graph = reading.graph
+    for one in graph.owned(reading.named("P::Line")):
+        if one.role == "allocate":
+            client, supplier = graph.target(one, Edge.CLIENT), graph.target(one, Edge.SUPPLIER)
+            path = [graph[id].name for id in one.attrs.get("target_path", ())]
+            yield graph.qualified_name(client), path, graph.qualified_name(supplier)
+
+
+def test_parameters_and_steps_are_allocated_with_the_way_from_the_block():
+    assert list(allocations(read(LINE % "spare.busy"))) == [
+        ("P::Make::arm", ["cell"], "P::Cell::robot"),
+        ("P::Assemble::put", ["cell"], "P::Cell::place"),
+        ("P::Watch::arm", [], "P::Line::spare"),
+        ("P::Watch::busy", ["spare"], "P::Robot::busy"),
+    ]
+
+
+@pytest.mark.parametrize("value", ["true", "not spare.busy"])
+def test_an_argument_that_is_no_feature_is_told(value):
+    reading = read(LINE % value)
+    assert len(list(allocations(reading))) == 3
+    assert "SM481" in reading.codes()
+
+
+def test_a_value_that_a_performed_step_is_given_is_told():
+    text = LINE.replace(
+        "in ref robot : Robot;", "in ref robot : Robot; in n : ScalarValues::Integer;"
+    )
+    given = text.replace("references cell.place;", "references cell.place { in :>> n = 5; }")
+    assert "SM481" not in read(text % "spare.busy").codes()
+    assert "SM481" in read(given % "spare.busy").codes()

@@ -1,0 +1,303 @@
+"""The recipe of the ICE laboratory against its text, read again by a few regular expressions."""
+
+import json
+import re
+
+import ice_source as source
+import pytest
+
+from sysmlc.config import load
+from sysmlc.driver import Request, compile_model, select_backends
+
+pytestmark = pytest.mark.corpus
+LEVELS = """\
+[recipe.levels]
+task = "RecipePrimitives::Task"
+machine-service = "RecipePrimitives::MachineService"
+machine-function = "RecipePrimitives::MachineFunction"
+"""
+TASK = r"action def (\w+) :> Task"
+SERVICE_CALL = r"then perform action (\w+) : (\w+)"
+FUNCTION_CALL = r"(?:then )?action (\w+) :> equipment\.(\w+)"
+
+
+@pytest.fixture(scope="module")
+def folder(corpus):
+    return corpus / "sysml2" / "ice-lab"
+
+
+@pytest.fixture(scope="module")
+def laboratory(folder, tmp_path_factory):
+    file = tmp_path_factory.mktemp("ice") / "sysmlc.toml"
+    file.write_text(LEVELS)
+    backends = tuple(select_backends(("recipe",)))
+    return compile_model(Request((folder,), config=load(file), backends=backends))
+
+
+@pytest.fixture(scope="module")
+def recipe(laboratory):
+    (told,) = laboratory.written()
+    return json.loads(told.text)
+
+
+@pytest.fixture(scope="module")
+def text(folder):
+    """All files of the laboratory, and the literals of its enumerations."""
+    files = {path.stem: source.read(path) for path in sorted(folder.rglob("*.sysml"))}
+    return files, source.literals(files["enums"])
+
+
+def nodes(recipe, graph):
+    graphs = {one["id"]: one for one in (*recipe["serviceGraphs"], *recipe["functionGraphs"])}
+    return {one["id"].rpartition("::")[2]: one for one in graphs[graph]["nodes"]}
+
+
+def said(value, numbers, enumerations):
+    """What a value of the text is in the recipe: a literal, or the name of a variable."""
+    if re.fullmatch(r"-?\d+", value):
+        return {"lit": int(value)}
+    if value in numbers:
+        return {"lit": value.rpartition("::")[2] if enumerations else numbers[value]}
+    return {"var": re.sub(r"^\w+::", "", value)}
+
+
+def fits(bound, value, numbers, sources):
+    """Whether a binding is what the text says; results of steps go by the variables they set."""
+    expected = [said(value, numbers, enumerations) for enumerations in (False, True)]
+    step, dot, output = value.partition(".")
+    if dot and output in sources.get(step, {}):
+        expected.append({"var": sources[step][output]})
+    return bound in expected
+
+
+def check_bindings(made, blocks, numbers):
+    """Every argument of every step is in the recipe, and no other."""
+    sources = {name: one.get("assign", {}) for name, one in made.items()}
+    count = 0
+    for name, block in blocks.items():
+        arguments = source.arguments(block)
+        bound = made[name].get("bind", {})
+        assert set(bound) == set(arguments), name
+        for key, value in arguments.items():
+            assert fits(bound[key], value, numbers, sources), (name, key, value, bound[key])
+            count += 1
+    return count
+
+
+# -- tasks and services ------------------------------------------------------------------------
+
+
+def test_the_recipe_has_the_five_tasks_of_the_text_in_their_order(recipe, text):
+    (found,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
+    written = [m[1] for m, _ in found[1].find(r"then action (\w+) : Task\w+")]
+    (only,) = recipe["recipes"]
+    follows = {a.rpartition("::")[2]: b.rpartition("::")[2] for a, b in only["precedence"]}
+    order = [next(iter(set(follows) - set(follows.values())))]
+    while order[-1] in follows:
+        order.append(follows[order[-1]])
+    assert order == written
+    assert len(written) == 5
+
+
+def test_values_go_into_tasks_as_written(recipe, text):
+    (found,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
+    steps = {m[1]: block for m, block in found[1].find(r"then action (\w+) : Task\w+")}
+    made = {one["name"]: one for one in recipe["recipes"][0]["tasks"]}
+    assert check_bindings(made, steps, text[1]) == 17
+
+
+def test_every_call_of_a_service_has_the_arguments_of_the_text(recipe, text):
+    files, numbers = text
+    calls = count = 0
+    for task, block in files["demo_lego"].find(TASK):
+        steps = {m[1]: (m[2], inside) for m, inside in block.find(SERVICE_CALL)}
+        made = nodes(recipe, f"DemoLegoRecipe::{task[1]}")
+        services = {name: one for name, one in made.items() if one["kind"] == "service"}
+        assert list(services) == list(steps)
+        for name, (service, _) in steps.items():
+            assert services[name]["ref"].rpartition("::")[2] == service
+        inside = {name: one for name, (_, one) in steps.items()}
+        count += check_bindings(services, inside, numbers)
+        calls += len(steps)
+    assert (calls, count) == (31, 103)
+
+
+def test_the_plant_says_which_operation_of_which_cell_does_each_of_the_31(recipe, text):
+    files, _ = text
+    (line,) = files["ice_lab"].find(r"perform action demoLego : DemoLego")
+    given = {m[1]: m[2] for m, _ in line[1].find(r"in ref :>> (\w+) = ([\w.]+)")}
+    task_of = {m[1]: m[2] for m, _ in files["demo_lego"].find(r"then action (op\w+) : (Task\w+)")}
+    written = {
+        f"DemoLegoRecipe::{task_of[task[1]]}::{step[1]}": step[2]
+        for task, block in line[1].find(r"action :>> (op\w+)")
+        for step, _ in block.find(r"action :>> (\w+) references ([\w.]+)")
+    }
+    (performed,) = recipe["recipes"][0]["performedBy"]
+    assert performed["block"] == "PlantTopology::ICEProductionLine"
+    assert performed["arguments"] == given
+    assert performed["steps"] == written
+    assert len(written) == 31
+
+
+# -- services and functions --------------------------------------------------------------------
+
+
+def used(recipe, text):
+    """Services and helpers of the recipe with their text."""
+    definitions = {
+        m[1]: block
+        for file in text[0].values()
+        for m, block in file.find(r"action def (\w+)(?: :> MachineService)?")
+    }
+    return {
+        one["id"]: definitions[one["id"].rpartition("::")[2]] for one in recipe["functionGraphs"]
+    }
+
+
+def test_every_service_calls_the_functions_of_the_text_with_their_arguments(recipe, text):
+    calls = count = 0
+    for graph, block in used(recipe, text).items():
+        steps = {m[1]: (m[2], inside) for m, inside in block.find(FUNCTION_CALL)}
+        made = nodes(recipe, graph)
+        functions = {name: one for name, one in made.items() if one["kind"] == "function"}
+        assert set(functions) == set(steps)
+        for name, (function, _) in steps.items():
+            assert functions[name]["ref"].rpartition("::")[2] == function
+        count += check_bindings(functions, {n: one for n, (_, one) in steps.items()}, text[1])
+        calls += len(steps)
+    assert (calls, count) == (12, 28)
+
+
+def test_every_function_has_the_node_ids_of_its_definition(recipe, text):
+    equipment = text[0]["equipment_interfaces"]
+    ids = {}
+    for machine, block in equipment.find(r"part def (\w+) :> ProductionEquipment"):
+        methods = {}
+        for definition, inside in block.find(r"action def (\w+) :> MachineFunction"):
+            tags = dict(_tag(m) for m, _ in inside.find(r'(\w+) = "(.*)"'))
+            methods[definition[1]] = tags
+        for action, _ in block.find(r"action (\w+) : (\w+)"):
+            ids[f"EquipmentInterfaces::{machine[1]}::{action[1]}"] = methods[action[2]]
+    written = {
+        one["id"]: {"nodeId": one["opcua"]["method"], "parentNodeId": one["opcua"]["object"]}
+        for one in recipe["functions"]
+    }
+    assert written == {id: ids[id] for id in written}
+    assert len(written) == 11
+
+
+def _tag(found):
+    return found[1], re.sub(r"\\(.)", r"\1", found[2])
+
+
+def test_results_of_services_are_those_of_the_text(recipe, text):
+    count = 0
+    for graph, block in used(recipe, text).items():
+        made = nodes(recipe, graph)
+        for bound, _ in block.find(r"bind (\w+) = (\w+)\.(\w+)"):
+            output, step, result = bound.groups()
+            if made.get(step, {}).get("kind") == "function":
+                assert made[step]["assign"][result] == output, (graph, output)
+                count += 1
+    assert count == 14
+
+
+# -- loops, for-each, times --------------------------------------------------------------------
+
+
+def test_every_loop_of_the_text_is_an_unbounded_loop_with_its_condition(recipe, text):
+    """A merge that a guarded succession behind it leads back to is where a loop begins."""
+    count = 0
+    for graph, block in used(recipe, text).items():
+        loops = [one for one in nodes(recipe, graph).values() if one["kind"] == "loop"]
+        assert all(one["unbounded"] is True for one in loops)
+        heads = _loops(block)
+        assert len(loops) == len(heads), (graph, heads)
+        count += len(loops)
+    assert count == 5
+
+
+def _loops(block):
+    """Names of merges that are led back to from what stands behind them."""
+    found = []
+    for one in block.walk():
+        order = [inner.head for inner in one.inside]
+        for at, head in enumerate(order):
+            merge = re.fullmatch(r"merge (\w+)", head)
+            back = rf"(?:if .+ then|else|then) {merge[1]}" if merge else "(?!)"
+            found += [merge[1]] if any(re.fullmatch(back, after) for after in order[at:]) else []
+    return found
+
+
+def test_for_each_over_pallets_is_as_written(recipe, text):
+    written = [
+        (graph, m[1], m[2])
+        for graph, block in used(recipe, text).items()
+        for m, _ in block.find(r"(?:then )?for (\w+) in ([\w.]+)")
+    ]
+    made = [
+        (graph["id"], one["variable"]["name"], one["in"]["var"])
+        for graph in recipe["functionGraphs"]
+        for one in graph["nodes"]
+        if one["kind"] == "forEach"
+    ]
+    assert made == written
+    assert [(one.rpartition("::")[2], *rest) for one, *rest in made] == [
+        ("ReadPalletContent", "p", "equipment.pallets"),
+        ("ReserveFreePalletOfType2", "p", "equipment.pallets"),
+    ]
+
+
+def test_times_that_the_text_has_none_of_are_left_open(recipe):
+    """The only time of the text is the pause of a second before a pallet is asked for again."""
+
+    def keys(value):
+        if isinstance(value, dict):
+            yield from value.items()
+        for one in value.values() if isinstance(value, dict) else value:
+            if isinstance(one, dict | list):
+                yield from keys(one)
+
+    times = ("duration", "minDuration", "maxDuration", "timeout", "time")
+    assert [(key, one) for key, one in keys(recipe) if key in times] == [("time", {"lit": 1000})]
+
+
+def test_polled_variables_have_the_nodes_of_the_text(recipe, text):
+    equipment = text[0]["equipment_interfaces"]
+    count = 0
+    for machine in recipe["machines"]:
+        name = machine["id"].rpartition("::")[2]
+        (block,) = [b for m, b in equipment.find(r"part def (\w+) :> .+") if m[1] == name]
+        for one in machine.get("variables", ()):
+            if "node" in one:
+                assert one["node"] == _node(block, one["name"].split(".")), one["name"]
+                count += 1
+    assert count == 53
+
+
+def _node(block, path):
+    for part in path:
+        pattern = rf"attribute (?:{part} : .+|:>> {part})"
+        block = next(one for one in block.inside if re.fullmatch(pattern, one.head))
+    (found,) = [_tag(m)[1] for m, _ in block.find(r'(nodeId) = "(.*)"')]
+    return found
+
+
+# -- names that are missing --------------------------------------------------------------------
+
+MISSING = r"\b(?:OpcUaConnection|RoboticCell(?:Cmd|State)Port|(?:cmd|state)Port)\b"
+
+
+def test_every_use_of_a_missing_name_is_told_at_its_place_and_nothing_else(laboratory, folder):
+    """25 words in all; one of them, ``the equipment's statePort``, is in a comment."""
+    written, words = set(), 0
+    for path in sorted(folder.rglob("*.sysml")):
+        name, whole = path.relative_to(folder).as_posix(), path.read_text()
+        words += len(re.findall(MISSING, whole))
+        for found in re.finditer(rf"(?:\w+::)*{MISSING}", source.uncommented(whole)):
+            written.add((name, len(whole[: found.start()].encode())))
+    errors = [one for one in laboratory.diagnostics if one.is_error]
+    assert {one.rule.code for one in errors} == {"SM205"}
+    told = [(one.subject.place.file, one.subject.place.offset) for one in errors]
+    assert sorted(told) == sorted(written)
+    assert (words, len(told)) == (25, 24)
