@@ -2,13 +2,16 @@
 
 import json
 import re
+from pathlib import Path
 
 import ice_source as source
+import jsonschema
 import pytest
 
 from sysmlc.config import load
 from sysmlc.driver import Request, compile_model, select_backends
 
+ROOT = Path(__file__).parents[3]
 pytestmark = pytest.mark.corpus
 LEVELS = """\
 [recipe.levels]
@@ -82,6 +85,11 @@ def check_bindings(made, blocks, numbers):
             assert fits(bound[key], value, numbers, sources), (name, key, value, bound[key])
             count += 1
     return count
+
+
+def test_the_recipe_is_valid_against_its_schema(recipe):
+    schema = json.loads((ROOT / "metamodels" / "sysmlc-recipe.schema.json").read_text())
+    jsonschema.validate(recipe, schema)
 
 
 # -- tasks and services ------------------------------------------------------------------------
