@@ -4,7 +4,7 @@ import pytest
 
 from sysmlc.driver import registry
 from sysmlc.passes import pipeline
-from sysmlc.synthesis import check
+from sysmlc.synthesis import check, together
 from sysmlc.synthesis.lints import rules
 
 
@@ -58,3 +58,21 @@ def test_a_component_alone_is_compared_with_its_requirements_too(here, all_passe
         1,
         "Plant::Gate: realizable, breaks its requirements\n",
     ]
+
+
+def test_parts_of_a_block_are_put_together_and_runs_are_drawn(here, all_passes):
+    here.write("cell.sysml", together.OPEN.wrong)
+    made = here.sysmlc("contracts", "check", "cell.sysml", "-c", "Line::Cell", "-o", "out")
+    assert made.exit_code == 1
+    assert made.stdout == (
+        "Line::Cell: realizable\nLine::Cell: its 2 parts together break its contract\n"
+    )
+    assert "error[SM595 part-assumption-open]: part 'picker' of 'Line::Cell'" in made.stderr
+    assert here.files("out") == ["Line.Cell.run1.puml", "Line.Cell.run2.puml"]
+
+
+def test_a_model_that_is_wrong_says_why_it_has_no_contracts(here, all_passes):
+    here.write("cell.sysml", together.OPEN.wrong.replace("import ScalarValues::*", "import Units"))
+    made = here.sysmlc("contracts", "check", "cell.sysml")
+    assert made.exit_code == 2
+    assert "SM205 unresolved-name" in made.stderr

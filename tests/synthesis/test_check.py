@@ -6,8 +6,7 @@ from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.check import BREAKS, check, lines
+from sysmlc.synthesis.check import BREAKS, check
 from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.manager import LimitError
 
@@ -44,23 +43,6 @@ def test_a_behaviour_keeps_its_requirements_or_a_run_shows_where_not():
     assert broken.notes[0] == "step 1: event=start, state=A"
     assert broken.notes[1] == "step 2: event=stop, state=B"
     assert "state=A" in broken.notes[2]
-
-
-def test_a_run_shows_only_what_changes_and_where_it_goes_on():
-    trace = Trace(({"a": True, "n": 1}, {"a": True, "n": 2}, {"a": True, "n": 2}), 1)
-    assert list(lines(trace)) == [
-        "step 1: a=true, n=1",
-        "step 2: n=2",
-        "step 3: nothing changes",
-        "then again from step 2",
-    ]
-
-
-def test_a_long_run_is_cut():
-    trace = Trace(tuple({"n": number} for number in range(30)), 0)
-    shown = list(lines(trace))
-    assert shown[-2:] == ["and 18 more", "then again from step 1"]
-    assert len(shown) == 14
 
 
 def test_questions_that_take_too_long_are_told(monkeypatch):

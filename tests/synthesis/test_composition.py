@@ -5,7 +5,9 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.synthesis import Manager
+from sysmlc.synthesis.algebra.at_once import read_at_once
 from sysmlc.synthesis.algebra.composition import DriverError, composition
+from sysmlc.synthesis.algebra.systems import Universe
 
 FEEDER = """
     env taken: bool
@@ -94,6 +96,19 @@ def test_not_when_both_read_in_the_step_what_the_other_writes():
     copy = SAFE + "\n promise always {me}' <-> {it}'\n promise at first {me} <-> {it}"
     parts = {"1": copy.format(me="a", it="b"), "2": copy.format(me="b", it="a")}
     assert open_ones(composed(**parts)) == ["1: !b", "1: !b'", "2: !a", "2: !a'"]
+
+
+def test_what_ties_an_output_to_an_input_of_the_same_step_is_reading_at_once():
+    """That ``me`` follows ``it`` in the same step is said without a prime, or by two promises."""
+    twice = "promise always it=1 & me -> me'\npromise always it=1 & me -> !me'"
+    for tie in ("promise always me <-> it=1", twice):
+        made = contract(f"env it: 0..2\nsys me: bool\n{tie}")
+        assert read_at_once(made, Universe((made,), Manager())) == {"it"}
+
+
+def test_what_is_answered_in_the_next_step_is_not_read_at_once():
+    made = contract("env it: 0..2\nsys me: 0..4\npromise always me=1 & it=2 -> me'=3")
+    assert read_at_once(made, Universe((made,), Manager())) == set()
 
 
 def test_a_chain_within_a_step_is_no_circle():

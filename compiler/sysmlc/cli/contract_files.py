@@ -9,12 +9,13 @@ import click
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.render import Finding
+    from sysmlc.logic.composite import Composite
     from sysmlc.logic.contract import Contract
     from sysmlc.sources import Source
     from sysmlc.synthesis.decide import Place
@@ -27,6 +28,7 @@ class ContractFile:
     """The contracts of a file, and how findings about them find their places."""
 
     contracts: "tuple[Contract, ...]"
+    composites: "tuple[Composite, ...]"
     sink: "Sink"
     place: "Place"
     findings: "tuple[Finding, ...]"
@@ -34,14 +36,19 @@ class ContractFile:
     root: Path
 
 
-def chosen(contracts: "tuple[Contract, ...]", component: str) -> "tuple[Contract, ...]":
-    """The contracts of one component, or all when none is named; ends the process for another."""
+def chosen(
+    contracts: "tuple[Contract, ...]", component: str, composites: "Sequence[Composite]" = ()
+) -> "tuple[Contract, ...]":
+    """The contracts of one component, or all when none is named; ends the process for another.
+
+    A block that only has parts (``composites``) is a component, too.
+    """
     from sysmlc.cli.session import fail
     from sysmlc.suggest import did_you_mean
 
-    names = [one.component for one in contracts]
+    names = [one.component for one in (*contracts, *composites)]
     found = tuple(one for one in contracts if component in ("", one.component))
-    if not found:
+    if component and component not in names:
         fail(f"no component '{component}'; {did_you_mean(component, names)}")
     return found
 
@@ -64,6 +71,7 @@ def read_contracts(
 def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import session
     from sysmlc.diagnostics import Sink
+    from sysmlc.logic.composite import Composite
     from sysmlc.logic.contract import Contract
 
     made = session.compile_unit((file,), config, settings)
@@ -76,10 +84,12 @@ def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFil
         return Subject() if element is None else made.graph.subject(element)
 
     contracts = made.graph.derived(Contract) if made.exit_code() < 2 else ()
-    if not contracts and made.exit_code() < 2:
+    if not contracts and not findings and made.exit_code() < 2:
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
+    composites = made.graph.derived(Composite)
+    sink = Sink(config.rules)
     return ContractFile(
-        tuple(contracts), Sink(config.rules), place, findings, made.sources, made.root
+        tuple(contracts), tuple(composites), sink, place, findings, made.sources, made.root
     )
 
 
@@ -103,7 +113,7 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     name = file.name.partition(".")[0]
     read = formats.read(text, source.name, sink, language)
     contracts = tuple(one if one.component else replace(one, component=name) for one in read)
-    return ContractFile(contracts, sink, _from_text, (), (source,), Path.cwd())
+    return ContractFile(contracts, (), sink, _from_text, (), (source,), Path.cwd())
 
 
 def _from_text(origin: str) -> "Subject":
@@ -114,6 +124,18 @@ def _from_text(origin: str) -> "Subject":
         return Subject()
     place = Place(found["file"], line=int(found["line"]), column=int(found["column"]))
     return Subject(place=place)
+
+
+def write(files: "Iterable[tuple[str, str]]", out: Path) -> None:
+    """Write files, each a name and a text; ends the process when one cannot be written."""
+    from sysmlc.cli.session import fail
+    from sysmlc.output import write_if_changed
+
+    try:
+        for name, text in files:
+            write_if_changed(out / name, text)
+    except OSError as problem:
+        fail(f"cannot write to '{out}': {problem.strerror}")
 
 
 def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:

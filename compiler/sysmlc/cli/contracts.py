@@ -26,6 +26,7 @@ def command() -> None:
 Examples:
   sysmlc contracts check plant.uml
   sysmlc contracts check cells.sysml -c Cells::Cell.turn
+  sysmlc contracts check cells.sysml -o out
   sysmlc contracts check gate.contract.json
 
 Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
@@ -33,6 +34,13 @@ Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Draw the runs that break something there (PlantUML).",
+)
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
 @click.option(
     "--time-limit",
@@ -51,6 +59,7 @@ def check_command(
     /,
     file: Path,
     component: str,
+    output: Path | None,
     language: str,
     seconds: float,
     **given: Any,  # noqa: ANN401 - the fields of Settings
@@ -59,7 +68,8 @@ def check_command(
 
     Each is decided, and what is suspicious in it is told: promises that cost nothing, assumptions
     that nobody can keep, outputs of which nothing is said. A behaviour is compared with the
-    requirements of its component; a run shows where it breaks them.
+    requirements of its component, and the parts of a block with the block's: whether they fit
+    together and keep it. A run shows where something is broken; -o draws it.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
@@ -73,24 +83,38 @@ def check_command(
     read = read_contracts(file, language, config, settings)
     limits = Limits(seconds=seconds)
     try:
-        ctx.exit(_checked(read, component, settings, Options("", limits, progress.note)))
+        ctx.exit(_checked(read, component, settings, Options("", limits, progress.note), output))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _checked(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
-    from sysmlc.cli.contract_files import chosen, show
+def _checked(
+    read: "ContractFile",
+    component: str,
+    settings: "Settings",
+    options: "Options",
+    output: Path | None,
+) -> int:
+    from sysmlc.cli.contract_files import chosen, show, write
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.check import check
+    from sysmlc.synthesis.together import check_together
+    from sysmlc.synthesis.witness import files
 
-    contracts = chosen(read.contracts, component) if read.contracts else ()
-    results = list(check(contracts, read.contracts, read.place, read.sink, options))
-    show(read, settings, map(_line, results))
-    is_undecided = any(one.verdict.is_realizable is None for one in results)
-    has_errors = any(one.severity is Severity.ERROR for one in read.sink)
-    return 2 if is_undecided or not results else int(has_errors)
+    contracts = chosen(read.contracts, component, read.composites) if read.contracts else ()
+    composites = [one for one in read.composites if component in ("", one.component)]
+    alone = list(check(contracts, read.contracts, read.place, read.sink, options))
+    together = list(check_together(composites, read.place, read.sink, options))
+    if output is not None:
+        runs = (run for one in (*alone, *together) for run in one.witnesses)
+        write(files(runs), output)
+    show(read, settings, (*map(_line, alone), *(one.text() for one in together)))
+    is_undecided = any(one.verdict.is_realizable is None for one in alone)
+    found = (*read.sink, *(one.diagnostic for one in read.findings))
+    has_errors = any(one.severity is Severity.ERROR for one in found)
+    return 2 if is_undecided or not (alone or together) else int(has_errors)
 
 
 def _line(result: "Checked") -> str:

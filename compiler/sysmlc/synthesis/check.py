@@ -3,23 +3,21 @@
 from collections.abc import Callable, Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.logic.contract import Contract
-from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
-from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.manager import LimitError, Manager
+from sysmlc.synthesis.witness import Witness, lines
 from sysmlc.values import dataclass
 
 SUFFIX = ".requirements"
 """What the contract of a component's requirements has behind the name of its behaviour's."""
-_SHOWN = 12
-"""Steps of a run that a message shows."""
 
 
 def _lamp(demand: str, *moves: str, constraint: str = "") -> str:
@@ -88,6 +86,7 @@ class Checked:
     verdict: Verdict
     is_implemented: bool | None
     """Whether the behaviour keeps its requirements; None when there are none, or no answer."""
+    witnesses: tuple[Witness, ...] = ()
 
 
 def check(
@@ -107,8 +106,9 @@ def check(
         if verdict.is_realizable is not None:
             _lint(contract, place, sink, options)
         other = None if _is_demand(contract) else demanded.get(contract.component)
-        kept = None if other is None else _is_kept(contract, other, place, sink, options)
-        yield Checked(verdict, kept)
+        failures = None if other is None else _failures(contract, other, place, sink, options)
+        kept = None if failures is None else not failures
+        yield Checked(verdict, kept, tuple(_witness(contract, one) for one in failures or ()))
 
 
 def _is_demand(contract: Contract) -> bool:
@@ -117,35 +117,51 @@ def _is_demand(contract: Contract) -> bool:
 
 def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
     try:
-        lint(reduced(contract).contract, place, sink, _maker(options))
+        lint(reduced(contract).contract, place, sink, new_manager(options))
     except LimitError as problem:
         reached = str(problem)
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
 
 
-def _maker(options: Options) -> Callable[[], Manager]:
+def new_manager(options: Options) -> Callable[[], Manager]:
+    """A manager within the limits for each question."""
     return lambda: Manager(options.engine, options.limits, options.progress)
 
 
-def _is_kept(
+def _failures(
     behaviour: Contract, demanded: Contract, place: Place, sink: Sink, options: Options
-) -> bool | None:
-    """Whether the behaviour's contract refines that of the requirements; failures are reported."""
+) -> tuple[Failure, ...] | None:
+    """Where the behaviour's contract does not refine that of the requirements; all reported.
+
+    None when that is not decided.
+    """
     try:
-        failures = list(refinement_failures(behaviour, demanded, _maker(options)()))
+        failures = tuple(refinement_failures(behaviour, demanded, new_manager(options)()))
     except (OutsideGr1Error, DomainError, LimitError) as problem:
         subject = place(behaviour.origin)
-        sink.report(NOT_COMPARED, subject, component=behaviour.component, reason=_why(problem))
+        reason = why_not(problem)
+        sink.report(NOT_COMPARED, subject, component=behaviour.component, reason=reason)
         return None
     for failure in failures:
         _report(behaviour, failure, place, sink)
-    return not failures
+    return failures
 
 
-def _why(problem: OutsideGr1Error | DomainError | LimitError) -> str:
+def _witness(behaviour: Contract, failure: Failure) -> Witness:
+    parties = ((behaviour.component, behaviour),)
+    return Witness(behaviour.component, failure.conjunct, failure.trace, parties)
+
+
+def why_not(problem: Exception) -> str:
+    """Why something was not decided, with the formula that stands in the way."""
     if isinstance(problem, OutsideGr1Error):
         return f"'{print_formula(problem.conjunct.formula)}': {problem}"
     return str(problem)
+
+
+def said(conjunct: Conjunct) -> str:
+    """What a conjunct says in words, in brackets."""
+    return f" ({conjunct.text.removesuffix('.')})" if conjunct.text else ""
 
 
 def _report(behaviour: Contract, failure: Failure, place: Place, sink: Sink) -> None:
@@ -156,18 +172,5 @@ def _report(behaviour: Contract, failure: Failure, place: Place, sink: Sink) -> 
         notes=tuple(lines(failure.trace)),
         component=behaviour.component,
         formula=print_formula(conjunct.formula),
-        said=f" ({conjunct.text.removesuffix('.')})" if conjunct.text else "",
+        said=said(conjunct),
     )
-
-
-def lines(trace: Trace) -> Iterator[str]:
-    """The steps of a run, a line each, with what has changed."""
-    before: dict[str, object] = {}
-    for number, values in enumerate(trace.steps[:_SHOWN], 1):
-        new = {name: value for name, value in values.items() if before.get(name) != value}
-        changed = ", ".join(f"{name}={print_literal(value)}" for name, value in new.items())
-        yield f"step {number}: {changed or 'nothing changes'}"
-        before = dict(values)
-    if len(trace.steps) > _SHOWN:
-        yield f"and {len(trace.steps) - _SHOWN} more"
-    yield f"then again from step {trace.loop + 1}"

@@ -52,11 +52,11 @@ def composition(composite: Composite, manager: Manager) -> Composition:
     whole = composite.whole or _open_to_outside(composite)
     wiring = Contract("", "", (), composite.wiring, ())
     made = observed((*(one.contract for one in composite.parts), wiring, whole))
-    *contracts, wiring, seen = made.contracts
-    parts = [_with(p, c) for p, c in zip(composite.parts, contracts, strict=True)]
+    *contracts, joined, seen = made.contracts
+    parts = tuple(_with(p, c) for p, c in zip(composite.parts, contracts, strict=True))
     universe = Universe(made.contracts, manager)
-    given = (*seen.assumptions, *wiring.assumptions, *made.definitions)
-    found = discharge(parts, given, universe)
+    inside = replace(composite, parts=parts, wiring=joined.assumptions)
+    found = discharge(inside, (*seen.assumptions, *made.definitions), universe)
     runs = Entailment(universe, universe.system(found.facts))
     failures = tuple(_broken(seen.guarantees, runs))
     return Composition(_together(composite, whole), found.open, failures)

@@ -7,12 +7,13 @@ Abadi and Lamport 1993). That is sound for initial conditions and safety, of par
 read in the same step what they write for one another; liveness is never taken in a circle.
 """
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.composite import Part
+from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Class, Conjunct, Owner
 from sysmlc.logic.evaluate import has_primes
+from sysmlc.synthesis.algebra.at_once import read_at_once
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
@@ -85,21 +86,35 @@ class _Known:
         return found
 
 
-def discharge(parts: Sequence[Part], given: Iterable[Conjunct], universe: Universe) -> Discharge:
-    """Establish as many parts as can be, from what is given.
+def discharge(composite: Composite, given: Iterable[Conjunct], universe: Universe) -> Discharge:
+    """Establish as many parts as can be, from what is given and how they are wired.
 
     The contracts are in GR(1). Raises OutsideGr1Error, LimitError.
     """
-    known, waiting, stepwise = _Known(universe, given), list(parts), list(parts)
+    parts = composite.parts
+    reading = {one: _read_at_once(one, composite, universe) for one in parts}
+    known, waiting, stepwise = (
+        _Known(universe, (*given, *composite.wiring)),
+        list(parts),
+        list(parts),
+    )
     while True:
         ready = [part for part in waiting if known.gives(part.contract.assumptions)]
-        together = [] if ready else _together(stepwise, known)
+        together = [] if ready else _together(stepwise, reading, known)
         if not ready and not together:
             return Discharge(known.facts, tuple(_open(waiting, known)))
         known = known.adding(one for part in ready for one in part.contract.guarantees)
         known = known.adding(one for part in together for one in _stepwise(part, is_assumed=False))
         waiting = [part for part in waiting if part not in ready]
         stepwise = [part for part in stepwise if part not in (*ready, *together)]
+
+
+def _read_at_once(part: Part, composite: Composite, universe: Universe) -> list[Part]:
+    """The parts on whose outputs of a step depends what this one does in the same step."""
+    read = read_at_once(part.contract, universe)
+    wired = [{v.name for v in f.variables(one.formula)} for one in composite.wiring]
+    heard = read.union(*(names for names in wired if names & read))
+    return [one for one in composite.parts if one != part and heard & outputs(one)]
 
 
 def _stepwise(part: Part, is_assumed: bool) -> list[Conjunct]:
@@ -109,9 +124,12 @@ def _stepwise(part: Part, is_assumed: bool) -> list[Conjunct]:
     return [one for one in every if one.class_ in (Class.INIT, Class.SAFETY)]
 
 
-def _together(parts: Sequence[Part], known: _Known) -> list[Part]:
+def _together(
+    parts: Sequence[Part], reading: Mapping[Part, Sequence[Part]], known: _Known
+) -> list[Part]:
     """The most parts whose safety holds step by step when all of them keep theirs."""
-    chosen = [part for part in parts if not _waits_for_itself(part, parts)]
+    among = {part: [one for one in reading[part] if one in parts] for part in parts}
+    chosen = [part for part in parts if not _waits_for_itself(part, among)]
     while chosen:
         steps = known.adding(one for part in chosen for one in _stepwise(part, is_assumed=False))
         kept = [
@@ -125,33 +143,18 @@ def _together(parts: Sequence[Part], known: _Known) -> list[Part]:
     return chosen
 
 
-def _waits_for_itself(part: Part, parts: Sequence[Part]) -> bool:
+def _waits_for_itself(part: Part, reading: Mapping[Part, Sequence[Part]]) -> bool:
     """Whether what a part does in a step depends in the same step on what it does."""
     seen: list[Part] = []
-    found = _read_at_once(part, parts)
+    found = list(reading.get(part, ()))
     while found:
         one = found.pop()
         if one == part:
             return True
         if one not in seen:
             seen.append(one)
-            found += _read_at_once(one, parts)
+            found += reading.get(one, ())
     return False
-
-
-def _read_at_once(part: Part, parts: Sequence[Part]) -> list[Part]:
-    """The parts whose outputs appear in what this one promises of the same step."""
-    owned = outputs(part)
-    read = {name for one in _stepwise(part, is_assumed=False) for name in _of_the_step(one, owned)}
-    return [one for one in parts if one != part and read & outputs(one)]
-
-
-def _of_the_step(conjunct: Conjunct, owned: Set[str]) -> Iterable[str]:
-    """Variables whose value in a step has a say in what the owned ones are in the same step."""
-    found = f.variables(conjunct.formula)
-    if conjunct.class_ is Class.INIT or any(o.name in owned and not o.primed for o in found):
-        return {one.name for one in found}
-    return {one.name for one in found if one.primed}
 
 
 def outputs(part: Part) -> set[str]:

@@ -53,6 +53,14 @@ class Runs:
             self._fair = self.fair_within(self.reachable)
         return self._fair
 
+    @property
+    def endless(self) -> Node:
+        """States, reachable or not, from which steps go on for ever."""
+        found = self.manager.true
+        while (fewer := found & self.before(found)) != found:
+            found = fewer
+        return found
+
     def fair_within(self, states: Node) -> Node:
         """States from which a fair run goes on for ever without leaving ``states``."""
         found = states

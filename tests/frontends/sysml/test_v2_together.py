@@ -1,0 +1,61 @@
+"""Blocks with parts: the rules about them, and the words of the verdict."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.diagnostics import Sink, catalogue
+from sysmlc.logic.composite import Composite
+from sysmlc.passes import pipeline
+from sysmlc.synthesis import Limits, together
+from sysmlc.synthesis.decide import Options
+
+CODES = ("SM595", "SM596", "SM597", "SM598")
+
+
+def checked(text, limits=None):
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    graph, sink = reading.graph, Sink()
+    options = Options("", limits or Limits())
+    made = graph.derived(Composite)
+    results = together.check_together(made, lambda it: graph.subject(graph[it]), sink, options)
+    return list(results), list(sink)
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
+    rule = catalogue()[code]
+    assert code in [one.rule.code for one in checked(rule.wrong)[1]]
+    assert checked(rule.right)[1] == []
+
+
+def test_what_nothing_promises_is_told_with_a_run():
+    (result,), found = checked(together.OPEN.wrong)
+    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert [one.rule.code for one in found] == ["SM595", "SM597"]
+    assert found[0].message == (
+        "part 'picker' of 'Line::Cell' assumes 'feeder.ready', which nothing around it promises "
+        "('Takes' assumes it)"
+    )
+    assert found[0].notes[0].startswith("step 1: feeder.ready=false")
+    assert [one.broken.text for one in result.witnesses] == [
+        "'Takes' assumes it.",
+        "'Works' demands it.",
+    ]
+
+
+def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
+    for rule, words in ((together.OPEN, "do not fit"), (together.BREAK, "fit")):
+        silent = rule.wrong.replace("subject cell : Cell", "subject cell : Other").replace(
+            "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
+        )
+        (result,), _ = checked(silent)
+        assert result.text() == f"Line::Cell: its 2 parts {words} together"
+
+
+def test_what_takes_too_long_is_not_decided():
+    (result,), (told,) = checked(together.BREAK.right, Limits(nodes=1))
+    assert result.text() == "Line::Cell: its parts are not put together"
+    assert told.message == (
+        "the parts of 'Line::Cell' are not put together: the limit of 1 nodes was reached"
+    )

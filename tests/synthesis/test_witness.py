@@ -1,0 +1,74 @@
+"""Runs for people: lines that say what changes, diagrams that PlantUML draws."""
+
+import pytest
+from contracts_in_lines import contract
+
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
+from sysmlc.logic.ltl import parse_formula
+from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.witness import Witness, diagram, files, lines
+
+FEEDER = contract("env power: bool\nsys ready: bool")
+PICKER = contract("env ready: bool\nsys arm: 0..3")
+RUN = Trace(
+    (
+        {"power": True, "ready": False, "arm": 0},
+        {"power": True, "ready": True, "arm": 1},
+        {"power": True, "ready": True, "arm": 1},
+    ),
+    1,
+)
+BROKEN = Conjunct(parse_formula("!ready", {"ready": BooleanDomain()}), Class.LIVENESS, "")
+WITNESS = Witness("Line::Cell", BROKEN, RUN, (("feeder", FEEDER), ("picker", PICKER)))
+
+
+def test_a_run_shows_only_what_changes_and_where_it_goes_on():
+    assert list(lines(RUN)) == [
+        "step 1: power=true, ready=false, arm=0",
+        "step 2: ready=true, arm=1",
+        "step 3: nothing changes",
+        "then again from step 2",
+    ]
+
+
+def test_a_long_run_is_cut():
+    shown = list(lines(Trace(tuple({"n": number} for number in range(30)), 0)))
+    assert shown[-2:] == ["and 18 more", "then again from step 1"]
+    assert len(shown) == 14
+
+
+def test_inputs_are_messages_and_what_nobody_reads_is_an_invariant():
+    assert diagram(WITNESS).splitlines() == [
+        "@startuml",
+        "title Line::Cell\\nnot kept: G F (!ready)",
+        "hide footbox",
+        "participant environment as p0",
+        'participant "feeder" as p1',
+        'participant "picker" as p2',
+        "== step 1 ==",
+        "p0 -> p1 : power=true",
+        "p1 -> p2 : ready=false",
+        "hnote over p2 : arm=0",
+        "group again and again",
+        "== step 2 ==",
+        "p1 -> p2 : ready=true",
+        "hnote over p2 : arm=1",
+        "== step 3 ==",
+        "end",
+        "@enduml",
+    ]
+
+
+def test_the_runs_of_a_component_are_numbered():
+    other = Witness("Line::Belt", BROKEN, RUN, WITNESS.parties)
+    assert [name for name, _ in files([WITNESS, other, WITNESS])] == [
+        "Line.Cell.run1.puml",
+        "Line.Cell.run2.puml",
+        "Line.Belt.run1.puml",
+    ]
+
+
+@pytest.mark.plantuml
+def test_plantuml_draws_them(plantuml):
+    drawn = plantuml.render({"run": diagram(WITNESS)})["run"]
+    assert all(name in drawn for name in (b"environment", b"feeder", b"picker", b"arm=1"))
