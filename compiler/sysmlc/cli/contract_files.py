@@ -46,7 +46,7 @@ def chosen(
     from sysmlc.cli.session import fail
     from sysmlc.suggest import did_you_mean
 
-    names = [one.component for one in (*contracts, *composites)]
+    names = [one.component for one in contracts] + [one.component for one in composites]
     found = tuple(one for one in contracts if component in ("", one.component))
     if component and component not in names:
         fail(f"no component '{component}'; {did_you_mean(component, names)}")

@@ -108,8 +108,8 @@ def _checked(
     alone = list(check(contracts, read.contracts, read.place, read.sink, options))
     together = list(check_together(composites, read.place, read.sink, options))
     if output is not None:
-        runs = (run for one in (*alone, *together) for run in one.witnesses)
-        write(files(runs), output)
+        runs = [*(one.witnesses for one in alone), *(one.witnesses for one in together)]
+        write(files(run for some in runs for run in some), output)
     show(read, settings, (*map(_line, alone), *(one.text() for one in together)))
     is_undecided = any(one.verdict.is_realizable is None for one in alone)
     found = (*read.sink, *(one.diagnostic for one in read.findings))
