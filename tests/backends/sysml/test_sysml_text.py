@@ -508,6 +508,20 @@ def test_a_row_of_types_ends_however_long_it_is():
     assert lines[-4:-2] == ["ref f1999 :> f2000;", "part f2000;"]
 
 
+def test_rows_of_associations_of_the_next_two_are_written_however_long_they_are():
+    """Each has two ends: who followed every way would take twice as long for each more."""
+    rows = (
+        f'  Association a{n} "a{n}"\n    -> end a{n}.x a{n}.y\n'
+        f'    Property a{n}.x "x"\n      -> typed-by a{n + 1}\n'
+        f'    Property a{n}.y "y"\n      -> typed-by a{n + 2}\n'
+        for n in range(60)
+    )
+    ports = "".join(f'  Class a{n} "a{n}" role="interface block"\n' for n in (60, 61))
+    lines = lines_of('Package p "P"\n' + "".join(rows) + ports)
+    assert "interface def a59 {" in lines
+    assert "connection def a0 {" in lines
+
+
 def test_associations_of_one_another_are_written():
     rows = [
         f'  Association {one} "{one}"\n'

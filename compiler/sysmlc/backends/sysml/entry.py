@@ -53,6 +53,8 @@ class Plan:
     """Ids of elements that are not public in the model and that the text refers to."""
     applied: dict[str, Entry] = field(default_factory=dict)
     """Metadata definition of each application of a stereotype, by its id."""
+    typing: dict[str, Shape | None] = field(default_factory=dict)
+    """How elements are written that others are typed by, by id."""
 
     @property
     def depth(self) -> int:

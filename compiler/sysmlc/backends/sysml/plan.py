@@ -84,7 +84,7 @@ def _entry(plan: Plan, element: Element, parent: Entry | None) -> Entry | None:
         return twin
     if _is_only_region(plan.graph, element):
         return parent
-    shape = shape_of(plan.graph, element)
+    shape = shape_of(plan.graph, element, plan.typing)
     if shape is None:
         return parent
     name = "" if shape.keyword in _NAMELESS else element.name

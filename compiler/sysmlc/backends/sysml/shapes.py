@@ -1,6 +1,6 @@
 """From kinds and roles to the keywords of definitions and usages (SysML v2, 8.2.2)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import type_of
@@ -104,35 +104,40 @@ _USED_BY_KEYWORD = {
     "occurrence": "occurrence",
 }
 """Keyword of features by that of the definition, or behaviour, that types them; else ``ref``."""
-_TYPES = 12
-"""Features typed by features: so many decide how the first one is written."""
 HOLDERS = (Kind.PACKAGE, Kind.PROFILE)
 
 
-def shape_of(graph: Graph, element: Element) -> Shape | None:
-    """How an element is written as a member of a namespace; None for what is no member."""
+_Known = dict[str, Shape | None]
+"""How elements are written that others are typed by, by id: each is looked at once."""
+
+
+def shape_of(graph: Graph, element: Element, known: _Known) -> Shape | None:
+    """How an element is written as a member of a namespace; None for what is no member.
+
+    ``known`` is what was found of types before, in the same graph.
+    """
     kind = element.kind
     if kind in _DEFINITIONS:
         role = element.role if kind in _BY_ROLE else ""
         return Shape(_ROLES.get(role, _DEFINITIONS[kind]))
     write = _BY_KIND.get(kind)
-    return _MEMBERS.get(kind) if write is None else write(graph, element)
+    return _MEMBERS.get(kind) if write is None else write(graph, element, known)
 
 
 _BY_ROLE = (Kind.CLASS, Kind.DATA_TYPE, Kind.COMPONENT, Kind.PACKAGE)
 
 
-def _property(graph: Graph, element: Element) -> Shape:
-    keyword = feature_keyword(graph, element)
+def _property(graph: Graph, element: Element, known: _Known) -> Shape:
+    keyword = _keyword(graph, element, known)
     flows = "direction" in element.attrs
     return Shape("item" if flows and keyword == "part" else keyword)
 
 
-def _port(graph: Graph, element: Element) -> Shape:
-    return Shape("part" if is_part_port(graph, element) else "port")
+def _port(graph: Graph, element: Element, known: _Known) -> Shape:
+    return Shape("part" if _is_part(graph, element, known) else "port")
 
 
-def _control(graph: Graph, element: Element) -> Shape | None:
+def _control(graph: Graph, element: Element, _known: _Known) -> Shape | None:
     """Control nodes; a final node is a member where it ends other flows, or is one of several."""
     if element.subkind == "initial":
         return Shape("start", is_named=False)
@@ -149,16 +154,16 @@ def _is_apart(graph: Graph, element: Element) -> bool:
     return "fork" in found or found.count("final") > 1
 
 
-def _pseudostate(_graph: Graph, element: Element) -> Shape | None:
+def _pseudostate(_graph: Graph, element: Element, _known: _Known) -> Shape | None:
     return None if element.subkind == "initial" else Shape("state")
 
 
-def _object_node(graph: Graph, element: Element) -> Shape:
-    keyword = feature_keyword(graph, element)
+def _object_node(graph: Graph, element: Element, known: _Known) -> Shape:
+    keyword = _keyword(graph, element, known)
     return Shape(keyword if keyword in ("attribute", "item", "occurrence") else "item")
 
 
-def behaviour_shape(graph: Graph, element: Element) -> Shape:
+def _behaviour(graph: Graph, element: Element, _known: _Known) -> Shape:
     """A behaviour of a package is a definition, one of anything else a usage of its owner.
 
     Only a usage may speak of the features of its owner without a path to them.
@@ -171,9 +176,9 @@ def behaviour_shape(graph: Graph, element: Element) -> Shape:
     return Shape(f"{keyword} def" if is_definition else keyword, is_named=is_definition)
 
 
-def feature_keyword(graph: Graph, feature: Element) -> str:
+def _keyword(graph: Graph, feature: Element, known: _Known) -> str:
     """Keyword of a feature by its type, else by its role."""
-    shape = _shape_of_type(graph, feature, type_of(graph, feature))
+    shape = _shape_of_type(graph, feature, type_of(graph, feature), known)
     if shape is not None:
         return _USED_BY_KEYWORD.get(shape.keyword, "ref")
     role = feature.role
@@ -183,17 +188,39 @@ def feature_keyword(graph: Graph, feature: Element) -> str:
     return "attribute" if is_value else "ref"
 
 
-def _shape_of_type(graph: Graph, element: Element, type_: Element | None) -> Shape | None:
-    """How the type of an element is written; None where types lead in a circle, or too far."""
+def _shape_of_type(
+    graph: Graph, element: Element, type_: Element | None, known: _Known
+) -> Shape | None:
+    """How the type of an element is written; None where types lead in a circle."""
     if type_ is None or type_.kind in _DEFINITIONS:
-        return None if type_ is None else shape_of(graph, type_)
-    level = [element]
-    for _ in range(_TYPES):
-        found = (type_ for one in level for type_ in _types(graph, one))
-        level = list({one.id: one for one in found if one.kind not in _DEFINITIONS}.values())
-        if not level:
-            return shape_of(graph, type_)
-    return None
+        return None if type_ is None else shape_of(graph, type_, known)
+    if type_.id not in known:
+        for one in _types_of_types(graph, element, known):
+            known[one.id] = shape_of(graph, one, known)
+    return known.get(type_.id)
+
+
+def _types_of_types(graph: Graph, element: Element, known: _Known) -> list[Element]:
+    """What decides how an element is written and is not known yet, each behind its own types.
+
+    What leads into a circle is known to be nothing then.
+    """
+    found: dict[str, Element] = {}
+    open_: dict[str, Iterator[Element]] = {element.id: iter(_types(graph, element))}
+    way = [element]
+    while way:
+        one = next(open_[way[-1].id], None)
+        if one is None:
+            done = way.pop()
+            del open_[done.id]
+            found[done.id] = done
+        elif one.id in open_:
+            known.update(dict.fromkeys(list(open_)[1:]))
+            return []
+        elif one.kind not in _DEFINITIONS and not (one.id in found or one.id in known):
+            open_[one.id] = iter(_types(graph, one))
+            way.append(one)
+    return list(found.values())[:-1]
 
 
 def _types(graph: Graph, element: Element) -> list[Element]:
@@ -207,38 +234,42 @@ def _types(graph: Graph, element: Element) -> list[Element]:
 
 def is_part_port(graph: Graph, port: Element) -> bool:
     """Whether a port is written as a part: it is typed by a block, and nothing only flows."""
+    return _is_part(graph, port, {})
+
+
+def _is_part(graph: Graph, port: Element, known: _Known) -> bool:
     if port.role == "flow port":
         return False
-    shape = _shape_of_type(graph, port, type_of(graph, port))
+    shape = _shape_of_type(graph, port, type_of(graph, port), known)
     return shape is not None and shape.keyword == "part def"
 
 
-def _parameter(graph: Graph, element: Element) -> Shape | None:
+def _parameter(graph: Graph, element: Element, known: _Known) -> Shape | None:
     if element.kind is Kind.ACTIVITY_PARAMETER and graph.targets(element, Edge.REFERENCES):
         return None
-    keyword = feature_keyword(graph, element)
+    keyword = _keyword(graph, element, known)
     return Shape("item" if keyword == "part" else keyword)
 
 
-def _association(graph: Graph, element: Element) -> Shape:
+def _association(graph: Graph, element: Element, known: _Known) -> Shape:
     ends = (type_of(graph, end) for end in graph.targets(element, Edge.END))
     types = {"" if one is None else one.id: one for one in ends}
-    shapes = [_shape_of_type(graph, element, one) for one in types.values()]
+    shapes = [_shape_of_type(graph, element, one, known) for one in types.values()]
     joins_ports = bool(shapes) and all(one and one.keyword == "port def" for one in shapes)
     return Shape("interface def" if joins_ports else "connection def", is_named=False)
 
 
-def _instance(graph: Graph, element: Element) -> Shape:
+def _instance(graph: Graph, element: Element, known: _Known) -> Shape:
     if element.role in ("unit", "quantity kind"):
         return Shape("attribute")
     type_ = graph.target(element, Edge.INSTANCE_OF)
-    shape = _shape_of_type(graph, element, type_)
+    shape = _shape_of_type(graph, element, type_, known)
     keyword = "part" if shape is None else _USED_BY_KEYWORD.get(shape.keyword, "ref")
     return Shape(keyword, is_named=element.subkind != "part")
 
 
-_BY_KIND: dict[Kind, Callable[[Graph, Element], Shape | None]] = {
-    **dict.fromkeys(_BEHAVIOURS, behaviour_shape),
+_BY_KIND: dict[Kind, Callable[[Graph, Element, _Known], Shape | None]] = {
+    **dict.fromkeys(_BEHAVIOURS, _behaviour),
     Kind.PROPERTY: _property,
     Kind.FLOW_PROPERTY: _property,
     Kind.PARAMETER: _parameter,
