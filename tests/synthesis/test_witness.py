@@ -6,7 +6,7 @@ from contracts_in_lines import contract
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
 from sysmlc.logic.ltl import parse_formula
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.witness import Witness, diagram, files, lines
+from sysmlc.synthesis.witness import Party, Witness, diagram, files, lines
 
 FEEDER = contract("env power: bool\nsys ready: bool")
 PICKER = contract("env ready: bool\nsys arm: 0..3")
@@ -19,7 +19,7 @@ RUN = Trace(
     1,
 )
 BROKEN = Conjunct(parse_formula("!ready", {"ready": BooleanDomain()}), Class.LIVENESS, "")
-WITNESS = Witness("Line::Cell", BROKEN, RUN, (("feeder", FEEDER), ("picker", PICKER)))
+WITNESS = Witness("Line::Cell", BROKEN, RUN, (Party("feeder", FEEDER), Party("picker", PICKER)))
 
 
 def test_a_run_shows_only_what_changes_and_where_it_goes_on():

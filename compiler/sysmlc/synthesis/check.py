@@ -13,7 +13,7 @@ from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.manager import LimitError, Manager
-from sysmlc.synthesis.witness import Witness, lines
+from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
 
 SUFFIX = ".requirements"
@@ -148,7 +148,7 @@ def _failures(
 
 
 def _witness(behaviour: Contract, failure: Failure) -> Witness:
-    parties = ((behaviour.component, behaviour),)
+    parties = (Party(behaviour.component, behaviour),)
     return Witness(behaviour.component, failure.conjunct, failure.trace, parties)
 
 

@@ -15,7 +15,7 @@ from sysmlc.synthesis.check import new_manager, said, why_not
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.game import OutsideGr1Error
 from sysmlc.synthesis.manager import LimitError
-from sysmlc.synthesis.witness import Parties, Witness, lines
+from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
 
 
@@ -181,7 +181,7 @@ def _report_broken(composite: Composite, failure: Failure, place: Place, sink: S
 
 
 def _witnesses(composite: Composite, found: Composition) -> Iterator[Witness]:
-    parties = tuple((one.name, one.contract) for one in composite.parts)
+    parties = tuple(Party(one.name, one.contract) for one in composite.parts)
     for one in found.open:
         if one.trace is not None:
             yield _witness(composite, one.conjunct, one.trace, parties)
@@ -189,5 +189,7 @@ def _witnesses(composite: Composite, found: Composition) -> Iterator[Witness]:
         yield _witness(composite, failure.conjunct, failure.trace, parties)
 
 
-def _witness(composite: Composite, broken: Conjunct, trace: Trace, parties: Parties) -> Witness:
+def _witness(
+    composite: Composite, broken: Conjunct, trace: Trace, parties: tuple[Party, ...]
+) -> Witness:
     return Witness(composite.component, broken, trace, parties)

@@ -15,8 +15,14 @@ _SHOWN = 12
 _ENVIRONMENT = "environment"
 
 Values = Mapping[str, Literal]
-Parties = tuple[tuple[str, Contract], ...]
-"""Names of those who act, with the contracts that say what each of them decides."""
+
+
+@dataclass(frozen=True, slots=True)
+class Party:
+    """Who acts in a run: a name, and the contract that says what it decides."""
+
+    name: str
+    contract: Contract
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +32,7 @@ class Witness:
     component: str
     broken: Conjunct
     trace: Trace
-    parties: Parties
+    parties: tuple[Party, ...]
 
 
 def changes(trace: Trace) -> Iterator[Values]:
@@ -44,7 +50,8 @@ def lines(trace: Trace) -> Iterator[str]:
             yield f"and {len(trace.steps) - _SHOWN} more"
             break
         yield f"step {number}: {_pairs(changed, changed) or 'nothing changes'}"
-    yield f"then again from step {trace.loop + 1}"
+    is_ended = trace.loop == len(trace.steps)
+    yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
 
 
 def files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
@@ -58,16 +65,23 @@ def files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
 
 
 def diagram(witness: Witness) -> str:
-    """The run as a sequence diagram: inputs are messages, what nobody reads is an invariant."""
-    parties = witness.parties
+    """The run as a sequence diagram, with what is broken as its title."""
+    broken = label(_formula(witness.broken))
+    title = f"{label(witness.component)}\\nnot kept: {broken}"
+    return sequence(title, witness.trace, witness.parties)
+
+
+def sequence(title: str, trace: Trace, parties: Sequence[Party]) -> str:
+    """A run as a sequence diagram: inputs are messages, what nobody reads is an invariant."""
     head = [
         "@startuml",
-        f"title {label(witness.component)}\\nnot kept: {label(_formula(witness.broken))}",
+        f"title {title}",
         "hide footbox",
         f"participant {_ENVIRONMENT} as p0",
-        *(f'participant "{plain(name)}" as p{at}' for at, (name, _) in enumerate(parties, 1)),
+        *(f'participant "{plain(one.name)}" as p{at}' for at, one in enumerate(parties, 1)),
     ]
-    return "\n".join((*head, *_steps(witness), "@enduml", ""))
+    contracts = [one.contract for one in parties]
+    return "\n".join((*head, *_steps(trace, contracts), "@enduml", ""))
 
 
 _ALWAYS = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F ", Class.OTHER: ""}
@@ -79,14 +93,14 @@ def _formula(conjunct: Conjunct) -> str:
     return f"{operators}({formula})" if operators else formula
 
 
-def _steps(witness: Witness) -> Iterator[str]:
-    loop = witness.trace.loop
-    for number, changed in enumerate(changes(witness.trace)):
-        if number == loop:
+def _steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]:
+    for number, changed in enumerate(changes(trace)):
+        if number == trace.loop:
             yield "group again and again"
         yield f"== step {number + 1} =="
-        yield from _told(changed, [contract for _, contract in witness.parties])
-    yield "end"
+        yield from _told(changed, contracts)
+    is_ended = trace.loop == len(trace.steps)
+    yield "note over p1 : no answer is left" if is_ended else "end"
 
 
 def _told(changed: Values, contracts: Sequence[Contract]) -> Iterator[str]:

@@ -10,7 +10,11 @@ from sysmlc.values import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """Values of all variables in each step; after the last one it goes on at ``loop``."""
+    """Values of all variables in each step; after the last one it goes on at ``loop``.
+
+    A run that ends, since somebody has no answer, has ``loop`` behind its last step, in which
+    what should have been answered has no value.
+    """
 
     steps: tuple[Mapping[str, Literal], ...]
     loop: int
