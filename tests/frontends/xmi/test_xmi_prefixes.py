@@ -7,7 +7,7 @@ from reading_xmi import magicdraw, papyrus, read, source
 
 from dialects.magicdraw import write_xml
 from dialects.random_models import random_model
-from sysmlc.frontends.xmi import document
+from sysmlc.frontends.xmi import parsing, pieces
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.prefixes import IrregularError
 from sysmlc.sources import SourceError
@@ -17,8 +17,13 @@ UML = 'xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"'
 CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="c" name="C"/>'
 
 
+@pytest.fixture(autouse=True)
+def _by_the_parser(monkeypatch):
+    monkeypatch.setattr(pieces, "fill", lambda *_: None)
+
+
 def columns(one):
-    found = document.read(one)
+    found = parsing.read(one)
     return {name: getattr(found, name) for name in Document.__slots__}
 
 
@@ -29,16 +34,16 @@ def namespaces_of_the_parser(monkeypatch, one):
         raise IrregularError
 
     with monkeypatch.context() as patch:
-        patch.setattr(document, "fill_swiftly", refuse)
+        patch.setattr(parsing, "fill_swiftly", refuse)
         return columns(one)
 
 
 def is_swift(monkeypatch, one):
     """Whether the parser did not have to look for namespaces."""
     with monkeypatch.context() as patch:
-        patch.setattr(document, "fill", None)
+        patch.setattr(parsing, "fill", None)
         try:
-            document.read(one)
+            parsing.read(one)
         except TypeError:
             return False
     return True

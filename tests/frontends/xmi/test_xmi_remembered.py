@@ -4,7 +4,7 @@ import pytest
 
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import FRONTEND, document, remembered
+from sysmlc.frontends.xmi import FRONTEND, parsing, remembered
 from sysmlc.ir import Graph
 from sysmlc.ir.text import print_text
 from sysmlc.sources import Source
@@ -40,13 +40,13 @@ def compiled(cache, *sources):
 def parsed(monkeypatch):
     """Names of the files that were really parsed."""
     names = []
-    real = document.read
+    real = parsing.read
 
     def read(source):
         names.append(source.name)
         return real(source)
 
-    monkeypatch.setattr(document, "read", read)
+    monkeypatch.setattr(parsing, "read", read)
     return names
 
 

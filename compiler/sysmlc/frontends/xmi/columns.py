@@ -5,14 +5,12 @@ The handlers here are called for every element of a file: they do the least that
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.makers import NOTHING
 from sysmlc.frontends.xmi.prefixes import IrregularError, Prefixes
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.xml import parse, parser, plain_parser, too_deep
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.document import Document
 
 _DRAWINGS = frozenset({"diagramRepresentation", "filePart"})
 """Elements of MagicDraw's extensions whose content is only counted: up to 87 % of a file."""
@@ -20,10 +18,8 @@ _DRAWINGS = frozenset({"diagramRepresentation", "filePart"})
 _IRREGULAR = "MDFoundation:MDExtension"
 """What MagicDraw attaches is another document of XMI, whose prefixes mean something else."""
 
-_SPECIAL = _DRAWINGS | {_IRREGULAR}
-
-_NOTHING: dict[str, str] = {}
-"""Attributes of rows that have none; nobody changes attributes."""
+SPECIAL = _DRAWINGS | {_IRREGULAR}
+"""Elements whose content is no part of the columns as other content is."""
 
 _TOP = [-1]
 
@@ -31,7 +27,7 @@ _Start = Callable[[str, dict[str, str]], None]
 """Handler of an element's start; takes its name and its attributes."""
 
 
-def fill(document: "Document", source: Source) -> tuple[str, ...]:
+def fill(document: Document, source: Source) -> tuple[str, ...]:
     """Fill the columns; return the namespaces that the file declares outside drawings.
 
     Raises SourceError.
@@ -41,7 +37,7 @@ def fill(document: "Document", source: Source) -> tuple[str, ...]:
     return tuple(filling.declared)
 
 
-def fill_swiftly(document: "Document", source: Source, prefixes: Prefixes) -> tuple[str, ...]:
+def fill_swiftly(document: Document, source: Source, prefixes: Prefixes) -> tuple[str, ...]:
     """The same for files as nearly all are; some attributes keep their prefixes.
 
     Raises SourceError or IrregularError for any other: faults, namespaces declared below the
@@ -58,7 +54,7 @@ class _Filling:
     """One run of the parser over a file; the swift one knows what prefixes mean."""
 
     def __init__(
-        self, document: "Document", source: Source, prefixes: Prefixes | None = None
+        self, document: Document, source: Source, prefixes: Prefixes | None = None
     ) -> None:
         self.breaks: list[tuple[int, int]] = []
         """Rows after which content is hidden, and the number of elements hidden so far."""
@@ -110,11 +106,11 @@ class _Filling:
             following = row + 1
             add_ordinal(row)
             add_tag(tag)
-            add_attributes(values or _NOTHING)
+            add_attributes(values or NOTHING)
             add_parent(stack[-1])
             add_end(row)
             push(row)
-            if tag in _SPECIAL or len(stack) > deepest:
+            if tag in SPECIAL or len(stack) > deepest:
                 self._special(tag)
 
         def end(_tag: str) -> None:

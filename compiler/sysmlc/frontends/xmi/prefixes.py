@@ -7,12 +7,9 @@ the columns at once: ``namespace}local``.
 """
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from sysmlc.frontends.xmi.document import Document
 from sysmlc.sources.xml import SEPARATOR
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.document import Document
 
 _XML = {"xml": "http://www.w3.org/XML/1998/namespace"}
 _OFTEN = ("id", "type", "idref", "uuid", "label", "version")
@@ -59,7 +56,7 @@ class Prefixes:
             raise IrregularError
         return f"{namespace}{SEPARATOR}{local}"
 
-    def expand(self, document: "Document") -> bool:
+    def expand(self, document: Document) -> bool:
         """Give what has kept its prefix its namespace; whether attributes have changed.
 
         Raises IrregularError.

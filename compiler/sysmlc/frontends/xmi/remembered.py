@@ -7,11 +7,12 @@ from pathlib import Path
 
 from sysmlc import __version__
 from sysmlc.cache import Cache
-from sysmlc.frontends.xmi import columns, document, prefixes
+from sysmlc.frontends.xmi import columns, document, indexing, parsing, pieces, prefixes, tags
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.sources import Source
 
 _COLUMNS = tuple(name for name in Document.__slots__ if name != "name")
+_MODULES = (columns, document, indexing, parsing, pieces, prefixes, tags)
 _SMALL = 1 << 15
 """Bytes below which parsing costs no more than looking into the cache."""
 
@@ -19,11 +20,11 @@ _SMALL = 1 << 15
 def read(source: Source, cache: Cache | None) -> Document:
     """The columns of the file, from the cache when it has them. Raises SourceError."""
     if cache is None or len(source.data) < _SMALL:
-        return document.read(source)
+        return parsing.read(source)
     key = f"{source.sha256}-xmi-{_code()}"
     found = _from_entry(source.name, cache.get(key))
     if found is None:
-        found = document.read(source)
+        found = parsing.read(source)
         cache.put(key, _entry(found))
     return found
 
@@ -50,6 +51,9 @@ def _from_entry(name: str, entry: bytes | None) -> Document | None:
 
 def _code() -> str:
     """What the form of an entry depends on: Python, our version, and the code that makes it."""
-    files = (Path(str(module.__file__)).stat() for module in (columns, document, prefixes))
+    files = (
+        Path(str(module.__file__)).stat()
+        for module in (columns, indexing, parsing, pieces, prefixes, tags)
+    )
     stamps = "-".join(f"{stat.st_size:x}-{stat.st_mtime_ns:x}" for stat in files)
     return f"{sys.version_info.major}.{sys.version_info.minor}-{__version__}-{stamps}"
