@@ -21,11 +21,11 @@ from sysmlc.synthesis.witness import lines
 
 LAMP = """
     env go: bool
-    sys at: 0..2
+    sys at: 0..1
     promise at first at=0
     promise always at'=at+1 | at'=at
     promise always go' -> at'=at
-    promise recurs at=2
+    promise recurs at=1
 """
 STUCK = """
     env go: bool
@@ -168,18 +168,18 @@ def test_the_game_says_what_an_answer_breaks_and_how_it_ends():
     assert has_ended
     assert said[1:] == [
         "step 1: go=false",
-        "That breaks 'at=0'.",
+        "That breaks 'at=0' (at=0).",
         "     at=0",
         "step 2: go=true",
         "     at=0",
-        "'at' is one of 0, 1, 2",
+        "'at' is one of 0, 1",
         "'up' is not yours; yours are at",
-        "That breaks 'go' -> at'=at'.",
+        "That breaks 'go' -> at'=at' (go' -> at'=at).",
         "     at=0",
         "step 3: nothing changes",
         "     at=0",
         "Step 3 is step 2 again, and the environment can go on so for ever:\n"
-        "'at=2' does not come about again. You have lost.",
+        "'at=1' does not come about again. You have lost.",
     ]
 
 

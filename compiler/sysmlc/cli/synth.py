@@ -8,7 +8,7 @@ import click
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
@@ -26,6 +26,7 @@ Examples:
   sysmlc synth gate.contract.json --realizable
   sysmlc synth gate.contract.json -o out
   sysmlc synth plant.uml -c Plant::Gate --realizable
+  sysmlc synth plant.uml -c Plant::Gate --play
   sysmlc synth amba.tlsf --realizable --time-limit 60
 
 Exit codes: 0 realizable, 1 unrealizable, 2 outside GR(1), beyond a limit,
@@ -39,8 +40,9 @@ no machine, or the work could not be done.""",
     "--output",
     type=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
-    help="Write the machines there.",
+    help="Write the machines there, and what defeats a contract that cannot be kept.",
 )
+@click.option("--play", "is_played", is_flag=True, help="Play against what defeats the contract.")
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
 @click.option(
     "--engine",
@@ -60,6 +62,7 @@ def command(
     component: str,
     is_decided_only: bool,
     output: Path | None,
+    is_played: bool,
     language: str,
     engine: str | None,
     seconds: float,
@@ -71,7 +74,8 @@ def command(
 
     FILE is a model or a contract, in one of the forms of docs/synthesis.md. Each machine is
     checked against its contract; with -o it is written, as JSON and, when it is small, as a
-    diagram in PlantUML.
+    diagram in PlantUML. Of a contract that cannot be kept -o writes how an environment defeats
+    it, as diagrams and in SysML v2; with --play you are the component and see for yourself.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
@@ -88,6 +92,8 @@ def command(
     read = read_contracts(file, language, config, settings)
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
+        if is_played:
+            ctx.exit(_played(read, component, options))
         if is_decided_only:
             ctx.exit(_decided(read, component, settings, options))
         ctx.exit(_synthesised(read, component, settings, options, output))
@@ -112,27 +118,55 @@ def _synthesised(
     options: "Options",
     output: Path | None,
 ) -> int:
-    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.contract_files import chosen, write
     from sysmlc.synthesis.synthesise import synthesised
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
     made = [synthesised(one, read.place, read.sink, options) for one in contracts]
     if output is not None:
-        _write(made, output)
+        write((*_machines(made), *_counters(read, made, options)), output)
     return _told(read, settings, made)
 
 
-def _write(made: "Sequence[Synthesis]", out: Path) -> None:
-    """Write each machine there is; ends the process when a file cannot be written."""
-    from sysmlc.cli.session import fail
-    from sysmlc.output import write_if_changed
+def _machines(made: "Sequence[Synthesis]") -> "Iterable[tuple[str, str]]":
     from sysmlc.synthesis.machine_text import files
 
+    return files((one.machine, one.contract) for one in made if one.machine)
+
+
+def _counters(
+    read: "ContractFile", made: "Sequence[Synthesis]", options: "Options"
+) -> "Iterable[tuple[str, str]]":
+    """What defeats the contracts that cannot be kept; of what is beyond the limits nothing."""
+    from sysmlc.synthesis.counter.defeat import defeats
+    from sysmlc.synthesis.counter.files import files
+
+    lost = [one.contract for one in made if one.verdict.is_realizable is False]
+    return files(defeats(lost, read.place, read.sink, options), lambda id: read.place(id).name)
+
+
+def _played(read: "ContractFile", component: str, options: "Options") -> int:
+    """Play against what defeats the one contract that is chosen."""
+    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.session import fail
+    from sysmlc.synthesis import LimitError
+    from sysmlc.synthesis.counter.defeat import environment_of
+    from sysmlc.synthesis.counter.environment import NotLostError
+    from sysmlc.synthesis.counter.play import Player
+    from sysmlc.synthesis.game import OutsideGr1Error
+
+    contracts = chosen(read.contracts, component)
+    if len(contracts) != 1:
+        fail(f"{len(contracts)} contracts are in the file: choose one with -c")
     try:
-        for name, text in files((one.machine, one.contract) for one in made if one.machine):
-            write_if_changed(out / name, text)
-    except OSError as problem:
-        fail(f"cannot write to '{out}': {problem.strerror}")
+        environment = environment_of(contracts[0], options)
+    except NotLostError:
+        click.echo(f"{contracts[0].component}: realizable, nothing defeats it")
+        return 0
+    except (LimitError, OutsideGr1Error) as problem:
+        fail(str(problem))
+    Player(environment, contracts[0], input, click.echo).play()
+    return 1
 
 
 def _told(

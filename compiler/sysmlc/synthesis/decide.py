@@ -1,16 +1,16 @@
 """Whether a contract can be kept: verdict, figures, and findings for what cannot be decided."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.logic.contract import Class, Conjunct, Contract
+from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.core import unrealizable_core
 from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
+from sysmlc.synthesis.reasons import reasons_of
 from sysmlc.synthesis.shift import shifted
 from sysmlc.synthesis.solve import Solution, solve_arena
 from sysmlc.values import dataclass
@@ -109,27 +109,6 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
         )
     figures = _figures(contract, game, solution)
     return Verdict(contract.component, solution.is_realizable, figures)
-
-
-def reasons_of(game: Game) -> Iterator[str]:
-    """The guarantees that cannot be kept together, a line each."""
-    try:
-        core = unrealizable_core(game)
-    except LimitError as problem:
-        yield f"which guarantees cannot be kept together is not known: {problem}"
-        return
-    known = {id(part.conjunct) for part in (*game.init_guarantees, *game.guarantees, *game.goals)}
-    whole = len(known - {id(None)})
-    yield (
-        f"these {len(core)} of {whole} guarantees cannot be kept together; "
-        "without any one of them the rest can:"
-    )
-    for one in core:
-        text = f" ({one.text})" if one.text not in ("", _said(one)) else ""
-        yield f"{_WHEN[one.class_]}: {_said(one)}{text}"
-
-
-_WHEN = {Class.INIT: "at first", Class.SAFETY: "always", Class.LIVENESS: "again and again"}
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:

@@ -1,0 +1,50 @@
+"""From contracts that cannot be kept to what defeats them."""
+
+from collections.abc import Iterable, Iterator
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.synthesis.counter.environment import Environment
+from sysmlc.synthesis.counter.machine import Counter, counter
+from sysmlc.synthesis.counter.ranks import lost
+from sysmlc.synthesis.decide import Options, Place
+from sysmlc.synthesis.game import make_game
+from sysmlc.synthesis.manager import LimitError, Manager
+
+NO_COUNTER = rule(
+    "SM549",
+    "counter-strategy-not-written",
+    Severity.WARNING,
+    "what defeats the contract of '{component}' is not written: {reached}",
+    why="A counter-strategy lists every answer that the component may give in every state.",
+    help="give more (--time-limit, --memory, --nodes), or play against it (--play)",
+    wrong="sysmlc synth wide.contract.json -o out --nodes 1000",
+    right="sysmlc synth wide.contract.json -o out",
+)
+
+
+def defeats(
+    contracts: Iterable[Contract], place: Place, sink: Sink, options: Options
+) -> Iterator[tuple[Counter, Contract]]:
+    """The counter-strategy of each contract, all of which cannot be kept.
+
+    Of one that is too large nothing is made, and that is reported (SM549).
+    """
+    for contract in contracts:
+        try:
+            yield counter(environment_of(contract, options), contract), contract
+        except LimitError as problem:
+            subject, reached = place(contract.origin), str(problem)
+            sink.report(NO_COUNTER, subject, component=contract.component, reached=reached)
+
+
+def environment_of(contract: Contract, options: Options) -> Environment:
+    """What the environment does to win.
+
+    Raises NotLostError when the contract can be kept, OutsideGr1Error, LimitError.
+    """
+    manager = Manager(options.engine, options.limits, options.progress)
+    game = make_game(reduced(contract).contract, manager)
+    with manager.guard():
+        return Environment(lost(game))
