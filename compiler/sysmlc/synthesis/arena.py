@@ -88,7 +88,7 @@ class Steps:
     _products: tuple[tuple[Owner, Product], ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._products = _products(self.arena.manager, self.arena.turns)
+        self._products = products(self.arena.manager, self.arena.turns)
 
     def controllable(self, target: Node) -> Node:
         """States from which the system can see to it that the target holds in the next one.
@@ -96,7 +96,14 @@ class Steps:
         Where the environment has no next input, that is so.
         """
         self.count += 1
-        return _played(self._products, self.arena.symbols.prime(target))
+        return played(self._products, self.arena.symbols.prime(target))
+
+    def nearer(self, reached: Node, winning: Node) -> Node:
+        """Those of the winning states that can force the next one to be reached."""
+        return self.controllable(reached) & winning
+
+    def confine(self, winning: Node) -> None:
+        """What is said from now on has to be right in these states only."""
 
     def escapable(self, target: Node) -> Node:
         """States from which the environment can see to it that the next one is in the target."""
@@ -106,14 +113,14 @@ class Steps:
         """Whether the system can start so that it comes to these states."""
         arena = self.arena
         target = arena.symbols.prime(winning) if arena.is_ahead else winning
-        return _played(_products(arena.manager, arena.start), target) == arena.manager.true
+        return played(products(arena.manager, arena.start), target) == arena.manager.true
 
 
-def _products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
+def products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
     return tuple((turn.owner, Product(manager, turn.parts, turn.bits)) for turn in turns)
 
 
-def _played(products: Collection[tuple[Owner, Product]], target: Node) -> Node:
+def played(products: Collection[tuple[Owner, Product]], target: Node) -> Node:
     """Where the turns can be played so that the target holds after them."""
     for owner, product in reversed(tuple(products)):
         target = product(target) if owner is Owner.SYSTEM else ~product(~target)

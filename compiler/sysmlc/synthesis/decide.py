@@ -90,7 +90,7 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
     manager = Manager(options.engine, options.limits, progress)
     try:
         game = make_game(reduced(contract).contract, manager)
-        with manager.guard():
+        with manager.guard(), manager.calm():
             arena = shifted(without_derived(game))
         solution = solve_arena(arena, is_complete=False)
     except OutsideGr1Error as problem:

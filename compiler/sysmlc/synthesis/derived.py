@@ -54,6 +54,16 @@ def _joined(manager: Manager, members: Iterable[Node]) -> Node:
     return found
 
 
+def _joined_while_small(manager: Manager, members: Iterable[Node]) -> Node | None:
+    """The conjunction, unless it grows beyond what is worth the looking on the way."""
+    found = manager.true
+    for member in members:
+        found = found & member
+        if len(found) > LARGE:
+            return None
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class _Definition:
     bits: Mapping[str, Node]
@@ -69,8 +79,8 @@ def _definition(game: Game, name: str) -> _Definition | None:
     is_input = symbols.variables[name].owner is Owner.ENVIRONMENT
     parts = _about(game, game.assumptions if is_input else game.guarantees, own)
     parts = [part for part in parts if _is_of_next_step(game, part.node)]
-    relation = _joined(manager, (part.node for part in parts))
-    if not parts or len(relation) > LARGE:
+    relation = _joined_while_small(manager, (part.node for part in parts))
+    if not parts or relation is None:
         return None
     others = [one for one in symbols.names(relation, primed=True) if one != name]
     care = in_range(symbols, others, primed=True)

@@ -25,6 +25,8 @@ _START = 1 << 26
 8 GiB takes longer than most games."""
 REORDER_AT = 20_000
 """Nodes from which on a better order of bits is worth the search."""
+_CALM = 50 * REORDER_AT
+"""The same where the order is known to be good."""
 _CACHE = 1 << 14
 """Slots of the cache at the start; it grows."""
 _NODE = 32
@@ -98,6 +100,7 @@ class Manager:
         self._start = time.process_time()
         self._peak = 0
         self._next_look = 0.0
+        self._reorder_at = REORDER_AT
         # dd has no type hints that a checker could use.
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
         self.true: Node = cast("Node", self._bdd.true)
@@ -164,6 +167,13 @@ class Manager:
         """The bits that the diagram depends on."""
         return frozenset(self._bdd.support(node))
 
+    def branches(self, node: Node) -> tuple[str, Node, Node]:
+        """The topmost bit of a diagram that is neither true nor false; what is left when it is
+        false, and when it is true."""
+        found: Any = node
+        low, high = found.low, found.high
+        return (found.var, ~low, ~high) if found.negated else (found.var, low, high)
+
     def pick(self, node: Node, bits: Collection[str]) -> dict[str, bool] | None:
         """Values of the bits that make it true, the same ones every time; None if there are none.
 
@@ -180,6 +190,16 @@ class Manager:
     def reorder_automatically(self, is_on: bool) -> None:
         """Let the library change the order of bits when diagrams grow."""
         self._bdd.configure(reordering=is_on)
+
+    @contextmanager
+    def calm(self) -> Iterator[None]:
+        """Leave the order of bits what it is until diagrams are much larger than elsewhere."""
+        before, self._reorder_at = self._reorder_at, _CALM
+        self.reorder_automatically(False)
+        try:
+            yield
+        finally:
+            self._reorder_at = before
 
     def sift(self) -> None:
         """Look for a better order of bits now."""
@@ -201,7 +221,7 @@ class Manager:
             return
         self._next_look = now + _PATIENCE
         used, limits = self.usage(), self.limits
-        if used.nodes > REORDER_AT:
+        if used.nodes > self._reorder_at:
             self.reorder_automatically(True)
         if limits.nodes and used.nodes > limits.nodes:
             raise LimitError("nodes", f"{limits.nodes:,}")

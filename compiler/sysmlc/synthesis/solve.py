@@ -13,6 +13,8 @@ from itertools import cycle
 from sysmlc.synthesis.arena import Arena, Steps, plain
 from sysmlc.synthesis.game import Game
 from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.narrow import invariant, without_ranges
+from sysmlc.synthesis.routes import SingleSteps, routes
 from sysmlc.synthesis.symmetry import Exchange, image, orbits
 from sysmlc.values import dataclass
 
@@ -65,50 +67,69 @@ def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
     Raises LimitError when a limit of the manager is reached.
     """
     with arena.manager.guard():
-        return _Solver(arena).run(is_complete)
+        found = None if is_complete else by_single_moves(arena)
+        return found or _Solver(arena, Steps(arena), is_complete).run()
+
+
+def by_single_moves(arena: Arena) -> Solution | None:
+    """The solution if the game is won by moves of one component at a time (``routes``)."""
+    ways = routes(arena)
+    if not ways:
+        return None
+    with arena.manager.calm():
+        found = _Solver(arena, SingleSteps(arena, ways), is_complete=False).run()
+    return found if found.is_realizable else None
 
 
 @dataclass(slots=True)
 class _Solver:
     arena: Arena
-    _steps: Steps = field(init=False)
+    _steps: Steps | SingleSteps
+    is_complete: bool
     _goals: tuple[Node, ...] = field(init=False)
     _layers: list[tuple[Layer, ...]] = field(init=False)
     _rounds: int = 0
 
     def __post_init__(self) -> None:
-        self._steps = Steps(self.arena)
         self._goals = self.arena.goals or (self.arena.manager.true,)
         self._layers = [() for _ in self._goals]
 
-    def run(self, is_complete: bool) -> Solution:
+    def run(self) -> Solution:
         """Solve the game, with one goal for all that are alike if strategies are not asked for."""
-        alike = {} if is_complete else orbits(self.arena)
-        winning, is_known = self._settled(alike or self._each(), is_complete)
+        alike = {} if self.is_complete else orbits(self.arena)
+        winning, is_known = self._settled(alike or self._each())
         exchanges = [exchange for found in alike.values() for exchange in found]
         if any(image(self.arena, winning, exchange) != winning for exchange in exchanges):
-            winning, is_known = self._settled(self._each(), is_complete)
+            winning, is_known = self._settled(self._each())
         return self._solution(winning, is_known and self._steps.is_won(winning), is_known)
 
-    def _settled(
-        self, alike: Mapping[int, tuple[Exchange, ...]], is_complete: bool
-    ) -> tuple[Node, bool]:
+    def _settled(self, alike: Mapping[int, tuple[Exchange, ...]]) -> tuple[Node, bool]:
         """The goals in turn until none of them makes the winning states fewer.
 
         False when it was seen before that the game is lost.
         """
-        winning, settled = self.arena.states, 0
+        winning, settled = self._candidates(), 0
         for goal in cycle(alike):
-            found = reached = self._attracted(goal, winning)
+            found = reached = self._again(goal, winning)
             for exchange in alike[goal]:
                 found = found & image(self.arena, reached, exchange)
             settled = settled + 1 if found == winning else 0
             winning = found
             if settled == len(alike):
                 return winning, True
-            if not is_complete and self._is_lost(winning):
+            if not self.is_complete and self._is_lost(winning):
                 return winning, False
         return winning, True
+
+    def _candidates(self) -> Node:
+        """The states that may be winning: those in which a rule for the present step holds."""
+        return self.arena.states if self.is_complete else self.arena.states & invariant(self.arena)
+
+    def _again(self, goal: int, winning: Node) -> Node:
+        """Those of the winning states from which the goal can be reached, again and again."""
+        if self.is_complete:
+            return self._attracted(goal, winning)
+        return self._attracted(goal, without_ranges(self.arena, goal, winning)) & winning
 
     def _each(self) -> dict[int, tuple[Exchange, ...]]:
         """Every goal by itself: strategies need the layers of all."""
@@ -121,8 +142,9 @@ class _Solver:
         return not self._steps.is_won(winning)
 
     def _attracted(self, goal: int, winning: Node) -> Node:
-        """Those of the winning states from which the goal can be reached, again and again."""
+        """``_again``, whatever is not in the range of its variable."""
         self._rounds += 1
+        self._steps.confine(winning)
         target = self._goals[goal] & self._steps.controllable(winning) & winning
         reached, layers = self.arena.manager.false, list[Layer]()
         while reached != winning:
@@ -137,7 +159,7 @@ class _Solver:
 
     def _layer(self, target: Node, reached: Node, winning: Node, before: Layer | None) -> Layer:
         """The next layer; ``before`` is the one at its place when there were more states."""
-        start = target | (self._steps.controllable(reached) & winning)
+        start = target | self._steps.nearer(reached, winning)
         bounds = before.waiting if before else (winning,) * len(self.arena.fairness)
         waiting = tuple(
             self._waiting(start, ~fair, bound & winning)

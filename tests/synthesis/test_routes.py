@@ -1,0 +1,115 @@
+"""One component moves at a time: what is won so is won, the rest is decided with all moves."""
+
+import random
+
+import pytest
+import small_games
+from contracts_in_lines import contract
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic.formula import Var
+from sysmlc.synthesis import routes
+from sysmlc.synthesis.solve import by_single_moves, solve_arena
+
+FLEETS = 150
+LIFT = """
+    env {0}: 0..3
+    env goal_{0}: 0..3
+    sys move_{0}: stay up down
+    promise at first move_{0}=stay
+    assume always move_{0}=stay -> {0}'={0}
+    assume always move_{0}=up -> {0}'={0} + 1
+    assume always move_{0}=down -> {0}'={0} - 1
+    assume always {0}!=goal_{0} -> goal_{0}'=goal_{0}
+    promise always move_{0}'=up -> {0}'!=3
+    promise always move_{0}'=down -> {0}'!=0
+    promise recurs {0}=goal_{0}
+"""
+LIFTS = "".join(LIFT.format(name) for name in ("a", "b", "c"))
+
+
+def arena(text: str):
+    return small_games.encoded(contract(text))
+
+
+def moving(text: str) -> list[list[str]]:
+    """The variables that change in each of the steps."""
+    found = arena(text)
+    names = [
+        found.symbols.names(found.manager.cube(dict.fromkeys(way.moving, True)))
+        for way in routes.routes(found)
+    ]
+    return [[name for name in one if name in ("a", "b", "c")] for one in names]
+
+
+def test_what_no_rule_ties_together_moves_apart():
+    assert moving(LIFTS) == [["a"], ["b"], ["c"]]
+
+
+def test_what_a_rule_ties_together_moves_together():
+    tied = "env d: bool\npromise always a=b -> d\nassume always move_a=up & move_b=up -> d'"
+    assert moving(f"{LIFTS}\npromise always !(move_a'=up & move_b'=up)") == []
+    assert moving(f"{LIFTS}\n{tied}") == [["a"], ["b"], ["c"]]
+
+
+def test_a_plant_that_does_not_obey_has_no_routes():
+    assert moving(LIFTS.replace("move_a=stay -> a'=a", "move_a=stay -> a'<=a")) == []
+
+
+def test_what_needs_two_moves_at_once_is_found_with_all_moves():
+    together = arena(f"{LIFTS}\nassume at first a=0 & b=0\npromise always a=b")
+    assert by_single_moves(together) is None
+    assert solve_arena(together, is_complete=False).is_realizable
+
+
+def test_what_is_won_by_single_moves_is_won():
+    found = by_single_moves(arena(f"{LIFTS}\nassume at first b=0\npromise always a=0 -> b=0"))
+    assert found is not None
+    assert found.is_realizable
+
+
+def test_what_no_move_wins_is_lost():
+    lost = arena(f"{LIFTS}\npromise always a!=3")
+    assert by_single_moves(lost) is None
+    assert not solve_arena(lost, is_complete=False).is_realizable
+
+
+def test_random_fleets_are_of_all_kinds(monkeypatch):
+    monkeypatch.setattr(routes, "FEWEST", 2)
+    arenas = [small_games.encoded(fleet(seed)) for seed in range(FLEETS)]
+    apart = [one for one in arenas if routes.routes(one)]
+    won = sum(by_single_moves(one) is not None for one in apart)
+    assert [len(apart) > 50, won > 10, won < len(apart) - 10] == [True, True, True]
+
+
+@pytest.mark.parametrize("start", range(0, FLEETS, 50))
+def test_the_verdict_on_random_fleets_is_that_of_listed_states(start, monkeypatch):
+    monkeypatch.setattr(routes, "FEWEST", 2)
+    found = [small_games.encoded_disagreement(fleet(seed)) for seed in range(start, start + 50)]
+    assert [text for text in found if text] == []
+
+
+def fleet(seed: int) -> Contract:
+    """Random machines that obey commands, some of them alike, with rules between them."""
+    die = random.Random(seed)
+    names = "pq" if die.random() < 0.7 else "pqr"
+    places = {one: Variable(one, Owner.ENVIRONMENT, BooleanDomain()) for one in names}
+    commands = {one: Variable(f"x{one}", Owner.SYSTEM, BooleanDomain()) for one in names}
+    where, every = list(places.values()), [*places.values(), *commands.values()]
+    assumptions = [
+        conjunct
+        for one in names
+        for conjunct in small_games.obedient(die, places[one], [places[one], commands[one]])
+    ]
+    guarantees = [
+        *(small_games.later(one) for one in small_games.conjuncts(die, Class.INIT, 2, every, [])),
+        *small_games.conjuncts(die, Class.SAFETY, 1, where, []),
+        *small_games.conjuncts(die, Class.LIVENESS, 3, where, []),
+    ]
+    if die.random() < 0.3:
+        paired = f.iff(*(Var(one.name) for one in where[:2]))
+        assumptions.append(Conjunct(paired, Class.INIT, ""))
+        guarantees.append(Conjunct(paired, Class.SAFETY, ""))
+    assumptions += small_games.conjuncts(die, Class.LIVENESS, 1, where, [])
+    return Contract(f"f{seed}", "", tuple(every), tuple(assumptions), tuple(guarantees))
