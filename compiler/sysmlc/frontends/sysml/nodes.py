@@ -91,7 +91,23 @@ def name_of(node: Node) -> str:
 
 def body_of(node: Node) -> list[Node]:
     """What stands between the braces: neither multiplicity, value nor ends."""
-    return [one for one in node.members if one.membership not in _HEAD and one.kind not in _RANGE]
+    cross = crossed(node)
+    return [
+        one
+        for one in node.members
+        if one.membership not in _HEAD and one.kind not in _RANGE and one is not cross
+    ]
+
+
+def crossed(node: Node) -> Node | None:
+    """The feature of an end that crosses to the other end: ``[*]`` in ``end [*] part b : B``.
+
+    Its multiplicity is that of an end of a UML association (KerML 1.0, 8.3.4.5.3).
+    """
+    if not node.facts.get("isEnd") and node.membership != "EndFeatureMembership":
+        return None
+    found = held(node, "OwningMembership")
+    return next((one for one in found if one.kind in ("Feature", "ReferenceUsage")), None)
 
 
 _HEAD = frozenset({"FeatureValue", "EndFeatureMembership"})

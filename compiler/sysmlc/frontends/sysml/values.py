@@ -108,6 +108,9 @@ def measure(node: Node) -> str:
 def multiplicity(low: "Lowering", node: Node) -> str:
     """The multiplicity of a feature in UML notation; empty when it is exactly one."""
     range_ = next(nodes.members(node, "MultiplicityRange"), None)
+    cross = nodes.crossed(node) if range_ is None else None
+    if cross is not None:
+        return multiplicity(low, cross)
     if range_ is None:
         return ""
     document = low.document(node)
