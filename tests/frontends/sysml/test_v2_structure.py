@@ -187,3 +187,10 @@ NODES = 34
 def test_every_node_has_one_verdict():
     reading = read(PLANT)
     assert reading.totals() == {"elements": NODES, "mapped": NODES - 1, "external": 1}
+
+
+def test_an_end_of_an_association_has_the_multiplicity_with_which_it_is_crossed():
+    reading = read("part def A; part def B; connection def R { end a : A; end [0..3] part b : B; }")
+    assert reading.owned("R") == ["Property a", "Property b"]
+    assert reading.named("R::b").attrs["multiplicity"] == "0..3"
+    assert reading.to("R::b", "typed-by") == ["B"]

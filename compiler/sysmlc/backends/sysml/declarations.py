@@ -5,6 +5,7 @@ from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import scalar_of
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.specific import feature_of, types_of
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import bounds, type_of
@@ -128,7 +129,8 @@ def feature_prefixes(book: Book, entry: Entry, keyword: str) -> list[str]:
     life = _kinds_of_life(element)
     type_ = type_of(book.graph, element)
     if type_ is not None and type_.attrs.get("variation"):
-        life = [word for word in life if word != "variation"]
+        is_own = feature_of(book.graph, type_) is element
+        life = ["variation"] if is_own else [word for word in life if word != "variation"]
     prefixes += ["variant"] if attrs.get("variant") else []
     prefixes += [word for word in ("derived",) if attrs.get(word)]
     prefixes += [word for word in life if word in ("abstract", "variation")]
@@ -160,7 +162,7 @@ def _is_referential(entry: Entry) -> bool:
 def typing(book: Book, scope: Entry | None, element: Element) -> tuple[list[str], list[str]]:
     """Types of a feature, and features that it subsets because they stand for its type."""
     types, subsets = [], []
-    for type_ in book.graph.targets(element, Edge.TYPED_BY):
+    for type_ in types_of(book.graph, element):
         name = type_name(book, scope, element, type_)
         other = book.plan.entry(type_)
         if name is None:
@@ -225,8 +227,7 @@ def _redefine(book: Book, entry: Entry, head: Head) -> None:
 
 def _has_type(book: Book, redefined: Element, element: Element) -> bool:
     """Whether what is redefined says the type already."""
-    types = book.graph.targets(element, Edge.TYPED_BY)
-    return book.graph.targets(redefined, Edge.TYPED_BY) == types
+    return list(types_of(book.graph, redefined)) == list(types_of(book.graph, element))
 
 
 def _element(entry: Entry) -> Element:

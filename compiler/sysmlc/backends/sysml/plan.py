@@ -2,9 +2,11 @@
 
 from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.library import scalar_of
+from sysmlc.backends.sysml.merges import step_behind
 from sysmlc.backends.sysml.moves import move_flows, move_messages
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.shapes import HOLDERS, Shape, shape_of
+from sysmlc.backends.sysml.specific import feature_of
 from sysmlc.backends.sysml.used import used_outside
 from sysmlc.ir import Edge, Element, Graph, Kind
 
@@ -78,11 +80,11 @@ def _is_measure(element: Element) -> bool:
 
 
 def _entry(plan: Plan, element: Element, parent: Entry | None) -> Entry | None:
-    twin = _operation_of(plan, element)
+    twin = _operation_of(plan, element) or _usage_of(plan, element)
     if twin is not None:
         plan.entries[element.id] = twin
         return twin
-    if _is_only_region(plan.graph, element):
+    if _is_only_region(plan.graph, element) or step_behind(plan.graph, element) is not None:
         return parent
     shape = shape_of(plan.graph, element, plan.typing)
     if shape is None:
@@ -101,6 +103,14 @@ def _is_only_region(graph: Graph, element: Element) -> bool:
     owner = graph.owner(element)
     beside = [] if owner is None else graph.owned(owner)
     return sum(one.kind is Kind.REGION for one in beside) == 1
+
+
+def _usage_of(plan: Plan, element: Element) -> Entry | None:
+    """The feature that a class is made for: its members are those of the usage."""
+    if not element.attrs.get("property_specific"):
+        return None
+    found = plan.entry(feature_of(plan.graph, element))
+    return found if found is not None and found.shape.is_usage else None
 
 
 def _operation_of(plan: Plan, element: Element) -> Entry | None:

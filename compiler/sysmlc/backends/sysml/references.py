@@ -101,8 +101,18 @@ def _direct(plan: Plan, space: Entry) -> Iterator[Entry]:
     for edge in edges:
         for target in plan.graph.targets(element, edge):
             found = plan.entry(target)
-            if found is not None:
+            if found is space and target is not element:
+                yield from _direct_of(plan, target)
+            elif found is not None:
                 yield found
+
+
+def _direct_of(plan: Plan, own: Element) -> Iterator[Entry]:
+    """What the class of a feature's own members specialises."""
+    for target in plan.graph.targets(own, Edge.SPECIALIZES):
+        found = plan.entry(target)
+        if found is not None:
+            yield found
 
 
 def _outwards(scope: Entry | None) -> Iterator[Entry]:

@@ -12,7 +12,7 @@ from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.measures import unit_of
-from sysmlc.ir.query import flow_directions, type_of
+from sysmlc.ir.query import STRUCTURAL_FEATURES, flow_directions, type_of
 
 
 def package(book: Book, entry: Entry) -> list[Line]:
@@ -36,6 +36,9 @@ def contents(book: Book, entry: Entry) -> list[Line]:
     """Annotations, members, and what realisations add to a definition."""
     body = annotations.of(book, entry) + book.members(entry)
     element = entry.element
+    if element is not None and element.kind in STRUCTURAL_FEATURES:
+        types = book.graph.targets(element, Edge.TYPED_BY)
+        book.said.update(one.id for one in types if book.plan.entry(one) is entry)
     if element is not None:
         body += _realisations(book, entry, element) + book.extra.pop(id(entry), [])
     return body
@@ -150,7 +153,10 @@ def port(book: Book, entry: Entry) -> list[Line]:
 
 
 def _is_port_type(book: Book, element: Element) -> bool:
-    entry = book.plan.entry(type_of(book.graph, element))
+    type_ = type_of(book.graph, element)
+    entry = book.plan.entry(type_)
+    if entry is not None and type_ is not None and entry.element is element:
+        return type_.role == "interface block"
     return entry is not None and entry.shape.keyword == "port def"
 
 

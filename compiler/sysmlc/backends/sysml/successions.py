@@ -4,6 +4,7 @@ from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.conditions import condition
 from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.merges import step_behind
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import named
 from sysmlc.backends.sysml.structure import contents
@@ -118,8 +119,14 @@ def vertex(book: Book, scope: Entry | None, element: Element) -> str | None:
     if element.kind is Kind.PIN:
         owner = book.graph.owner(element)
         return None if owner is None else vertex(book, scope, owner)
-    if element.kind in _STORES:
-        return None
+    step = step_behind(book.graph, element)
+    if step is not None:
+        book.said.add(element.id)
+        return vertex(book, scope, step)
+    return None if element.kind in _STORES else _vertex(book, scope, element)
+
+
+def _vertex(book: Book, scope: Entry | None, element: Element) -> str | None:
     if element.subkind != "initial" and book.plan.entry(element) is not None:
         return named(book.plan, scope, element)
     word = {"initial": "start", "final": "done", "flow-final": "done"}.get(element.subkind)

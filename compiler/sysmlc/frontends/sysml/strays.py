@@ -136,7 +136,9 @@ def _is_sign(node: Node, owner: Node) -> bool:
         return bool(node.facts.get("isPrefix")) and owner.kind != "MetadataUsage"
     if node.kind == "Membership":
         return not node.name
-    is_cross = node.kind == "Feature" and node.membership == "OwningMembership"
+    is_cross = node is nodes.crossed(owner) or (
+        node.kind == "Feature" and node.membership == "OwningMembership"
+    )
     is_end = bool(node.facts.get("isEnd")) and owner.kind == "ConnectionUsage"
     return (
         is_cross or is_end or (node.membership == "StateSubactionMembership" and not node.members)
