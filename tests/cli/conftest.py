@@ -70,9 +70,12 @@ class Here:
         found = [path for path in folder.rglob("*") if path.is_file()]
         return sorted(path.relative_to(folder).as_posix() for path in found)
 
-    def sysmlc(self, *args: str):
-        """Run the command line; ``exit_code``, ``stdout`` and ``stderr`` of what it did."""
-        return CliRunner().invoke(group.sysmlc, list(args), catch_exceptions=False)
+    def sysmlc(self, *args: str, text: str = ""):
+        """Run the command line; ``exit_code``, ``stdout`` and ``stderr`` of what it did.
+
+        ``text`` is what is typed.
+        """
+        return CliRunner().invoke(group.sysmlc, list(args), input=text, catch_exceptions=False)
 
 
 @pytest.fixture

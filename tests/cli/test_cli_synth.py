@@ -6,6 +6,7 @@ import re
 import pytest
 
 from sysmlc.synthesis import rules
+from sysmlc.synthesis.counter import machine
 
 MACHINE = """
 StateMachine gate "Gate"
@@ -125,9 +126,39 @@ def test_machines_are_written_when_asked_for(here):
     assert here.files() == ["lamp.machine.json", "lamp.machine.puml"]
 
 
-def test_nothing_is_written_of_what_cannot_be_kept_and_the_core_is_named(here):
+def test_no_machine_is_written_of_what_cannot_be_kept_and_the_core_is_named(here):
     here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert made.exit_code == 1
-    assert here.files() == []
+    assert not any(name.endswith(".machine.json") for name in here.files())
     assert "always: lamp <-> go'" in made.stderr
+
+
+def test_what_defeats_a_contract_is_written(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
+    assert made.exit_code == 1
+    assert here.files("out") == ["lamp.counter-run.puml", "lamp.counter.puml", "lamp.counter.sysml"]
+    assert here.sysmlc("check", "out/lamp.counter.sysml").exit_code == 0
+
+
+def test_the_reader_plays_the_component(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--play", text="lamp=true\nlamp=false\n\n")
+    assert made.exit_code == 1
+    assert made.stdout.startswith("You are 'lamp'.")
+    assert "You have lost." in made.stdout
+
+
+def test_there_is_nothing_to_play_when_a_contract_can_be_kept(here):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--play")
+    assert [made.exit_code, made.stdout] == [0, "lamp: realizable, nothing defeats it\n"]
+
+
+def test_what_is_too_large_to_be_listed_is_told(here, monkeypatch):
+    monkeypatch.setattr(machine.counter, "__defaults__", (0,))
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
+    assert "warning[SM549 counter-strategy-not-written]" in made.stderr
+    assert not (here.folder / "out").exists()

@@ -1,0 +1,58 @@
+"""Assumptions that would help: each makes the contract one that can be kept, none is impossible."""
+
+from contracts_in_lines import contract
+from explicit import Explicit
+from small_games import contract as random_contract
+
+from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis.core import is_won
+from sysmlc.synthesis.helpful import helpful_assumptions
+from sysmlc.synthesis.reasons import reasons_of
+from sysmlc.values import replace
+
+TURN = """
+    env wanted: 0..2
+    sys at: 0..2
+    promise always at'=at+1 | at'=at-1
+    promise recurs at=wanted
+"""
+
+
+def helped(text):
+    found = helpful_assumptions(make_game(contract(text), Manager()))
+    return [(str(one.class_), print_formula(one.formula)) for one in found]
+
+
+def test_that_a_command_stays_would_help():
+    assert ("safety", "wanted'=wanted") in helped(TURN)
+
+
+def test_that_something_recurs_would_help():
+    lamp = "env go: bool\nsys on: bool\npromise always on -> go\npromise recurs on"
+    assert helped(lamp) == [("liveness", "go")]
+
+
+def test_what_the_component_could_make_impossible_is_no_help():
+    """That the door stays open whenever the lamp is on would be broken by the component."""
+    stuck = "env go: bool\nsys on: bool\npromise always on' -> go'\npromise always !on' -> !go'"
+    assert helped(stuck + "\npromise recurs go & !go") == []
+
+
+def test_the_reasons_name_them():
+    game = make_game(contract(TURN), Manager())
+    assert "it could be kept if this were assumed, always: wanted'=wanted" in list(reasons_of(game))
+
+
+def test_with_each_of_them_a_random_contract_can_be_kept():
+    number = 0
+    for seed in range(400):
+        made = random_contract(seed)
+        game = make_game(made, Manager())
+        if is_won(game):
+            continue
+        for one in helpful_assumptions(game):
+            better = replace(made, assumptions=(*made.assumptions, one))
+            assert Explicit(better).is_realizable(), (seed, print_formula(one.formula))
+            number += 1
+    assert number > 5
