@@ -127,6 +127,15 @@ def test_what_a_part_assumes_of_the_outside_the_composition_assumes():
     assert open_ones(composed(whole, feeder=FEEDER, picker=needing)) == ["picker: power"]
 
 
+def test_what_the_outside_does_when_a_part_asks_the_composition_assumes():
+    asking = PICKER.replace("env ready: bool", "env ready: bool\nenv done: bool")
+    asking += "assume recurs !taken | done"
+    found = composed(feeder=FEEDER, picker=asking)
+    assert [one.text for one in found.contract.assumptions] == ["!taken | done"]
+    waiting = asking.replace("!taken | done", "!ready | done")
+    assert open_ones(composed(feeder=FEEDER, picker=waiting)) == ["picker: !ready | done"]
+
+
 def test_what_is_outside_gr1_is_observed_on_both_sides():
     answering = "env ask: bool\nsys done: bool\npromise G (ask -> F done)"
     asking = "env done: bool\nsys ask: bool\nassume G (ask -> F done)\npromise recurs !ask"

@@ -31,6 +31,12 @@ def test_a_run_shows_only_what_changes_and_where_it_goes_on():
     ]
 
 
+def test_what_never_changes_is_told_only_when_it_is_spoken_of():
+    assert next(lines(RUN, BROKEN)) == "step 1: ready=false, arm=0"
+    about = Conjunct(parse_formula("power", {"power": BooleanDomain()}), Class.LIVENESS, "")
+    assert next(lines(RUN, about)) == "step 1: power=true, ready=false, arm=0"
+
+
 def test_a_long_run_is_cut():
     shown = list(lines(Trace(tuple({"n": number} for number in range(30)), 0)))
     assert shown[-2:] == ["and 18 more", "then again from step 1"]
@@ -46,7 +52,6 @@ def test_inputs_are_messages_and_what_nobody_reads_is_an_invariant():
         'participant "feeder" as p1',
         'participant "picker" as p2',
         "== step 1 ==",
-        "p0 -> p1 : power=true",
         "p1 -> p2 : ready=false",
         "hnote over p2 : arm=0",
         "group again and again",

@@ -169,7 +169,7 @@ def _report(behaviour: Contract, failure: Failure, place: Place, sink: Sink) -> 
     sink.report(
         ASSUMES if failure.is_assumption else BREAKS,
         place(conjunct.origin),
-        notes=tuple(lines(failure.trace)),
+        notes=tuple(lines(failure.trace, conjunct)),
         component=behaviour.component,
         formula=print_formula(conjunct.formula),
         said=said(conjunct),

@@ -161,7 +161,7 @@ def _report_open(composite: Composite, one: Open, place: Place, sink: Sink) -> N
     sink.report(
         CIRCLE if one.trace is None else OPEN,
         place(one.conjunct.origin or one.part.origin),
-        notes=() if one.trace is None else tuple(lines(one.trace)),
+        notes=() if one.trace is None else tuple(lines(one.trace, one.conjunct)),
         part=one.part.name,
         component=composite.component,
         formula=print_formula(one.conjunct.formula),
@@ -173,7 +173,7 @@ def _report_broken(composite: Composite, failure: Failure, place: Place, sink: S
     sink.report(
         BREAK,
         place(failure.conjunct.origin or composite.origin),
-        notes=tuple(lines(failure.trace)),
+        notes=tuple(lines(failure.trace, failure.conjunct)),
         component=composite.component,
         formula=print_formula(failure.conjunct.formula),
         said=said(failure.conjunct),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
@@ -43,15 +44,27 @@ def changes(trace: Trace) -> Iterator[Values]:
         before = values
 
 
-def lines(trace: Trace) -> Iterator[str]:
-    """The steps of a run, a line each, with what has changed."""
+def lines(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
+    """The steps of a run, a line each, with what has changed.
+
+    Where ``broken`` is given, other variables that never change are not told.
+    """
+    hidden = _constant(trace, broken) if broken else set()
     for number, changed in enumerate(changes(trace), 1):
         if number > _SHOWN:
             yield f"and {len(trace.steps) - _SHOWN} more"
             break
-        yield f"step {number}: {_pairs(changed, changed) or 'nothing changes'}"
+        told = [name for name in changed if name not in hidden]
+        yield f"step {number}: {_pairs(changed, told) or 'nothing changes'}"
     is_ended = trace.loop == len(trace.steps)
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
+
+
+def _constant(trace: Trace, broken: Conjunct) -> set[str]:
+    """The variables that keep their value through the run and are not spoken of."""
+    moving = {name for changed in list(changes(trace))[1:] for name in changed}
+    said = {one.name for one in f.variables(broken.formula)}
+    return set(trace.steps[0]) - moving - said
 
 
 def files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
@@ -68,7 +81,12 @@ def diagram(witness: Witness) -> str:
     """The run as a sequence diagram, with what is broken as its title."""
     broken = label(_formula(witness.broken))
     title = f"{label(witness.component)}\\nnot kept: {broken}"
-    return sequence(title, witness.trace, witness.parties)
+    hidden = _constant(witness.trace, witness.broken)
+    steps = tuple(
+        {name: value for name, value in values.items() if name not in hidden}
+        for values in witness.trace.steps
+    )
+    return sequence(title, Trace(steps, witness.trace.loop), witness.parties)
 
 
 def sequence(title: str, trace: Trace, parties: Sequence[Party]) -> str:

@@ -63,13 +63,23 @@ def composition(composite: Composite, manager: Manager) -> Composition:
 
 
 def _open_to_outside(composite: Composite) -> Contract:
-    """The contract of a whole that has none: what parts assume of things that no part decides."""
+    """The contract of a whole that has none: what parts assume of things that no part decides.
+
+    What a part assumes may speak of its own outputs, too: only then has the environment to act.
+    """
     inside = {name for part in composite.parts for name in outputs(part)}
-    assumed = (one for part in composite.parts for one in part.contract.assumptions)
-    of_outside = tuple(
-        one for one in assumed if not any(v.name in inside for v in f.variables(one.formula))
+    assumed = tuple(
+        one
+        for part in composite.parts
+        for one in part.contract.assumptions
+        if _is_of_outside(one, inside, outputs(part))
     )
-    return Contract(composite.component, composite.origin, (), of_outside, ())
+    return Contract(composite.component, composite.origin, (), assumed, ())
+
+
+def _is_of_outside(conjunct: Conjunct, inside: set[str], own: set[str]) -> bool:
+    used = {one.name for one in f.variables(conjunct.formula)}
+    return not used <= inside and not used & (inside - own)
 
 
 def _with(part: Part, contract: Contract) -> Part:
