@@ -1,4 +1,7 @@
-"""Random state machines as graphs: nested and orthogonal states, choices, every trigger."""
+"""Random state machines as graphs: nested and orthogonal states, choices, every trigger.
+
+``rich_machines`` have every other pseudostate too, and states that are submachines.
+"""
 
 from hypothesis import strategies as st
 
@@ -92,6 +95,126 @@ def machines(draw):
     return build.graph, machine
 
 
+@st.composite
+def rich_machines(draw):
+    """(graph, state machine) with history, forks, joins, entry and exit points, submachines."""
+    build = Builder()
+    machine, signals = context(build)
+    called = _submachine(draw, build, machine, signals) if draw(st.booleans()) else None
+    region = build.add(Kind.REGION, machine, "r")
+    vertices = _fill(draw, build, region, depth=0)
+    for _ in range(0 if called is None else draw(st.integers(1, 2))):
+        state = build.add(Kind.STATE, region, f"Sub{build.number}")
+        build.graph.connect(Edge.CALLS, state, called)
+        vertices.append(state)
+    if draw(st.booleans()):
+        vertices += _composite(draw, build, region)
+    _connect(draw, build, region, vertices, signals)
+    for state in [one for one in vertices if one.kind is Kind.STATE]:
+        _enrich(draw, build, state, vertices, signals)
+    return build.graph, machine
+
+
+def _composite(draw, build, region):
+    """An orthogonal state with two states in each region."""
+    state = build.add(Kind.STATE, region, f"Two{build.number}")
+    found = [state]
+    for _ in range(2):
+        inner = build.add(Kind.REGION, state, "r")
+        found += _fill(draw, build, inner, depth=1)
+    return found
+
+
+def _submachine(draw, build, machine, signals):
+    called = build.add(Kind.STATE_MACHINE, build.graph.owner(machine), "Called")
+    region = build.add(Kind.REGION, called, "r")
+    vertices = _fill(draw, build, region, depth=1)
+    _connect(draw, build, region, vertices, signals)
+    states = [one for one in vertices if one.kind is Kind.STATE]
+    for kind in ("entry-point", "exit-point"):
+        point = build.add(Kind.PSEUDOSTATE, called, kind, subkind=kind)
+        inner = draw(st.sampled_from(states))
+        ends = (point, inner) if kind == "entry-point" else (inner, point)
+        made = _transition(draw, build, region, *ends)
+        if kind == "exit-point":
+            _trigger(draw, build, made, signals)
+    return called
+
+
+def _enrich(draw, build, state, vertices, signals):
+    """Pseudostates in and on a state, with ways to and from them."""
+    graph, home = build.graph, build.graph.owner(state)
+    outside = [one for one in vertices if graph.owner(one) is home]
+    if graph.target(state, Edge.CALLS) is not None:
+        _connect_points(draw, build, state, outside, signals)
+        return
+    inner = [one for one in graph.owned(state) if one.kind is Kind.REGION]
+    inside = {one.id: [v for v in vertices if v.owner == one.id] for one in inner}
+    for region in inner:
+        if draw(st.integers(0, 2)) == 0:
+            _history(draw, build, region, inside[region.id], (home, outside, signals))
+    if inner:
+        _points(draw, build, state, inner, inside, (home, outside, signals))
+    if len(inner) > 1:
+        _forks(draw, build, inner, inside, (home, outside, signals))
+
+
+def _connect_points(draw, build, state, outside, signals):
+    graph, home = build.graph, build.graph.owner(state)
+    called = graph.target(state, Edge.CALLS)
+    for point in [one for one in graph.owned(called) if one.kind is Kind.PSEUDOSTATE]:
+        one = build.add(Kind.PSEUDOSTATE, state, point.name, subkind="connection-point")
+        graph.connect(Edge.REFERENCES, one, point)
+        if point.subkind == "entry-point":
+            _triggered(draw, build, (home, outside, signals), one)
+        else:
+            _transition(draw, build, home, one, draw(st.sampled_from(outside)))
+
+
+def _history(draw, build, region, inside, around):
+    kind = draw(st.sampled_from(["shallow-history", "deep-history"]))
+    history = build.add(Kind.PSEUDOSTATE, region, "H", subkind=kind)
+    _triggered(draw, build, around, history)
+    if draw(st.booleans()):
+        _transition(draw, build, region, history, inside[0])
+
+
+def _points(draw, build, state, inner, inside, around):
+    home, outside, signals = around
+    if draw(st.integers(0, 2)) == 0:
+        point = build.add(Kind.PSEUDOSTATE, state, "in", subkind="entry-point")
+        _triggered(draw, build, around, point)
+        for region in draw(st.sampled_from([inner, inner[:1]])):
+            _transition(draw, build, region, point, inside[region.id][-1])
+    if draw(st.integers(0, 2)) == 0:
+        point = build.add(Kind.PSEUDOSTATE, state, "out", subkind="exit-point")
+        made = _transition(draw, build, inner[0], inside[inner[0].id][0], point)
+        _trigger(draw, build, made, signals)
+        _transition(draw, build, home, point, draw(st.sampled_from(outside)))
+
+
+def _forks(draw, build, inner, inside, around):
+    home, outside, _ = around
+    place = draw(st.sampled_from([home, inner[0]]))
+    if draw(st.booleans()):
+        fork = build.add(Kind.PSEUDOSTATE, place, "fork", subkind="fork")
+        _triggered(draw, build, around, fork)
+        for region in inner:
+            _transition(draw, build, place, fork, draw(st.sampled_from(inside[region.id])))
+    if draw(st.booleans()):
+        join = build.add(Kind.PSEUDOSTATE, place, "join", subkind="join")
+        for region in inner:
+            _transition(draw, build, region, inside[region.id][0], join)
+        _transition(draw, build, home, join, draw(st.sampled_from(outside)))
+
+
+def _triggered(draw, build, around, target):
+    home, outside, signals = around
+    source = draw(st.sampled_from([one for one in outside if one.kind is Kind.STATE]))
+    made = _transition(draw, build, home, source, target, draw(st.sampled_from(GUARDS)))
+    _trigger(draw, build, made, signals)
+
+
 def _fill(draw, build, region, depth):
     found = []
     for number in range(draw(st.integers(1, 3 - depth))):
@@ -139,7 +262,7 @@ def _branch(draw, build, region, first, second):
 
 def _transition(draw, build, region, source, target, guard=""):
     attrs = {"guard": guard} if guard else {}
-    if source.kind is Kind.STATE:
+    if source.kind is Kind.STATE and target.kind is not Kind.PSEUDOSTATE:
         kind = draw(st.sampled_from(["external", "external", "local", "internal"]))
         if kind != "external" and (kind == "local" or target is source):
             attrs["subkind"] = kind

@@ -1,6 +1,6 @@
 """Derived contracts against the interpreter: the formulas allow exactly the steps it makes.
 
-The interpreter (``logic.step``) runs the drawing and reads no formula. Of its traces every
+The interpreter (``machines.step``) runs the drawing and reads no formula. Of its traces every
 conjunct must hold; and of every trace that differs from one of them in one variable of one
 step the formulas must say what the interpreter says: legal when the changed step is among
 those that may follow, else violated. No mutation is exempt.
@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from machines import machines
+from machines import machines, rich_machines
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
@@ -78,7 +78,7 @@ _quiet = settings(
 )
 
 
-@given(machines(), st.data())
+@given(st.one_of(machines(), rich_machines()), st.data())
 @_quiet
 def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):
     machine, contract = _derived(*model)
@@ -91,7 +91,7 @@ def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):
             assert legal == (not broken), (now, mutant, broken)
 
 
-@given(machines(), st.data())
+@given(st.one_of(machines(), rich_machines()), st.data())
 @_quiet
 def test_formulas_allow_exactly_the_first_steps_of_the_interpreter(model, data):
     machine, contract = _derived(*model)

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.reads import during
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Contract
@@ -70,23 +71,35 @@ class Contracts:
             graph.store(Composite, list(compose(graph, found, assumed, sink)))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
-        options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
         for element in graph.of_kind(Kind.STATE_MACHINE):
-            if not _is_behaviour(graph, element):
-                continue
-            machine = read_machine(graph, element, sink, options)
-            if machine is None:
-                continue
-            component = query.component_name(graph, element)
-            contract = statemachine.derive(graph, machine, component, sink)
+            with during(graph, element.id):
+                contract = self.part(graph, element, sink)
             if contract is not None:
                 yield contract
+
+    def part(self, graph: Graph, about: Element, sink: Sink) -> Contract | None:
+        """The contract of a state machine that says what a component does; None of others."""
+        if not _is_behaviour(graph, about):
+            return None
+        options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
+        machine = read_machine(graph, about, sink, options)
+        if machine is None:
+            return None
+        return statemachine.derive(graph, machine, query.component_name(graph, about), sink)
 
 
 def _is_behaviour(graph: Graph, element: Element) -> bool:
     """Whether it says what a component does: drawn here, and no protocol of an interface."""
     is_drawn = any(one.kind is Kind.REGION for one in graph.owned(element))
-    return is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
+    is_own = is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
+    return is_own and not _is_submachine(graph, element)
+
+
+def _is_submachine(graph: Graph, machine: Element) -> bool:
+    """Whether it is there for states to be it: it is nobody's behaviour by itself."""
+    is_called = any(one.kind is Kind.STATE for one in graph.sources(machine, Edge.CALLS))
+    own = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
+    return is_called and not any(graph.sources(machine, edge) for edge in own)
 
 
 def _of_activities(graph: Graph) -> Iterator[Contract]:

@@ -20,12 +20,15 @@ from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines import words as words
 from sysmlc.logic.machines.machine import (
+    INACTIVE,
     NO_EVENT,
     Machine,
+    Region,
     Vertex,
+    element_id,
 )
 from sysmlc.logic.machines.moves import Derivation, Move, active, explore, is_picked
-from sysmlc.logic.machines.paths import Path
+from sysmlc.logic.machines.path import Path
 from sysmlc.logic.simplify import tidy
 
 _Touches = Callable[[Path, str], bool]
@@ -80,8 +83,10 @@ def _start_row(work: Derivation, path: Path) -> dict[str, Formula]:
     machine = work.machine
     row: dict[str, Formula] = {}
     for region in machine.regions.values():
-        literal = path.entered.get(region.variable, "inactive")
+        literal = path.entered.get(region.variable, INACTIVE)
         row[region.variable] = f.eq(f.var(region.variable), Const(literal))
+        if region.memory:
+            row[region.memory] = f.eq(f.var(region.memory), Const(INACTIVE))
     for name in machine.assigned:
         row[name] = _start_value(work, path, name)
     for name in machine.outputs:
@@ -123,7 +128,7 @@ def _origin(work: Derivation, name: str) -> str:
 
 
 def _transition(work: Derivation, move: Move) -> Iterator[Conjunct]:
-    origin = move.transition.id
+    origin = element_id(move.transition.id)
     for path in move.paths:
         chosen = [is_picked(p, literal) for p, literal in _passed_picks(work, move, path)]
         taken = tidy(f.both(move.fires, path.when, *chosen), work.domains)
@@ -168,7 +173,8 @@ def _choices(work: Derivation) -> Iterator[Conjunct]:
             for move in moves
         ]
         formula = f.implies(f.either(*eligible), f.either(*(move.fires for move in moves)))
-        yield Conjunct(formula, Class.SAFETY, state.id, words.choice(machine, state))
+        origin = element_id(state.id)
+        yield Conjunct(formula, Class.SAFETY, origin, words.choice(machine, state))
 
 
 def _conjuncts(formula: Formula) -> tuple[Formula, ...]:
@@ -245,7 +251,7 @@ def _clocks(work: Derivation) -> Iterator[Conjunct]:
         for when, then, text in rows:
             text = text.format(clock=state.timer, state=state.literal)
             formula = tidy(f.implies(when, then), work.domains)
-            yield Conjunct(formula, Class.SAFETY, state.id, text)
+            yield Conjunct(formula, Class.SAFETY, element_id(state.id), text)
 
 
 def _stays(work: Derivation, state: Vertex) -> Formula:
@@ -264,6 +270,9 @@ def _derived_values(work: Derivation) -> Iterator[Conjunct]:
         truth = condition(expression, machine.scope)
         formula = f.iff(f.primed(f.var(name)), truth)
         yield Conjunct(formula, Class.SAFETY, _origin(work, name), words.memory(name, truth))
+    for region in machine.regions.values():
+        if region.memory:
+            yield from _history(work, region)
     for state in machine.states():
         if state.do:
             formula = f.iff(f.var(state.do), active(machine, state.id))
@@ -271,8 +280,22 @@ def _derived_values(work: Derivation) -> Iterator[Conjunct]:
             yield Conjunct(formula, Class.SAFETY, _origin(work, state.do), text)
 
 
+def _history(work: Derivation, region: Region) -> Iterator[Conjunct]:
+    """What a region was when it was last active."""
+    origin, after = _origin(work, region.memory), f.primed(f.var(region.memory))
+    is_off = f.eq(f.var(region.variable), Const(INACTIVE))
+    state = work.machine.vertices[region.state].literal
+    now = f.implies(f.negate(is_off), f.eq(after, f.var(region.variable)))
+    text = words.REMEMBERS.format(memory=region.memory, region=region.variable)
+    yield Conjunct(tidy(now, work.domains), Class.SAFETY, origin, text)
+    kept = f.implies(is_off, f.eq(after, f.var(region.memory)))
+    text = words.KEEPS.format(memory=region.memory, state=state)
+    yield Conjunct(kept, Class.SAFETY, origin, text)
+
+
 def _assumptions(work: Derivation) -> Iterator[Conjunct]:
     for state in work.machine.states():
         if state.done:
             formula = f.either(f.negate(f.var(state.do)), f.var(state.done))
-            yield Conjunct(formula, Class.LIVENESS, state.id, words.ends(state))
+            origin = element_id(state.id)
+            yield Conjunct(formula, Class.LIVENESS, origin, words.ends(state))

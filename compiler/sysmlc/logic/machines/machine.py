@@ -15,6 +15,19 @@ NO_EVENT = "none"
 """Literal of ``event`` when nothing happens, and of a choice that was not made."""
 INACTIVE = "inactive"
 """Literal of an inner region whose state is not active."""
+HISTORIES = ("shallow-history", "deep-history")
+_WITHIN = "\x1f"
+"""Between the id of a submachine state and ids of what it has of its submachine."""
+
+
+def id_within(state: str, id: str) -> str:
+    """The id that an element of a submachine has within a state that is such a submachine."""
+    return f"{state}{_WITHIN}{id}" if state else id
+
+
+def element_id(id: str) -> str:
+    """The id of the element that is drawn, of a vertex, region or transition."""
+    return id.rpartition(_WITHIN)[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +84,11 @@ Occurrence = OnEvent | AfterTicks | OnRise | WhenTold
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A transition; without occurrences it is a completion transition (of a state)."""
+    """A transition; without occurrences it is a completion transition (of a state).
+
+    ``also`` are the other transitions that lead to the join that it leads to: they are taken
+    together, when all their sources are complete.
+    """
 
     id: str
     literal: str
@@ -82,6 +99,12 @@ class Transition:
     occurrences: tuple[Occurrence, ...]
     guard: Expression | None
     effect: tuple[Action, ...]
+    also: tuple["Transition", ...] = ()
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The vertices that it leaves."""
+        return self.source, *(one.source for one in self.also)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +114,7 @@ class Vertex:
     ``do`` is the output that holds while the state is active, ``done`` the input that says
     its end; ``timer`` counts the steps that the state has been active; ``pick`` says which of
     several enabled outgoing transitions was taken. Empty names: there is no such variable.
+    ``border`` is the state that an entry or exit point belongs to.
     """
 
     id: str
@@ -104,6 +128,7 @@ class Vertex:
     done: str = ""
     timer: str = ""
     pick: str = ""
+    border: str = ""
 
     @property
     def is_stable(self) -> bool:
@@ -113,7 +138,11 @@ class Vertex:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A region: its variable has the names of its states, and ``inactive`` when it is nested."""
+    """A region: its variable has the names of its states, and ``inactive`` when it is nested.
+
+    ``memory`` is the variable that has what it was before it became inactive, where history is
+    asked for.
+    """
 
     id: str
     variable: str
@@ -121,6 +150,7 @@ class Region:
     """The state that owns it, or empty for a region of the machine."""
     initial: str
     vertices: tuple[str, ...]
+    memory: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,9 +184,10 @@ class Machine:
         return [one for group in self.outgoing.values() for one in group]
 
     def above(self, vertex: str) -> list[str]:
-        """The states that contain the vertex, innermost first."""
-        found: list[str] = []
-        region = self.vertices[vertex].region
+        """The states that contain the vertex, innermost first; also those on whose border it is."""
+        one = self.vertices[vertex]
+        found = [one.border] if one.border else []
+        region = one.region
         while region and self.regions[region].state:
             found.append(self.regions[region].state)
             region = self.vertices[found[-1]].region
@@ -166,18 +197,43 @@ class Machine:
         """Whether the vertex lies strictly inside the state."""
         return bool(self.vertices[state].regions) and state in self.above(vertex)
 
-    def main_region(self, source: str, target: str, kind: str) -> str:
-        """The region that a transition changes: what is active in it is left, then the target
-        is entered. Empty for an internal transition.
+    def around(self, vertex: str) -> list[str]:
+        """The regions that contain the vertex, innermost first."""
+        found = [self.vertices[one].region for one in [vertex, *self.above(vertex)]]
+        return list(dict.fromkeys(found))
+
+    def is_split(self, vertex: str) -> bool:
+        """Whether all transitions that leave it are taken together, into regions of their own.
+
+        Those of a fork, and of an entry point of an orthogonal state (UML 2.5.1, 14.2.3.7).
+        """
+        one, outgoing = self.vertices[vertex], self.outgoing.get(vertex, ())
+        if one.kind == "entry-point" and len(outgoing) > 1:
+            own = self.vertices[one.border].regions if one.border else ()
+            into = [
+                region for each in outgoing for region in self.around(each.target) if region in own
+            ]
+            return len(set(into)) == len(outgoing)
+        return one.kind == "fork"
+
+    def main_region(self, one: Transition) -> str | None:
+        """The region that a transition changes: what is active in it is left, then the way to
+        the target is entered. Empty for an internal transition, None when there is none.
 
         UML 2.5.1 clauses 14.2.3.8.1 and 14.2.3.9.5: the least region that contains source and
-        target; a local transition to inside its source does not leave the source.
+        target; a local transition to inside its source does not leave the source. An exit point
+        is reached without leaving its state, an entry point when its state is entered.
         """
-        if kind == "internal":
+        if one.kind == "internal":
             return ""
-        inside = [self.vertices[one].region for one in [target, *self.above(target)]]
-        if kind == "local" and self.contains(source, target):
-            own = self.vertices[source].regions
-            return next(region for region in inside if region in own)
-        around = [self.vertices[one].region for one in [source, *self.above(source)]]
-        return next(region for region in around if region in inside)
+        start, end = self.vertices[one.source], self.vertices[one.target]
+        around, inside = self.around(one.source), self.around(one.target)
+        if start.kind == "entry-point" and start.border:
+            own = self.vertices[start.border].regions
+            return next((region for region in inside if region in own), None)
+        if end.kind == "exit-point" and end.border in self.above(one.source):
+            own = self.vertices[end.border].regions
+            return next((region for region in around if region in own), None)
+        if one.kind == "local" and self.contains(one.source, one.target):
+            return next(region for region in inside if region in start.regions)
+        return next((region for region in around if region in inside), None)

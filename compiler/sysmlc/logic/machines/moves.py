@@ -16,7 +16,7 @@ from sysmlc.logic.domains import valuations
 from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines import words as words
-from sysmlc.logic.machines.checks import simultaneous
+from sysmlc.logic.machines.competition import simultaneous
 from sysmlc.logic.machines.machine import (
     NO_EVENT,
     AfterTicks,
@@ -27,8 +27,10 @@ from sysmlc.logic.machines.machine import (
     Transition,
     Vertex,
     WhenTold,
+    element_id,
 )
-from sysmlc.logic.machines.paths import LIMIT, Explorer, Path, TooManyPaths
+from sysmlc.logic.machines.path import LIMIT, Path, TooManyPaths
+from sysmlc.logic.machines.paths import Explorer
 from sysmlc.logic.samples import arrow, choice, machine
 from sysmlc.logic.simplify import simplified, tidy
 from sysmlc.values import dataclass, replace
@@ -57,6 +59,7 @@ BLOCKED = rule(
         arrow("x", "a", guard="else"),
     ),
 )
+_OPEN = ("level < 9", "level > 10 - 9")
 TOO_LARGE = rule(
     "SM430",
     "too-many-paths",
@@ -67,12 +70,12 @@ TOO_LARGE = rule(
     help="split the machine",
     wrong=machine(
         *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(9))),
-        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(8) for g in ("ready", "not ready")),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(8) for g in _OPEN),
         arrow("x8", "b"),
     ),
     right=machine(
         *(arrow("a", "x0", "start"), *(choice(f"x{n}") for n in range(3))),
-        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(2) for g in ("ready", "not ready")),
+        *(arrow(f"x{n}", f"x{n + 1}", guard=g) for n in range(2) for g in _OPEN),
         arrow("x2", "b"),
     ),
 )
@@ -110,6 +113,7 @@ def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
             return None
         found.append(Move(one, tuple(paths), _enabled(machine, domains, one, paths)))
         _report(graph, machine, domains, one, paths, sink)
+    found = _joined(machine, domains, found)
     moves = tuple(replace(m, fires=tidy(_fires(machine, m, found), domains)) for m in found)
     try:
         starts = tuple(_starts(machine, domains, explorer))
@@ -119,8 +123,28 @@ def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
     return Derivation(machine, domains, moves, starts)
 
 
+def _joined(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
+    """The moves; of those that a join makes one, what goes before them is part of them."""
+    found = {move.transition.id: move for move in moves}
+    joined = [move for move in moves if move.transition.also]
+    for move in sorted(joined, key=lambda one: -len(machine.above(one.transition.source))):
+        inner = [one.enabled for one in found.values() if _is_inside(machine, one, move)]
+        enabled = tidy(f.both(move.enabled, *map(f.negate, inner)), domains)
+        found[move.transition.id] = replace(move, enabled=enabled)
+    return list(found.values())
+
+
+def _is_inside(machine: Machine, one: Move, other: Move) -> bool:
+    """Whether the first leaves a state inside one that the other leaves."""
+    return any(
+        machine.contains(outer, inner)
+        for outer in other.transition.sources
+        for inner in one.transition.sources
+    )
+
+
 def _give_up(graph: Graph, id: str, named: str, sink: Sink) -> None:
-    sink.report(TOO_LARGE, graph.subject(graph[id]), transition=named, limit=LIMIT)
+    sink.report(TOO_LARGE, graph.subject(graph[element_id(id)]), transition=named, limit=LIMIT)
 
 
 def _starts(machine: Machine, domains: Mapping[str, Domain], explorer: Explorer) -> Iterator[Path]:
@@ -145,7 +169,8 @@ def _enabled(
 ) -> Formula:
     occurs = _occurrence(machine, one)
     way = _way(machine, domains, one, paths)
-    return tidy(f.both(active(machine, one.source), occurs, way), domains)
+    leaving = (active(machine, source) for source in one.sources)
+    return tidy(f.both(*leaving, occurs, way), domains)
 
 
 def _way(
@@ -169,7 +194,7 @@ def active(machine: Machine, vertex: str) -> Formula:
 def _occurrence(machine: Machine, one: Transition) -> Formula:
     state = machine.vertices[one.source]
     if not one.occurrences:
-        return _complete(machine, state)
+        return f.both(*(_complete(machine, machine.vertices[each]) for each in one.sources))
     return f.either(*(_occurs(machine, state, each) for each in one.occurrences))
 
 
@@ -212,10 +237,10 @@ def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Formula
     """What goes first: transitions of inner states, and the completion of the same state."""
     mine = move.transition
     for other in moves:
-        if machine.contains(mine.source, other.transition.source):
+        if _is_inside(machine, other, move):
             if simultaneous(mine, other.transition):
                 yield other.enabled
-        elif other.transition.source == mine.source and _is_later(mine, other.transition):
+        elif mine.source in other.transition.sources and _is_later(mine, other.transition):
             yield other.enabled
 
 
@@ -236,7 +261,7 @@ def _report(
     paths: list[Path],
     sink: Sink,
 ) -> None:
-    subject = graph.subject(graph[one.id])
+    subject = graph.subject(graph[element_id(one.id)])
     named = words.name_transition(one)
     for path in paths:
         for variable, _ in path.saturated:
@@ -247,5 +272,5 @@ def _report(
     guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
     way = _way(machine, domains, one, paths)
     if simplified(f.implies(guard, way), domains) != f.TRUE:
-        name = graph[target.id].name or target.kind
+        name = graph[element_id(target.id)].name or target.kind
         sink.report(BLOCKED, subject, transition=named, vertex=name)

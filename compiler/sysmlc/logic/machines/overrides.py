@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic.machines.checks import compatible
-from sysmlc.logic.machines.machine import Machine, OnEvent, Transition
+from sysmlc.logic.machines.competition import compatible
+from sysmlc.logic.machines.machine import Machine, OnEvent, Transition, element_id
 from sysmlc.logic.samples import arrow, machine_of, region, state
 
 
@@ -36,7 +36,7 @@ def report_overrides(graph: Graph, machine: Machine, sink: Sink) -> None:
         inner = list(_before(machine, outer))
         if inner:
             named = ", ".join(f"'{one.words}'" for one in inner)
-            subject = graph.subject(graph[outer.id])
+            subject = graph.subject(graph[element_id(outer.id)])
             sink.report(OVERRIDDEN, subject, transition=f"'{outer.words}'", inner=named)
 
 

@@ -12,15 +12,21 @@ A trace is a list of valuations. The reaction to the inputs of one step is seen 
   before the triggered transitions of the same source. Inner transitions go before outer ones;
   orthogonal regions react independently, each reading the values before the step.
 - Taking a transition runs exit behaviours (innermost first), effects, entry behaviours
-  (outermost first) in sequence. Guards behind a choice read the values reached there, other
-  guards those before the transition. Values that would leave a range stop at its bound.
+  (outermost first) in sequence, for each transition on the way: a state is left when the way
+  leads out of it, and entered when it leads in. Regions of entered states to which no way leads
+  start by themselves. Guards behind a choice read the values reached there, other guards those
+  before the transition. Values that would leave a range stop at its bound.
+- All transitions that leave a fork are taken, in their order. Those that lead to a join are one
+  transition: enabled when all their sources are complete and nothing inside them is enabled.
+- A history pseudostate leads to the state that its region was in when it was last active, a
+  deep one to all that was active in it; where it never was, or was in a final state, its own
+  transition is taken, else the region starts by itself.
 - An event that enables nothing is lost. So is one that comes with a completion.
 
 UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; one step a run to completion.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
 from itertools import product
 
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
@@ -29,38 +35,27 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.machine import (
     INACTIVE,
     NO_EVENT,
-    Action,
     AfterTicks,
-    Assign,
     Machine,
     Occurrence,
     OnEvent,
     OnRise,
-    Raise,
-    Transition,
     Vertex,
     WhenTold,
 )
+from sysmlc.logic.machines.reaction import (
+    Run,
+    active_in,
+    begin,
+    bounded,
+    fill,
+    is_active,
+    last_of,
+    take,
+)
 from sysmlc.logic.machines.step_values import value_of
-from sysmlc.values import dataclass, replace
 
 Valuation = dict[str, Literal]
-
-
-@dataclass(frozen=True, slots=True)
-class _Run:
-    """How far the reaction has come; ``store`` has the values reached, regions included."""
-
-    store: Mapping[str, Literal]
-    raised: frozenset[str] = frozenset()
-    picked: Mapping[str, str] = field(default_factory=dict)
-    left: frozenset[str] = frozenset()
-
-    def put(self, name: str, value: Literal) -> "_Run":
-        return replace(self, store={**self.store, name: value})
-
-    def pick(self, name: str, literal: str) -> "_Run":
-        return replace(self, picked={**self.picked, name: literal})
 
 
 def inputs_of(machine: Machine) -> list[Variable]:
@@ -76,9 +71,10 @@ def initial(machine: Machine, inputs: Mapping[str, Literal]) -> list[Valuation]:
     found: list[Valuation] = []
     for start in _starts(machine, inputs):
         before = _inactive(machine) | start
-        runs = [_Run(before)]
+        runs = [Run(before)]
         for region in machine.top:
-            runs = [after for run in runs for after in _enter_default(machine, run, region)]
+            begun = [after for run in runs for after in begin(machine, run, None, region)]
+            runs = [after for run in begun for after in fill(machine, run, None)]
         found += [_settle(machine, before, run, inputs, first=True) for run in runs]
     return _distinct(found)
 
@@ -120,7 +116,7 @@ def _inactive(machine: Machine) -> Valuation:
 def _settle(
     machine: Machine,
     now: Mapping[str, Literal],
-    run: _Run,
+    run: Run,
     inputs: Mapping[str, Literal],
     first: bool,
 ) -> Valuation:
@@ -132,11 +128,14 @@ def _settle(
         if state.pick:
             after[state.pick] = run.picked.get(state.pick, NO_EVENT)
         if state.do:
-            after[state.do] = _is_active(machine, after, state.id)
+            after[state.do] = is_active(machine, after, state.id)
         if state.timer:
             after[state.timer] = 0 if first else _ticks(machine, now, after, run, state)
     for name, condition in machine.memories.items():
         after[name] = bool(value_of(machine, condition, after if first else now))
+    for region in machine.regions.values():
+        if region.memory:
+            after[region.memory] = INACTIVE if first else last_of(now, region)
     return after
 
 
@@ -144,19 +143,14 @@ def _ticks(
     machine: Machine,
     now: Mapping[str, Literal],
     after: Mapping[str, Literal],
-    run: _Run,
+    run: Run,
     state: Vertex,
 ) -> int:
-    stays = _is_active(machine, now, state.id) and state.id not in run.left
-    if not stays or not _is_active(machine, after, state.id):
+    stays = is_active(machine, now, state.id) and state.id not in run.left
+    if not stays or not is_active(machine, after, state.id):
         return 0
     domain = machine.variable(state.timer).domain
-    return _bounded(int(now[state.timer]) + 1, domain) if isinstance(domain, IntegerDomain) else 0
-
-
-def _is_active(machine: Machine, store: Mapping[str, Literal], vertex: str) -> bool:
-    one = machine.vertices[vertex]
-    return store[machine.regions[one.region].variable] == one.literal and one.is_stable
+    return bounded(int(now[state.timer]) + 1, domain) if isinstance(domain, IntegerDomain) else 0
 
 
 def _distinct(found: list[Valuation]) -> list[Valuation]:
@@ -170,24 +164,43 @@ def _distinct(found: list[Valuation]) -> list[Valuation]:
 # -- which transitions -------------------------------------------------------------------------
 
 
-def _reactions(machine: Machine, now: Mapping[str, Literal]) -> list[_Run]:
+def _reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Run]:
     enabled = {
         state.id: options
         for state in machine.states()
-        if _is_active(machine, now, state.id)
+        if is_active(machine, now, state.id)
         for options in [_options(machine, now, state)]
         if options
     }
+    _let_join(machine, now, enabled)
     sources = [one for one in enabled if not any(machine.contains(one, other) for other in enabled)]
-    combined = [_Run(now)]
+    combined = [Run(now)]
     for source in sources:
         combined = [_merge(now, one, two) for one in combined for two in enabled[source]]
     return combined
 
 
-def _merge(before: Mapping[str, Literal], one: _Run, two: _Run) -> _Run:
+def _let_join(machine: Machine, now: Mapping[str, Literal], enabled: dict[str, list[Run]]) -> None:
+    """What is joined goes before what else leaves its sources and the states around them."""
+    joined = [one for one in machine.transitions() if one.also]
+    for one in sorted(joined, key=lambda each: -len(machine.above(each.source))):
+        states = [machine.vertices[source] for source in one.sources]
+        is_ready = all(
+            is_active(machine, now, state.id) and _is_complete(machine, now, state)
+            for state in states
+        )
+        inside = [o for o in enabled for state in states if machine.contains(state.id, o)]
+        runs = take(machine, now, one) if is_ready and not inside else []
+        if runs:
+            later = {each for s in one.sources for each in (s, *machine.above(s))}
+            for each in later.intersection(enabled):
+                del enabled[each]
+            enabled[one.source] = runs
+
+
+def _merge(before: Mapping[str, Literal], one: Run, two: Run) -> Run:
     changed = {name: value for name, value in two.store.items() if value != before[name]}
-    return _Run(
+    return Run(
         {**one.store, **changed},
         one.raised | two.raised,
         {**one.picked, **two.picked},
@@ -195,16 +208,16 @@ def _merge(before: Mapping[str, Literal], one: _Run, two: _Run) -> _Run:
     )
 
 
-def _options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> list[_Run]:
+def _options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> list[Run]:
     """All ways to take a transition that leaves the state."""
-    outgoing = machine.outgoing.get(state.id, ())
+    outgoing = [one for one in machine.outgoing.get(state.id, ()) if not one.also]
     completing = [one for one in outgoing if not one.occurrences]
     if _is_complete(machine, now, state):
-        found = [run for one in completing for run in _take(machine, now, one)]
+        found = [run for one in completing for run in take(machine, now, one)]
         if found:
             return found
     triggered = [one for one in outgoing if _occurs(machine, now, state, one.occurrences)]
-    return [run for one in triggered for run in _take(machine, now, one)]
+    return [run for one in triggered for run in take(machine, now, one)]
 
 
 def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> bool:
@@ -213,7 +226,7 @@ def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) ->
 
 
 def _is_final(machine: Machine, now: Mapping[str, Literal], region: str) -> bool:
-    return any(one.kind == "final" for one in _active(machine, now, region))
+    return any(one.kind == "final" for one in active_in(machine, now, region))
 
 
 def _occurs(
@@ -237,110 +250,3 @@ def _occurs(
         if happens:
             return True
     return False
-
-
-# -- taking a transition -----------------------------------------------------------------------
-
-
-def _take(machine: Machine, now: Mapping[str, Literal], first: Transition) -> list[_Run]:
-    found: list[_Run] = []
-    for trail in _trails(machine, first):
-        end = trail[-1].target
-        region = machine.main_region(first.source, end, first.kind)
-        begun = _Run(now) if not region else _leave(machine, _Run(now), region)
-        passed = _pass(machine, begun, trail, now)
-        if passed is None:
-            continue
-        found += [passed] if not region else _enter(machine, passed, region, end)
-    return found
-
-
-def _trails(machine: Machine, first: Transition) -> Iterator[tuple[Transition, ...]]:
-    """All ways on from a transition, through pseudostates, to a stable vertex."""
-    if first.kind == "internal" or machine.vertices[first.target].is_stable:
-        yield (first,)
-        return
-    for following in machine.outgoing[first.target]:
-        for rest in _trails(machine, following):
-            yield (first, *rest)
-
-
-def _pass(
-    machine: Machine, run: _Run, trail: tuple[Transition, ...], now: Mapping[str, Literal]
-) -> _Run | None:
-    """The run after the effects of a trail, or None when a guard on the way is false."""
-    seen = now
-    for one in trail:
-        source = machine.vertices[one.source]
-        if source.kind == "choice":
-            seen = run.store
-        if one.guard is not None and not value_of(machine, one.guard, seen):
-            return None
-        if source.pick:
-            run = run.pick(source.pick, one.literal)
-        run = _act(machine, run, one.effect)
-    return run
-
-
-def _leave(machine: Machine, run: _Run, region: str) -> _Run:
-    """Leave what is active in a region, innermost first."""
-    for vertex in _active(machine, run.store, region):
-        for inner in vertex.regions:
-            run = _leave(machine, run, inner)
-        run = _act(machine, run, vertex.exit)
-        run = replace(run, left=run.left | {vertex.id})
-    return run.put(machine.regions[region].variable, INACTIVE)
-
-
-def _active(machine: Machine, store: Mapping[str, Literal], region: str) -> list[Vertex]:
-    literal = store[machine.regions[region].variable]
-    inside = [one for one in machine.vertices.values() if one.region == region]
-    return [one for one in inside if one.is_stable and one.literal == literal]
-
-
-def _enter(machine: Machine, run: _Run, region: str, target: str) -> list[_Run]:
-    """Enter states from the region down to the target, outermost first, then what is in it."""
-    chain = [target, *machine.above(target)]
-    state = machine.vertices[next(one for one in chain if machine.vertices[one].region == region)]
-    entered = run.put(machine.regions[region].variable, state.literal)
-    runs = [_act(machine, entered, state.entry)]
-    for inner in state.regions:
-        holds_target = any(machine.vertices[one].region == inner for one in chain)
-        runs = [
-            after
-            for one in runs
-            for after in (
-                _enter(machine, one, inner, target)
-                if holds_target
-                else _enter_default(machine, one, inner)
-            )
-        ]
-    return runs
-
-
-def _enter_default(machine: Machine, run: _Run, region: str) -> list[_Run]:
-    found: list[_Run] = []
-    for first in machine.outgoing[machine.regions[region].initial]:
-        for trail in _trails(machine, first):
-            passed = _pass(machine, run, trail, run.store)
-            if passed is not None:
-                found += _enter(machine, passed, region, trail[-1].target)
-    return found
-
-
-def _act(machine: Machine, run: _Run, actions: tuple[Action, ...]) -> _Run:
-    for action in actions:
-        match action:
-            case Raise(output):
-                run = replace(run, raised=run.raised | {output})
-            case Assign(variable, expression):
-                value = value_of(machine, expression, run.store)
-                domain = machine.variable(variable).domain
-                if isinstance(domain, IntegerDomain):
-                    value = _bounded(int(value), domain)
-                run = run.put(variable, value)
-    return run
-
-
-def _bounded(value: int, domain: IntegerDomain) -> int:
-    return max(domain.low, min(domain.high, value))

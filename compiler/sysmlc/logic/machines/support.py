@@ -11,8 +11,8 @@ NOT_DERIVED = rule(
     "{what} of state machine '{machine}' is not derived; the component gets no contract",
     why="A contract that leaves part of the diagram out would promise what the diagram does "
     "not say.",
-    help="draw it with states, choices and junctions, or leave the machine without contract",
-    wrong=machine(choice("h", "deep-history"), arrow("a", "h", "start"), arrow("h", "b")),
+    help="draw it with states and pseudostates, or leave the machine without contract",
+    wrong=machine(choice("h", "terminate"), arrow("a", "h", "start")),
     right=machine(choice("h", "junction"), arrow("a", "h", "start"), arrow("h", "b")),
 )
 NO_INITIAL = rule(
@@ -38,22 +38,66 @@ DANGLING = rule(
     "      -> flow-source a\n      -> flow-target a\n",
 )
 
-_PSEUDO = frozenset(["initial", "choice", "junction", "entry-point", "exit-point"])
+_PSEUDO = frozenset(
+    [
+        *("initial", "choice", "junction", "fork", "join", "shallow-history", "deep-history"),
+        *("entry-point", "exit-point", "connection-point"),
+    ]
+)
 _REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRANSITION])
 
 
 def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
     """Whether all of the machine can be derived; what cannot is reported."""
+    drawn = [one for each in _with_submachines(graph, machine) for one in graph.subtree(each)]
     missing = [
         (element, what)
-        for element in graph.subtree(machine)
-        for what in [_unsupported(graph, element)]
+        for element in drawn
+        for what in [_unsupported(graph, element) or _endless(graph, element)]
         if what
     ]
     for element, what in missing:
         sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine.name)
-    broken = [_is_broken(graph, element, sink) for element in graph.subtree(machine)]
+    broken = [_is_broken(graph, element, sink) for element in drawn]
     return not missing and not any(broken)
+
+
+def _with_submachines(graph: Graph, machine: Element) -> list[Element]:
+    """The machine and all that states of it are, at whatever depth."""
+    found = [machine]
+    for one in found:
+        for state in graph.subtree(one):
+            called = submachine_of(graph, state)
+            if called is not None and called not in found:
+                found.append(called)
+    return found
+
+
+def submachine_of(graph: Graph, state: Element) -> Element | None:
+    """The state machine that a state is, when it is one that is drawn here."""
+    if state.kind is not Kind.STATE:
+        return None
+    called = graph.target(state, Edge.CALLS)
+    is_drawn = called is not None and called.kind is Kind.STATE_MACHINE
+    return called if is_drawn and called is not None and not called.attrs.get("external") else None
+
+
+def _endless(graph: Graph, state: Element) -> str:
+    """A submachine state of a machine that is in itself again."""
+    called = submachine_of(graph, state)
+    if called is None or called not in _callers(graph, state):
+        return ""
+    return f"submachine state '{state.name}', in which '{called.name}' contains itself,"
+
+
+def _callers(graph: Graph, state: Element) -> list[Element]:
+    """The state machines around a state, and those of the states that are them."""
+    found = [one for one in graph.ancestors(state) if one.kind is Kind.STATE_MACHINE]
+    for one in found:
+        for user in graph.sources(one, Edge.CALLS):
+            above = [up for up in graph.ancestors(user) if up.kind is Kind.STATE_MACHINE]
+            found += (up for up in above if user.kind is Kind.STATE and up not in found)
+    return found
 
 
 def _unsupported(graph: Graph, element: Element) -> str:
@@ -70,12 +114,15 @@ def _unsupported(graph: Graph, element: Element) -> str:
         for edge in (Edge.CALLS, Edge.TYPED_BY, Edge.REFERENCES)
         for target in graph.targets(element, edge)
     )
-    return f"submachine state '{element.name}'" if is_submachine else ""
+    is_known = submachine_of(graph, element) is not None
+    return f"submachine state '{element.name}'" if is_submachine and not is_known else ""
 
 
 def _unsupported_pseudostate(graph: Graph, element: Element) -> str:
     if element.subkind not in _PSEUDO:
         return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
+    if element.subkind == "connection-point" and len(graph.targets(element, Edge.REFERENCES)) != 1:
+        return f"the connection point '{element.name}' that stands for no one point"
     region = graph.owner(element)
     is_second = region is not None and initial_of(graph, region) not in (None, element)
     if element.subkind == "initial" and is_second:

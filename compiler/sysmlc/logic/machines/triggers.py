@@ -23,6 +23,8 @@ from sysmlc.logic.machines.machine import (
     Transition,
     Vertex,
     WhenTold,
+    element_id,
+    id_within,
 )
 from sysmlc.logic.names import unique
 from sysmlc.values import dataclass
@@ -40,6 +42,22 @@ class Parts:
     events: dict[str, str] = field(default_factory=dict)
     bounds: dict[str, int] = field(default_factory=dict)
     memories: dict[str, Expression] = field(default_factory=dict)
+    within: str = ""
+    """The state whose submachine is read, as id of the machine; empty outside submachines."""
+    aliases: dict[str, list[str]] = field(default_factory=dict)
+    """Entry and exit points of a submachine by what stands for them at the submachine state."""
+
+    def key(self, element: Element) -> str:
+        """The id that an element has in the machine."""
+        return id_within(self.within, element.id)
+
+    def element(self, key: str) -> Element:
+        """What is drawn with an id of the machine."""
+        return self.reading.graph[element_id(key)]
+
+    def state_of(self, key: str) -> str:
+        """The submachine state in whose submachine something with this id is; empty in none."""
+        return key[: -len(element_id(key)) - 1] if key != element_id(key) else ""
 
 
 def occurrence_of(parts: Parts, trigger: Element, vertex: Vertex) -> Occurrence:

@@ -12,12 +12,14 @@ from sysmlc.logic.machines.machine import (
     Vertex,
     WhenTold,
 )
-from sysmlc.logic.machines.paths import Path
+from sysmlc.logic.machines.path import Path
 from sysmlc.logic.printing import print_formula, print_literal
 
 CLOCK_RUNS = "'{clock}' counts the steps that '{state}' has been active."
 CLOCK_STOPS = "'{clock}' stops counting when no transition waits for more."
 CLOCK_RESETS = "'{clock}' is 0 when '{state}' is entered and while it is not active."
+REMEMBERS = "'{memory}' says what '{region}' was, one step later."
+KEEPS = "'{memory}' keeps what it says while '{state}' is not active: history leads back to it."
 INITIAL_WAYS = "The initial transition is taken on one of the ways that are open."
 
 
@@ -28,9 +30,9 @@ def name_transition(one: Transition) -> str:
 
 def transition(machine: Machine, one: Transition, path: Path, way: Formula) -> str:
     """What taking the transition on this path means; ``way`` is what tells it from others."""
-    source = machine.vertices[one.source].literal
+    source = "' and '".join(machine.vertices[each].literal for each in one.sources)
     reasons = " or ".join(_occurrence(each) for each in one.occurrences)
-    when = reasons or f"'{source}' is complete"
+    when = reasons or (f"'{source}' are complete" if one.also else f"'{source}' is complete")
     guard = [] if one.guard is None else [f"[{_shown(one.guard)}]"]
     chosen = [] if way == TRUE else [print_formula(way)]
     conditions = " and ".join([when, *guard, *chosen])
