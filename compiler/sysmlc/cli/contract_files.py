@@ -71,7 +71,7 @@ def read_contracts(
 def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import session
     from sysmlc.diagnostics import Sink
-    from sysmlc.logic.composite import Composite
+    from sysmlc.logic.composition.derivation import compose
     from sysmlc.logic.contract import Contract
 
     made = session.compile_unit((file,), config, settings)
@@ -86,8 +86,8 @@ def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFil
     contracts = made.graph.derived(Contract) if made.exit_code() < 2 else ()
     if not contracts and not findings and made.exit_code() < 2:
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
-    composites = made.graph.derived(Composite)
     sink = Sink(config.rules)
+    composites = compose(made.graph, contracts, sink)
     return ContractFile(
         tuple(contracts), tuple(composites), sink, place, findings, made.sources, made.root
     )

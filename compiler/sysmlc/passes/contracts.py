@@ -64,11 +64,6 @@ class Contracts:
             graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink
         )
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
-        if found:
-            from sysmlc.logic.composite import Composite
-            from sysmlc.logic.composition.derivation import compose
-
-            graph.store(Composite, list(compose(graph, found, assumed, sink)))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
         for element in graph.of_kind(Kind.STATE_MACHINE):

@@ -4,7 +4,8 @@ import pytest
 from reading_v2 import read
 
 from sysmlc.diagnostics import Sink, catalogue
-from sysmlc.logic.composite import Composite
+from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits, together
 from sysmlc.synthesis.decide import Options
@@ -17,7 +18,7 @@ def checked(text, limits=None):
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     options = Options("", limits or Limits())
-    made = graph.derived(Composite)
+    made = list(compose(graph, graph.derived(Contract), sink))
     results = together.check_together(made, lambda it: graph.subject(graph[it]), sink, options)
     return list(results), list(sink)
 

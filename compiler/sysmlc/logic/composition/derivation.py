@@ -95,18 +95,17 @@ UNCLEAR_FLOW = rule(
 )
 
 
-def compose(
-    graph: Graph, contracts: Iterable[Contract], assumed: tuple[int, int], sink: Sink
-) -> Iterator[Composite]:
+def compose(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator[Composite]:
     """A composite for each block that has parts with contracts, and something to compare.
 
     A block takes part in itself by a contract whose outputs its parts read and none of them
     decides (a controller, a coordinator), and by its behaviour; what its parts decide is what
-    they make up together. ``assumed`` is the range of Integers that have none.
+    they make up together. ``contracts`` are those that the pass of that name derives from the
+    graph; composites come in the order of their components.
     """
     known = {one.origin: one for one in contracts}
     for element in _blocks(graph, known):
-        block = read_block(graph, element, known, assumed)
+        block = read_block(graph, element, known)
         composite = _composite(block, sink)
         if composite is not None:
             yield composite

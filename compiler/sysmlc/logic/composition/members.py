@@ -7,7 +7,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.composition.joints import Joints
 from sysmlc.logic.composition.structure import ITSELF, End, Usage, links, usages
 from sysmlc.logic.contract import Contract, Owner
-from sysmlc.logic.expressions.context import Context, context_of
+from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import context_classifier
 from sysmlc.logic.requirements.statements import definition_of
 from sysmlc.values import dataclass
@@ -45,7 +45,6 @@ class Block:
     element: Element
     contracts: Mapping[str, Contract]
     """Contracts by the id of what they are contracts of."""
-    assumed: tuple[int, int]
     members: list[Member] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)
     """Dotted names of the features of each usage."""
@@ -54,30 +53,25 @@ class Block:
     """Ends between which messages pass."""
 
 
-def read_block(
-    graph: Graph,
-    element: Element,
-    contracts: Mapping[str, Contract],
-    assumed: tuple[int, int] = (0, 15),
-) -> Block:
+def read_block(graph: Graph, element: Element, contracts: Mapping[str, Contract]) -> Block:
     """A block with its members and what of them is joined.
 
     ``contracts`` are those of behaviours and of requirements, by the id of the behaviour and of
-    the requirements' subject; ``assumed`` is the range of Integers that have none.
+    the requirements' subject.
     """
-    block = Block(graph, element, contracts, assumed)
-    block.names[ITSELF] = list(context_of(graph, element, assumed).features)
+    block = Block(graph, element, contracts)
+    block.names[ITSELF] = list(variables_of(graph, element))
     _open(block, element, ITSELF, {element.id})
     return block
 
 
 def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
     for usage in usages(block.graph, element, path):
-        context = context_of(block.graph, usage.type_, block.assumed)
-        block.names[usage.path] = list(context.features)
+        variables = variables_of(block.graph, usage.type_)
+        block.names[usage.path] = list(variables)
         contract = contract_of(block, usage)
         if contract is not None:
-            block.members.append(_member(block, usage.path, usage.element, contract, context))
+            block.members.append(_member(block, usage.path, usage.element, contract, variables))
         elif usage.type_.id not in around and usage.element.kind is not Kind.OPERATION:
             _open(block, usage.type_, usage.path, around | {usage.type_.id})
     for side, other in links(block.graph, element, path):
@@ -107,21 +101,21 @@ def behaviour(block: Block, type_: Element) -> Contract | None:
 
 def itself(block: Block, contract: Contract) -> Member:
     """The block as one that takes part, by its behaviour or by what is demanded of it."""
-    context = context_of(block.graph, block.element, block.assumed)
-    return _member(block, ITSELF, block.element, contract, context)
+    variables = variables_of(block.graph, block.element)
+    return _member(block, ITSELF, block.element, contract, variables)
 
 
 def _member(
-    block: Block, path: str, element: Element, contract: Contract, context: Context
+    block: Block, path: str, element: Element, contract: Contract, variables: Mapping[str, str]
 ) -> Member:
     origin = block.graph[contract.origin]
     if origin.kind in query.BEHAVIORS:
         around = context_classifier(block.graph, origin)
-        context = context_of(block.graph, around, block.assumed, origin)
+        variables = variables_of(block.graph, around, origin)
     elif origin.kind is Kind.OPERATION:
-        context = context_of(block.graph, definition_of(block.graph, origin), block.assumed)
+        variables = variables_of(block.graph, definition_of(block.graph, origin))
     known = {one.name for one in contract.variables}
-    found = {n: one.variable for n, one in context.features.items() if one.variable in known}
+    found = {name: variable for name, variable in variables.items() if variable in known}
     return Member(path, path or element.name, element.id, contract, found)
 
 

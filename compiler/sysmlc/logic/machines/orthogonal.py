@@ -61,6 +61,11 @@ CROSSING = rule(
 
 def is_undisturbed(graph: Graph, machine: Machine, sink: Sink) -> bool:
     """Whether orthogonal regions react independently; what stands against it is reported."""
+    is_orthogonal = len(machine.top) > 1 or any(
+        len(one.regions) > 1 for one in machine.vertices.values()
+    )
+    if not is_orthogonal:
+        return True
     return not [*_races(graph, machine, sink), *_crossings(graph, machine, sink)]
 
 
