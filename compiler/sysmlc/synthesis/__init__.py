@@ -5,8 +5,9 @@
 """
 
 from sysmlc.synthesis.game import Game, OutsideGr1Error, Part, make_game
+from sysmlc.synthesis.layers import Layer
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Node
-from sysmlc.synthesis.solve import Layer, Solution, solve
+from sysmlc.synthesis.solve import Solution, solve
 from sysmlc.synthesis.symbols import SymbolError, Symbols
 
 __all__ = [

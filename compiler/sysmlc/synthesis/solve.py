@@ -6,32 +6,18 @@ again, the middle (least) ones the layers on the way to one goal, the inner (gre
 in which the system may stay since an assumption does not recur.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import field
 from itertools import cycle
 
 from sysmlc.synthesis.arena import Arena, Steps, plain
 from sysmlc.synthesis.game import Game
+from sysmlc.synthesis.layers import Layer, Way
 from sysmlc.synthesis.manager import Node
 from sysmlc.synthesis.narrow import invariant, without_ranges
 from sysmlc.synthesis.routes import SingleSteps, routes
 from sysmlc.synthesis.symmetry import Exchange, image, orbits
 from sysmlc.values import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class Layer:
-    """States from which the system comes closer to a goal in a step, or stays.
-
-    A state in ``states`` and not in the layer before it is in the goal itself (first layer), can
-    force the layer before, or is in one of ``waiting``.
-    """
-
-    states: Node
-    """This layer and all before it."""
-    waiting: tuple[Node, ...]
-    """For each fairness assumption: from here the system comes nearer, or stays here while the
-    assumption does not hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +86,7 @@ class _Solver:
         winning, is_known = self._settled(alike or self._each())
         exchanges = [exchange for found in alike.values() for exchange in found]
         if any(image(self.arena, winning, exchange) != winning for exchange in exchanges):
+            self._layers = [() for _ in self._goals]
             winning, is_known = self._settled(self._each())
         return self._solution(winning, is_known and self._steps.is_won(winning), is_known)
 
@@ -146,38 +133,14 @@ class _Solver:
         self._rounds += 1
         self._steps.confine(winning)
         target = self._goals[goal] & self._steps.controllable(winning) & winning
-        reached, layers = self.arena.manager.false, list[Layer]()
-        while reached != winning:
-            layer = self._layer(target, reached, winning, _at(self._layers[goal], len(layers)))
-            if layer.states == reached:
-                break
+        fairness, before = self.arena.fairness, self._layers[goal]
+        way = Way(self._steps, fairness, winning, before, not self.is_complete)
+        layers: list[Layer] = []
+        for layer in way.layers(target):
             layers.append(layer)
-            reached = layer.states
             self._say(goal, len(layers))
         self._layers[goal] = tuple(layers)
-        return reached
-
-    def _layer(self, target: Node, reached: Node, winning: Node, before: Layer | None) -> Layer:
-        """The next layer; ``before`` is the one at its place when there were more states."""
-        start = target | self._steps.nearer(reached, winning)
-        bounds = before.waiting if before else (winning,) * len(self.arena.fairness)
-        waiting = tuple(
-            self._waiting(start, ~fair, bound & winning)
-            for fair, bound in zip(self.arena.fairness, bounds, strict=True)
-        )
-        states = start
-        for one in waiting:
-            states = states | one
-        return Layer(states, waiting)
-
-    def _waiting(self, start: Node, unfair: Node, bound: Node) -> Node:
-        """Start, and where the system can stay until it is there, unfair for ever."""
-        found = bound | start
-        while True:
-            fewer = found & (start | (unfair & self._steps.controllable(found)))
-            if fewer == found:
-                return found
-            found = fewer
+        return layers[-1].states if layers else self.arena.manager.false
 
     def _say(self, goal: int, layers: int) -> None:
         self.arena.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
@@ -192,8 +155,3 @@ class _Solver:
             self._rounds,
             self._steps.count,
         )
-
-
-def _at(layers: Sequence[Layer], place: int) -> Layer | None:
-    """The layer at a place, or the last one: later ones would have been the same."""
-    return layers[min(place, len(layers) - 1)] if layers else None
