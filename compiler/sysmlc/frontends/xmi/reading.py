@@ -19,6 +19,7 @@ from sysmlc.frontends.xmi import (
     remembered,
     rules,
     snapshot_parts,
+    snapshot_unread,
     snapshot_use,
     unread,
     unread_tags,
@@ -55,7 +56,8 @@ def read(
         if beside or inside:
             snapshots = snapshot_use.read([*beside, *inside], sink)
             snapshot_use.add(unit, contexts, models, snapshots)
-            snapshot_use.account(snapshots, beside, unit, coverage)
+            odd = snapshot_unread.report(snapshots, [*beside, *inside], unit, sink)
+            snapshot_use.account(snapshots, beside, unit, coverage, odd)
         _finish(unit, contexts, sink, coverage)
 
 

@@ -51,6 +51,11 @@ class Entry:
             return "" if self.feature[0].islower() else self.feature
         return written.rpartition(":")[2]
 
+    @property
+    def written(self) -> str:
+        """Its type as coverage calls it."""
+        return self.feature if self.type in ("", self.feature) else f"uml:{self.type}"
+
     def targets(self, feature: str) -> list[str]:
         """Ids that the feature refers to, as attribute or as children."""
         return self.references.get(feature) or self.values.get(feature, "").split()
@@ -88,6 +93,8 @@ class Snapshots:
     def __init__(self, sources: Iterable[Source], problems: list[SourceError]) -> None:
         self.entries: dict[str, Entry] = {}
         self.counts: dict[str, Counter[str]] = {}
+        self.attributes: dict[str, frozenset[str]] = {}
+        """Names of attributes in each snapshot, and some more."""
         self._owned: dict[str, list[Entry]] = {}
         for source in sorted(sources, key=lambda one: one.name):
             self._read(source, problems)
@@ -110,7 +117,7 @@ class Snapshots:
 
     def _read(self, source: Source, problems: list[SourceError]) -> None:
         try:
-            found, self.counts[source.name] = _entries(source)
+            found, self.counts[source.name], self.attributes[source.name] = _entries(source)
         except SourceError as problem:
             if problem.fault is Fault.LIMIT:
                 raise
@@ -136,8 +143,10 @@ def place(entry: Entry) -> tuple[str, int]:
     return entry.source, entry.ordinal
 
 
-def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
-    """The elements with an ID, owned before owner, and the number of all by type.
+def _entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[str]]:
+    """The elements with an ID, owned before owner; the number of all by type; and names.
+
+    The names are those of attributes, as far as no tag has them, as the parser keeps them.
 
     Raises SourceError.
     """
@@ -176,4 +185,5 @@ def _entries(source: Source) -> tuple[list[Entry], Counter[str]]:
     made.StartElementHandler = start
     made.EndElementHandler = end
     parse(source, made)
-    return found, Counter(t or f for t, f in zip(types, features, strict=True))
+    counts = Counter(t or f for t, f in zip(types, features, strict=True))
+    return found, counts, frozenset(made.intern.keys() - local.keys())

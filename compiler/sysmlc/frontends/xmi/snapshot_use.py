@@ -9,10 +9,11 @@ from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.xmi import hrefs
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.profiles import last_segment, mangled
-from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
+from sysmlc.frontends.xmi.snapshot import Snapshots
 from sysmlc.frontends.xmi.snapshot_closure import needed
 from sysmlc.frontends.xmi.snapshot_elements import LibraryElements
 from sysmlc.frontends.xmi.snapshot_rules import BROKEN_SNAPSHOT
+from sysmlc.frontends.xmi.snapshot_unread import by_file
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.sources import Source, SourceError
 
@@ -92,30 +93,36 @@ def _name(source: str, paths: Counter[str]) -> str:
     return project[1].replace("$h", "-") if project else source
 
 
-def account(snapshots: Snapshots, files: Iterable[Source], unit: Unit, coverage: Coverage) -> None:
+def account(
+    snapshots: Snapshots,
+    files: Iterable[Source],
+    unit: Unit,
+    coverage: Coverage,
+    approximated: Iterable[str] = (),
+) -> None:
     """Count every element of the snapshots once: what no model needs stays outside.
 
-    ``files`` are the snapshots that are files; parts of a model are counted there.
+    ``files`` are the snapshots that are files; parts of a model are counted there;
+    ``approximated`` are ids of what is read without some of its attributes.
     """
-    used = {name: Counter[str]() for name in snapshots.counts}
-    for id in unit.library:
-        entry = snapshots.entries[id]
-        used[entry.source][_written(entry)] += 1
+    used, odd = by_file(snapshots, unit.library), by_file(snapshots, approximated)
     for name in (file.name for file in files if file.name in snapshots.counts):
-        counts = snapshots.counts[name]
-        for type_name, number in counts.items():
-            mapped = min(used[name][type_name], number)
-            if mapped:
-                coverage.file(name).count(type_name, Verdict.MAPPED, mapped)
-            if number > mapped:
-                coverage.file(name).count(type_name, Verdict.EXTERNAL, number - mapped)
-                if coverage.is_detailed:
-                    rest = Loss(type_name, Verdict.EXTERNAL, 0, number - mapped, reason=_UNUSED)
-                    coverage.file(name).losses.append(rest)
+        for type_name, number in snapshots.counts[name].items():
+            read = min(used[name][type_name], number)
+            unread = min(odd[name][type_name], read)
+            _count(coverage, name, type_name, Verdict.MAPPED, read - unread)
+            _count(coverage, name, type_name, Verdict.APPROXIMATED, unread, _UNREAD)
+            _count(coverage, name, type_name, Verdict.EXTERNAL, number - read, _UNUSED)
 
 
+def _count(
+    coverage: Coverage, name: str, type_name: str, verdict: Verdict, number: int, why: str = ""
+) -> None:
+    if number:
+        coverage.file(name).count(type_name, verdict, number)
+        if why and coverage.is_detailed:
+            coverage.file(name).losses.append(Loss(type_name, verdict, 0, number, reason=why))
+
+
+_UNREAD = "read without attributes that UML does not know"
 _UNUSED = "belongs to a used project, and no model needs it"
-
-
-def _written(entry: Entry) -> str:
-    return entry.feature if entry.type in ("", entry.feature) else f"uml:{entry.type}"

@@ -17,7 +17,7 @@ from sysmlc.sources import DEFAULT_LIMITS
 _OF_XMI = frozenset({"id", "idref", "href", "label", "nil", "type", "uuid", "version"})
 """Attributes in the namespace of XMI (XMI 2.5.1, clause 7.5.2)."""
 
-_WITH_READERS = frozenset({"element", "href", "nsURI"})
+WITH_READERS = frozenset({"element", "href", "nsURI"})
 """Attributes of no metaclass: what MagicDraw's ElementValue names, a reference to another file,
 and Ecore's name of a profile."""
 
@@ -52,7 +52,7 @@ def report(context: Context) -> None:
 def _unknown(_: str, metaclass: str, names: tuple[str, ...]) -> tuple[_Odd, ...]:
     looked_at = tuple(islice(names, DEFAULT_LIMITS.attributes))
     unknown = [(name, "") for name in looked_at if name not in FEATURES and not _is_known(name)]
-    known = [name for name in looked_at if name in FEATURES and name not in _WITH_READERS]
+    known = [name for name in looked_at if name in FEATURES and name not in WITH_READERS]
     return (*unknown, *((name, metaclass) for name in known if is_misplaced(metaclass, name)))
 
 
@@ -60,7 +60,7 @@ def _is_known(name: str) -> bool:
     namespace, _, local = name.rpartition("}")
     if namespaces.is_xmi(namespace):
         return local in _OF_XMI
-    return bool(namespace) or name in _WITH_READERS
+    return bool(namespace) or name in WITH_READERS
 
 
 def _rows(
