@@ -227,6 +227,8 @@ class Machine:
         if one.kind == "internal":
             return ""
         start, end = self.vertices[one.source], self.vertices[one.target]
+        if start.region == end.region and not start.border and not end.border:
+            return start.region
         around, inside = self.around(one.source), self.around(one.target)
         if start.kind == "entry-point" and start.border:
             own = self.vertices[start.border].regions

@@ -125,6 +125,8 @@ def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
 
 def _joined(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
     """The moves; of those that a join makes one, what goes before them is part of them."""
+    if not any(move.transition.also for move in moves):
+        return moves
     found = {move.transition.id: move for move in moves}
     joined = [move for move in moves if move.transition.also]
     for move in sorted(joined, key=lambda one: -len(machine.above(one.transition.source))):
@@ -136,6 +138,8 @@ def _joined(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) 
 
 def _is_inside(machine: Machine, one: Move, other: Move) -> bool:
     """Whether the first leaves a state inside one that the other leaves."""
+    if not other.transition.also and not machine.vertices[other.transition.source].regions:
+        return False
     return any(
         machine.contains(outer, inner)
         for outer in other.transition.sources
@@ -240,7 +244,7 @@ def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Formula
         if _is_inside(machine, other, move):
             if simultaneous(mine, other.transition):
                 yield other.enabled
-        elif mine.source in other.transition.sources and _is_later(mine, other.transition):
+        elif _is_later(mine, other.transition) and mine.source in other.transition.sources:
             yield other.enabled
 
 

@@ -109,6 +109,8 @@ class Explorer:
     # -- effects -----------------------------------------------------------------------------
 
     def _act(self, path: Path, actions: tuple[Action, ...]) -> list[Path]:
+        if not actions:
+            return [path]
         paths = [path]
         for action in actions:
             paths = [after for one in paths for after in self._do(one, action)]
@@ -212,8 +214,10 @@ class Explorer:
 
     def _enter(self, path: Path, state: Vertex) -> list[Path]:
         variable = self.machine.regions[state.region].variable
-        inner = {self.machine.regions[one].variable: INACTIVE for one in state.regions}
         entered = with_region(path, variable, state.literal, [])
+        if not state.regions:
+            return self._act(entered, state.entry)
+        inner = {self.machine.regions[one].variable: INACTIVE for one in state.regions}
         opened = replace(
             entered, opened=(*path.opened, state.id), config={**entered.config, **inner}
         )
