@@ -24,6 +24,7 @@ LAYERS = [
     {"ir"},
     {"logic", "recipe", "overlay", "language"},
     {"synthesis", "simulation"},
+    {"floors"},
     {"frontends", "passes", "backends"},
     {"driver", "config"},
     {"lsp"},

@@ -59,6 +59,7 @@ _RULE_PACKAGES = (
     "overlay",
     "simulation",
     "synthesis",
+    "floors",
     "passes",
     "backends",
     "driver",

@@ -24,6 +24,7 @@ NAMES = (
     "recipe",
     "platform",
     "contracts",
+    "floors",
     "views",
 )
 """Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""

@@ -10,14 +10,17 @@ ACTIONS = "DIN8580"
 """Elementary actions of machines with their contracts."""
 MACHINES = "LineMachines"
 """Other machines of a production line with their contracts."""
+FLOORS = "Floors"
+"""Robots on a floor, and a mission for them."""
 FILES = {
     OUR_LIBRARY: "SysMLC.sysml",
     RECIPES: "RecipeLevels.sysml",
     ACTIONS: "DIN8580.sysml",
     MACHINES: "LineMachines.sysml",
+    FLOORS: "Floors.sysml",
 }
 """Their files in ``metamodels``."""
 SHIPPED = "sysmlc:"
 """Before the name of a file that comes with us."""
-READ = frozenset({ACTIONS, MACHINES})
+READ = frozenset({ACTIONS, MACHINES, FLOORS})
 """Those whose elements are in the graph, as external ones: what they demand counts."""

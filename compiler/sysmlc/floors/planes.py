@@ -1,0 +1,81 @@
+"""Many runs at once: a condition is one value that says in which of them it holds.
+
+A plane is an integer with a bit for each run, or a decision diagram over what tells runs apart.
+Both have ``&``, ``|`` and ``~``; a negation is only ever used behind ``&``, so that integers do
+not become negative.
+"""
+
+from collections.abc import Sequence
+from typing import Generic, Protocol, TypeVar
+
+from sysmlc.values import dataclass
+
+
+class Plane(Protocol):
+    """What conditions are made of; it must tell equal ones."""
+
+    def __and__(self: "P", other: "P", /) -> "P": ...
+    def __or__(self: "P", other: "P", /) -> "P": ...
+    def __invert__(self: "P", /) -> "P": ...
+
+
+P = TypeVar("P", bound=Plane)
+
+
+@dataclass(frozen=True, slots=True)
+class Runs(Generic[P]):
+    """Some runs: all of them, none of them, and in which a robot starts in a cell."""
+
+    all: P
+    none: P
+    starts: tuple[tuple[P, ...], ...]
+    """By robot and cell."""
+
+
+def patterns(count: int, choices: int) -> list[list[int]]:
+    """For each of some digits with so many values the numbers of which it has a value, as bits.
+
+    The bit at place n belongs to the number n, written with the digits, the first one lowest.
+    """
+    whole = choices**count
+    return [_digit(choices**place, choices, whole) for place in range(count)]
+
+
+def _digit(stride: int, choices: int, whole: int) -> list[int]:
+    found = []
+    for value in range(choices):
+        bits, length = ((1 << stride) - 1) << (value * stride), stride * choices
+        while length < whole:
+            bits |= bits << length
+            length *= 2
+        found.append(bits & ((1 << whole) - 1))
+    return found
+
+
+def apart(starts: Sequence[Sequence[int]], whole: int) -> int:
+    """The runs in which no two robots start in one cell."""
+    together = 0
+    for cell in range(len(starts[0])):
+        taken = 0
+        for robot in starts:
+            together |= taken & robot[cell]
+            taken |= robot[cell]
+    return whole & ~together
+
+
+def several(planes: Sequence[P], none: P) -> P:
+    """In which runs two or more of the conditions hold."""
+    seen, found = none, none
+    for one in planes:
+        found = found | (seen & one)
+        seen = seen | one
+    return found
+
+
+def any_of(planes: Sequence[P], none: P) -> P:
+    """In which runs one of the conditions holds."""
+    found = none
+    for one in planes:
+        if one != none:
+            found = found | one
+    return found

@@ -1,0 +1,138 @@
+"""A floor with robots and a mission, as values: what everything else of the study is made of."""
+
+from collections.abc import Iterator
+from dataclasses import field
+from functools import lru_cache
+
+from sysmlc.values import dataclass
+
+STAY = "stay"
+WAYS = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
+"""Commands that move a robot, with the change of row and column (thesis, 4.1.2)."""
+COMMANDS = (STAY, *WAYS)
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Cells in rows and columns, numbered row by row from 0; no robot enters ``blocked`` ones."""
+
+    columns: int
+    rows: int
+    blocked: tuple[int, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of all cells."""
+        return self.columns * self.rows
+
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """The cells that a robot can be in."""
+        return tuple(cell for cell in range(self.size) if cell not in self.blocked)
+
+    def after(self, cell: int, command: str) -> int | None:
+        """Where a command leads to; None into a wall or an obstacle."""
+        return _after(self, cell, command)
+
+    def neighbours(self, cell: int) -> Iterator[tuple[str, int]]:
+        """Commands that lead somewhere, and where."""
+        for command in WAYS:
+            there = self.after(cell, command)
+            if there is not None:
+                yield command, there
+
+    def distances(self, target: int) -> dict[int, int]:
+        """Steps to the target from every cell from which a way leads there."""
+        return _distances(self, target)
+
+    def nearer(self, cell: int, target: int) -> tuple[str, ...]:
+        """The commands that bring a robot nearer to the target."""
+        known = self.distances(target)
+        here = known.get(cell, 0)
+        return tuple(way for way, there in self.neighbours(cell) if known.get(there, here) < here)
+
+
+@lru_cache(1 << 14)
+def _after(grid: Grid, cell: int, command: str) -> int | None:
+    row, column = divmod(cell, grid.columns)
+    rows, columns = WAYS.get(command, (0, 0))
+    row, column = row + rows, column + columns
+    there = row * grid.columns + column
+    is_inside = 0 <= row < grid.rows and 0 <= column < grid.columns
+    return there if is_inside and there not in grid.blocked else None
+
+
+@lru_cache(1 << 12)
+def _distances(grid: Grid, target: int) -> dict[int, int]:
+    found = {target: 0}
+    front = [target]
+    while front:
+        known = len(found)
+        for cell in front:
+            for _, there in grid.neighbours(cell):
+                found.setdefault(there, found[cell] + 1)
+        front = list(found)[known:]
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A robot; ``word`` begins the names of its variables, ``start`` is None for any cell."""
+
+    name: str
+    word: str
+    origin: str = ""
+    start: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A cell to be reached, and within how many steps of the start of the mission."""
+
+    name: str
+    word: str
+    cell: int
+    origin: str = ""
+    deadline: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Numbers of two targets of which one is reached before the other.
+
+    With ``is_carried`` the same robot goes on from the earlier one to the later one.
+    """
+
+    earlier: int
+    later: int
+    is_carried: bool = False
+    origin: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """What is known of a floor, its robots and their mission."""
+
+    component: str
+    origin: str
+    grid: Grid
+    robots: tuple[Robot, ...]
+    targets: tuple[Target, ...] = ()
+    orders: tuple[Order, ...] = ()
+    deadline: int | None = None
+    """Steps within which the mission is done."""
+    within: int | None = None
+    """Steps within which a robot reaches a target once it has it."""
+    counted: int = 0
+    """What step counters count to before they begin again; 0 is for none."""
+    obstacles: tuple[str, ...] = field(default=())
+    """Ids of the obstacles, in the order of ``grid.blocked``."""
+
+    def earlier(self, target: int) -> tuple[int, ...]:
+        """The targets that are reached before this one."""
+        return tuple(sorted({one.earlier for one in self.orders if one.later == target}))
+
+    @property
+    def carried(self) -> dict[int, int]:
+        """The target that the robot goes on to, by the one that it has reached."""
+        return {one.earlier: one.later for one in self.orders if one.is_carried}

@@ -1,0 +1,199 @@
+"""Robots and compiled environment together, step by step, in many runs at once.
+
+A step is that of the contracts: the environment moves the robots by their commands, gives targets
+and shows ways; then each robot's machine answers with a command (MOOD4I thesis, 4.4.1).
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Generic
+
+from sysmlc.floors.answers import Answers, Memory
+from sysmlc.floors.paths import hop
+from sysmlc.floors.planes import P, Runs, any_of
+from sysmlc.floors.study import WAYS, Study
+from sysmlc.floors.traffic import Traffic
+from sysmlc.values import dataclass
+
+Allocation = tuple[tuple[int, ...], ...]
+"""For each robot the numbers of its targets, in the order in which it reaches them."""
+
+
+@dataclass(slots=True)
+class Body(Generic[P]):
+    """A robot: conditions by cell, by place in its list, by what its machine knows, by command."""
+
+    places: list[P]
+    sent: list[P]
+    """On the way to a target of its list; the target stays its own until it has another one."""
+    aside: list[P]
+    """Sent to a cell to make way."""
+    memory: dict[Memory, P]
+    commands: dict[str, P]
+
+
+class World(Generic[P]):
+    """All robots; ``step`` is one step of the contracts."""
+
+    def __init__(
+        self,
+        study: Study,
+        allocation: Allocation,
+        answers: Sequence[Answers],
+        runs: Runs[P],
+    ) -> None:
+        """The first step: robots are in their starts, which are their targets, and stay."""
+        self.study, self.allocation, self.answers, self.runs = study, allocation, answers, runs
+        none, size = runs.none, study.grid.size
+        self.bodies: list[Body[P]] = [
+            Body(
+                list(runs.starts[at]),
+                [none] * len(allocation[at]),
+                [none] * size,
+                {Memory(cell, cell): one for cell, one in enumerate(runs.starts[at])},
+                {},
+            )
+            for at in range(len(study.robots))
+        ]
+        self.done: list[P] = [none] * len(study.targets)
+        self.wrong = none
+        """In which runs two robots met, or a machine had no answer."""
+        for number in range(len(self.bodies)):
+            self._answer(number, self._at_goal(number))
+
+    # -- one step ------------------------------------------------------------------------------
+
+    def step(self) -> None:
+        """Move, note what was reached, decide who goes where, let the robots answer."""
+        idle = [self._at_goal(number) for number in range(len(self.bodies))]
+        self._move()
+        for number, body in enumerate(self.bodies):
+            stays = idle[number]
+            body.sent = [one & ~stays for one in body.sent]
+            body.aside = [one & ~stays for one in body.aside]
+        self._note_reached()
+        self._dispatch(idle)
+        self._note_reached()
+        for number in range(len(self.bodies)):
+            self._answer(number, self._resting(number))
+
+    def _move(self) -> None:
+        taken = self.taken()
+        for body in self.bodies:
+            moved = self._moved(body, taken)
+            body.places = moved
+        for cell in range(self.study.grid.size):
+            seen = self.runs.none
+            for body in self.bodies:
+                self.wrong = self.wrong | (seen & body.places[cell])
+                seen = seen | body.places[cell]
+
+    def _moved(self, body: Body[P], taken: list[P]) -> list[P]:
+        none, grid = self.runs.none, self.study.grid
+        goes = any_of(list(body.commands.values()), none)
+        if goes == none:
+            return body.places
+        found = [one & ~goes for one in body.places]
+        for cell in grid.cells:
+            here = body.places[cell] & goes
+            if here == none:
+                continue
+            for way, there in grid.neighbours(cell):
+                moves = here & body.commands.get(way, none)
+                self.wrong = self.wrong | (moves & taken[there])
+                found[there] = found[there] | moves
+        return found
+
+    def taken(self) -> list[P]:
+        """By cell: a robot is there."""
+        cells = range(self.study.grid.size)
+        none = self.runs.none
+        return [any_of([body.places[cell] for body in self.bodies], none) for cell in cells]
+
+    def _note_reached(self) -> None:
+        for number, body in enumerate(self.bodies):
+            for place, target in enumerate(self.allocation[number]):
+                cell = self.study.targets[target].cell
+                if body.sent[place] != self.runs.none:
+                    self.done[target] = self.done[target] | (body.sent[place] & body.places[cell])
+
+    # -- targets -------------------------------------------------------------------------------
+
+    def _resting(self, number: int) -> P:
+        """In which runs a robot has no target but the cell that it is in."""
+        body, none = self.bodies[number], self.runs.none
+        return self.runs.all & ~any_of([*body.sent, *body.aside], none)
+
+    def _at_goal(self, number: int) -> P:
+        """In which runs a robot is in its target."""
+        body = self.bodies[number]
+        found = self._resting(number)
+        for place, target in enumerate(self.allocation[number]):
+            found = found | (body.sent[place] & body.places[self.study.targets[target].cell])
+        for cell in self.study.grid.cells:
+            if body.aside[cell] != self.runs.none:
+                found = found | (body.aside[cell] & body.places[cell])
+        return found
+
+    def _dispatch(self, idle: list[P]) -> None:
+        goals = [[self.study.targets[one].cell for one in own] for own in self.allocation]
+        places = [body.places for body in self.bodies]
+        traffic = Traffic(self.study.grid, self.runs.none, places, list(idle), goals)
+        for number, body in enumerate(self.bodies):
+            traffic.reserve(traffic.ways(number, body.sent))
+            traffic.reserve(body.aside)
+            # Who makes way has left a cell when it is where it was sent; until then it is taken.
+        open_ = [self._open(number, idle[number]) for number in range(len(self.bodies))]
+        decided = traffic.send(open_)
+        for number, body in enumerate(self.bodies):
+            pairs = zip(body.sent, decided.out[number], strict=True)
+            body.sent = [one | more for one, more in pairs]
+            sides = zip(body.aside, decided.aside[number], strict=True)
+            body.aside = [one | more for one, more in sides]
+
+    def _open(self, number: int, idle: P) -> list[P]:
+        """By place in its list: the robot could set out to that target now."""
+        found: list[P] = []
+        before = idle
+        for target in self.allocation[number]:
+            ready = before & ~self.done[target]
+            for earlier in self.study.earlier(target):
+                ready = ready & self.done[earlier]
+            found.append(ready)
+            before = before & self.done[target]
+        return found
+
+    # -- answers -------------------------------------------------------------------------------
+
+    def _answer(self, number: int, resting: P) -> None:
+        """The command of a robot's machine, and what it knows then."""
+        body = self.bodies[number]
+        memory, body.memory, body.commands = body.memory, {}, {}
+        for known, is_so in memory.items():
+            if not known.is_home:
+                self._row(number, known, known.goal, is_so)
+            elif is_so != self.runs.none:
+                for goal, has in self._targets(number, known.cell, resting):
+                    self._row(number, known, goal, is_so & has)
+
+    def _targets(self, number: int, cell: int, resting: P) -> Iterator[tuple[int, P]]:
+        """The targets that a robot in a cell can be given, with the runs in which it is."""
+        body = self.bodies[number]
+        yield cell, resting
+        for place, target in enumerate(self.allocation[number]):
+            yield self.study.targets[target].cell, body.sent[place]
+        for _, there in self.study.grid.neighbours(cell):
+            yield there, body.aside[there]
+
+    def _row(self, number: int, known: Memory, goal: int, given: P) -> None:
+        none = self.runs.none
+        if given == none:
+            return
+        body = self.bodies[number]
+        step = hop(self.study.grid, known.cell, goal)
+        answer = self.answers[number].get(known, goal, step[0] if step else "")
+        if answer is None:
+            self.wrong = self.wrong | given
+            return
+        body.memory[answer.memory] = body.memory.get(answer.memory, none) | given
+        if answer.command in WAYS:
+            body.commands[answer.command] = body.commands.get(answer.command, none) | given
