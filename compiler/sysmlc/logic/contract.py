@@ -78,6 +78,8 @@ class Conjunct:
     class_: Class
     origin: str
     text: str = ""
+    viewpoint: str = ""
+    """Name of the requirement whose viewpoint it belongs to; empty for what is common to all."""
 
 
 @dataclass(frozen=True, slots=True)

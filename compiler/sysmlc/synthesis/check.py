@@ -13,6 +13,7 @@ from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.manager import LimitError, Manager
+from sysmlc.synthesis.requirements import check_viewpoints
 from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
 
@@ -105,6 +106,8 @@ def check(
         verdict = decide(contract, place, sink, options)
         if verdict.is_realizable is not None:
             _lint(contract, place, sink, options)
+        if verdict.is_realizable:
+            check_viewpoints(contract, place, sink, options)
         other = None if _is_demand(contract) else demanded.get(contract.component)
         failures = None if other is None else _failures(contract, other, place, sink, options)
         kept = None if failures is None else not failures

@@ -8,6 +8,7 @@ from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits, together
+from sysmlc.synthesis.check import check
 from sysmlc.synthesis.decide import Options
 
 CODES = ("SM595", "SM596", "SM597", "SM598")
@@ -60,3 +61,19 @@ def test_what_takes_too_long_is_not_decided():
     assert told.message == (
         "the parts of 'Line::Cell' are not put together: the limit of 1 nodes was reached"
     )
+
+
+def told_of_requirements(text):
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    graph, sink = reading.graph, Sink()
+    made = graph.derived(Contract)
+    list(check(made, made, lambda it: graph.subject(graph[it]), sink, Options()))
+    return {one.rule.code: one for one in sink}
+
+
+def test_requirements_that_lean_on_one_another():
+    rule = catalogue()["SM599"]
+    told = told_of_requirements(rule.wrong)["SM599"]
+    assert told.notes == ("'Shines' demands 'lit'", "'Shines' demands 'lit -> power'")
+    assert "SM599" not in told_of_requirements(rule.right)

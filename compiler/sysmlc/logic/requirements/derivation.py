@@ -59,15 +59,22 @@ def _classified(
     One of inputs alone is assumed of the first step and of each next one, so that the
     environment never gets where it cannot keep it.
     """
-    id, text = statement.constraint.id, _words(statement, is_assumed)
+    id, name = statement.constraint.id, statement.requirement.name
+    text = _words(statement, is_assumed)
+    for class_, part in _parts(scope, statement, formula, is_assumed):
+        yield Conjunct(part, class_, id, text, name)
+
+
+def _parts(
+    scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
+) -> Iterator[tuple[Class, Formula]]:
     if is_temporal(statement.constraint):
-        for class_, part in classified(formula):
-            yield Conjunct(part, class_, id, text)
+        yield from classified(formula)
     elif is_assumed and scope.is_input(formula):
-        yield Conjunct(formula, Class.INIT, id, text)
-        yield Conjunct(f.primed(formula), Class.SAFETY, id, text)
+        yield Class.INIT, formula
+        yield Class.SAFETY, f.primed(formula)
     else:
-        yield Conjunct(formula, Class.SAFETY, id, text)
+        yield Class.SAFETY, formula
 
 
 def _words(statement: Statement, is_assumed: bool) -> str:

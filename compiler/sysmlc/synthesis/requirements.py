@@ -1,0 +1,74 @@
+"""Checks of requirements as viewpoints: whether each can be kept where only it assumes."""
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.synthesis.algebra.viewpoints import conjunction
+from sysmlc.synthesis.core import is_won, unrealizable_core
+from sysmlc.synthesis.decide import Options, Place
+from sysmlc.synthesis.game import OutsideGr1Error, make_game
+from sysmlc.synthesis.manager import LimitError, Manager
+
+
+def _lamp(other: str) -> str:
+    """Two requirements of a lamp in SysML v2, one of which assumes something."""
+    return f"""\
+package Plant {{
+    private import ScalarValues::*;
+    part def Lamp {{
+        in attribute power : Boolean;
+        out attribute lit : Boolean;
+    }}
+    requirement def Powered {{
+        subject lamp : Lamp;
+        assume constraint {{ lamp.power }}
+        require constraint {{ language "ltl" /* G (lit -> power) */ }}
+    }}
+    requirement def Shines {{
+        subject lamp : Lamp;
+        require constraint {{ language "ltl" /* {other} */ }}
+        require constraint {{ language "ltl" /* G (lit -> power) */ }}
+    }}
+}}
+"""
+
+
+LEANS = rule(
+    "SM599",
+    "requirements-lean-on-one-another",
+    Severity.WARNING,
+    "the requirements of '{component}' can be kept together only where all that any of them "
+    "assumes holds",
+    why="Each requirement is a viewpoint: what it demands is owed where its own assumptions hold, "
+    "whatever becomes of those of the others.",
+    help="let each requirement assume what it needs itself",
+    wrong=_lamp("G F lit"),
+    right=_lamp("G F !lit"),
+)
+
+
+def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Options) -> bool | None:
+    """Whether the conjunction of the requirements can be kept; None when that is not decided.
+
+    ``contract`` is that of all requirements together, which can be kept.
+    """
+    try:
+        game = make_game(
+            conjunction(reduced(contract).contract),
+            Manager(options.engine, options.limits, options.progress),
+        )
+        is_kept = is_won(game)
+        core = () if is_kept else unrealizable_core(game)
+    except (OutsideGr1Error, LimitError):
+        return None
+    if not is_kept:
+        origins = {one.origin for one in core if one.viewpoint}
+        notes = dict.fromkeys(
+            f"'{one.viewpoint}' demands '{print_formula(one.formula)}'"
+            for one in contract.guarantees
+            if one.viewpoint and one.origin in origins
+        )
+        subject = place(contract.origin)
+        sink.report(LEANS, subject, notes=tuple(notes), component=contract.component)
+    return is_kept
