@@ -7,7 +7,7 @@ from typing import Any
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import NotExpressibleError, opened
+from sysmlc.logic.formats.file import NotExpressibleError, opened
 from sysmlc.values import dataclass
 
 __all__ = ["FORMS", "Form", "NotExpressibleError", "form_of", "plain", "read", "write"]

@@ -18,9 +18,10 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, lowered, said_ltl
+from sysmlc.logic.formats.base import lowered, said_ltl
 from sysmlc.logic.formats.counting import counted
 from sysmlc.logic.formats.draft import Draft, joined
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import each_formula, renamed, without_weak_until
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.formula import Op

@@ -11,10 +11,11 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, said_ltl
+from sysmlc.logic.formats.base import said_ltl
 from sysmlc.logic.formats.chase import plain, word
 from sysmlc.logic.formats.documents import ShapeError, domain_of, object_at, text_at, value
 from sysmlc.logic.formats.draft import SIDE, Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.placed import PlacedList, PlacedObject, PlacedText
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.ltl import FormulaError, parse_formula

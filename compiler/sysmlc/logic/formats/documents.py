@@ -15,7 +15,8 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import OWNERS, SECTIONS, File
+from sysmlc.logic.formats.base import OWNERS, SECTIONS
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.placed import PlacedList, PlacedObject, PlacedText, loads
 from sysmlc.logic.infix import Reader
 from sysmlc.logic.ltl import FormulaError, parse_formula

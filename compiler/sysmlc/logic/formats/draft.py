@@ -7,7 +7,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.classes import classified, within
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Variable
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import SECTIONS, File
+from sysmlc.logic.formats.base import SECTIONS
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import Reader
 from sysmlc.logic.printing import print_formula

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from pathlib import PurePath
 
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
-from sysmlc.logic.formats.base import File, conjuncts_of, game, lowered, said
+from sysmlc.logic.formats.base import conjuncts_of, game, lowered, said
 from sysmlc.logic.formats.counting import counted
 from sysmlc.logic.formats.draft import Draft, joined
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import renamed
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.formula import Op

@@ -10,9 +10,10 @@ from pathlib import PurePath
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, conjuncts_of, game, lowered, said
+from sysmlc.logic.formats.base import conjuncts_of, game, lowered, said
 from sysmlc.logic.formats.counting import counted
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import each_conjunct, flat, known, renamed
 from sysmlc.logic.formats.slugsin import PrefixError, from_prefix
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed

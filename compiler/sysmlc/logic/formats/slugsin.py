@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from sysmlc.depth import room_for
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Contract, Domain
-from sysmlc.logic.formats.base import File, game, lowered
+from sysmlc.logic.formats.base import game, lowered
 from sysmlc.logic.formats.counting import in_bits
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import each_formula
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST

@@ -19,8 +19,9 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, lowered
+from sysmlc.logic.formats.base import lowered
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import (
     each_conjunct,
     each_formula,

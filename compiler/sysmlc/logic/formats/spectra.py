@@ -15,8 +15,8 @@ from sysmlc.logic.contract import (
     Owner,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.spectra_counter import counter_rules
 from sysmlc.logic.formats.spectra_reader import SYNTAX, Meaning, SpectraReader
 from sysmlc.logic.formats.spectra_types import Types

@@ -17,8 +17,9 @@ from sysmlc.logic.contract import (
     Owner,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, lowered
+from sysmlc.logic.formats.base import lowered
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import TooManyValuesError, without_arithmetic
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.logic.formats.spot import OWNERS, PARTS, parts, read_implication

@@ -10,9 +10,10 @@ from pathlib import PurePath
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, lowered, said_ltl
+from sysmlc.logic.formats.base import lowered, said_ltl
 from sysmlc.logic.formats.counting import in_bits
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import renamed
 from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
 from sysmlc.logic.formula import Op, Var

@@ -11,9 +11,10 @@ from sysmlc.depth import room_for
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, Owner
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import File, conjuncts_of, lowered, said_ltl
+from sysmlc.logic.formats.base import conjuncts_of, lowered, said_ltl
 from sysmlc.logic.formats.counting import in_bits
 from sysmlc.logic.formats.draft import Draft
+from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import renamed
 from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
 from sysmlc.logic.formats.tlsf_tree import INFIX, PREFIX, QUANTIFIERS, Tree, expression
