@@ -379,7 +379,7 @@ Package IH#Plant "Plant" subkind="instance-hierarchy" @plant.aml:2
     assert [line for line in lines if "@AutomationML" in line] == [
         '@AutomationML { kind = "instance-hierarchy"; }',
         'part cell : Cell { @AutomationML { id = "i1"; } }',
-        'part def Cell { @AutomationML { kind = "internal-element"; } }',
+        '@AutomationML { kind = "internal-element"; }',
     ]
 
 

@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.references import reference, visible
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.stereotypes import is_standard
-from sysmlc.backends.sysml.words import comment_lines, quoted, string
+from sysmlc.backends.sysml.words import comment_lines, quoted, string, writable
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
@@ -40,11 +40,9 @@ _ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
 """Kinds of what flows; the domain of flows and connectors follows from it."""
 _OF_CLASS = "#class"
 """Ends the id of a class that only one InternalElement has; AutomationML gave it none."""
-_PLAIN_TYPES = frozenset(
-    {"xs:double", "xs:string", "xs:boolean", "xs:integer", "xs:int", "xs:float", "xs:decimal", ""}
-)
 _AML = {
     "data_type": "dataType",
+    "unit": "unit",
     "category": "category",
     "semantics": "semantics",
     "version": "version",
@@ -63,6 +61,7 @@ def of(book: Book, entry: Entry) -> list[Line]:
         return []
     return [
         *_description(element),
+        *_named(book, entry, element),
         *_aml(book, entry, element),
         *_interfaces(book, entry, element),
         *_kind(book, entry, element),
@@ -76,6 +75,12 @@ def _description(element: Element) -> list[Line]:
     """What AutomationML says of a feature in words; documents and libraries list it themselves."""
     text = element.attrs.get("description")
     return [Line("doc", text=comment_lines(str(text)))] if text else []
+
+
+def _named(book: Book, entry: Entry, element: Element) -> list[Line]:
+    """The name in the source, where its namespace has that name already."""
+    is_other = bool(element.name) and entry.name != writable(element.name)
+    return [ours(book, entry, "Named", {"name": element.name})] if is_other else []
 
 
 def ours(book: Book, entry: Entry, name: str, facts: Mapping[str, AttrValue]) -> Line:
@@ -103,7 +108,7 @@ def _aml(book: Book, entry: Entry, element: Element) -> list[Line]:
         facts["id"] = local if is_own else None
     for key, name in _AML.items():
         given = element.attrs.get(key)
-        if given is not None and (key != "data_type" or given not in _PLAIN_TYPES):
+        if given is not None:
             facts[name] = str(given) if key == "default_value" else _flat(given)
     if facts and _is_told(element):
         facts["kind"] = element.subkind

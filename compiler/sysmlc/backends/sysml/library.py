@@ -127,7 +127,7 @@ ROOTS = frozenset(_ROOTS.split())
 
 
 _OURS = """
-    AutomationML Facet Group Kind ObjectFlow Through External Unit Units Requirement Partition
+    AutomationML Facet Group Kind Named ObjectFlow Through External Unit Units Requirement Partition
     Call fullPort blockPort shared realization generalization trace copies satisfies verifies
     derives allocates conforms exposes substitution usage abstraction manifestation deployment
     roleBinding extension internalLink processLink orderLink constrains precondition postcondition

@@ -11,7 +11,7 @@ from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.measures import unit_of
+from sysmlc.ir.measures import quantity_kind_of, unit_of
 from sysmlc.ir.query import STRUCTURAL_FEATURES, flow_directions, type_of
 
 
@@ -100,6 +100,8 @@ def _has_quantity(book: Book, general: Element) -> bool:
 def _unit(book: Book, entry: Entry, unit: Element | None) -> Line:
     assert unit is not None
     facts = {"name": unit.name, "symbol": unit.attrs.get("symbol")}
+    quantity = quantity_kind_of(book.graph, entry.element) if entry.element else None
+    facts["quantity"] = None if quantity is None else quantity.name
     return annotations.ours(book, entry, "Unit", facts)
 
 

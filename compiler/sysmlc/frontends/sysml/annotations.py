@@ -80,7 +80,10 @@ def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
     """Metadata of ours is read with its owner; any other is an applied stereotype."""
-    if our_name(node):
+    name = our_name(node)
+    if name == "Named" and owner is not None:
+        low.graph.rename(owner, str(dict(constants_of(node)).get("name", owner.name)))
+    if name:
         return
     about = nodes.references(node, "Annotation")
     definition = nodes.target(node, "FeatureTyping")

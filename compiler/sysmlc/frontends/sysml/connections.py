@@ -88,7 +88,19 @@ def _lead(low: "Lowering", end: Node, one: Element) -> None:
     *path, role = steps_of(end) or [None]
     low.lead(Edge.ROLE, one, role)
     for step in path:
-        low.lead(Edge.PATH, one, step)
+        low.lead(Edge.PATH, one, _feature(low, step))
+
+
+def _feature(low: "Lowering", step: Node | None) -> Node | None:
+    """The part that is meant where an instance says what is in it: parts lead to an end."""
+    here = step
+    while here is not None:
+        known = low.element(here)
+        if known is None or known.kind is not Kind.INSTANCE or known.subkind != "part":
+            return here
+        found = nodes.reference(here, "Redefinition")
+        here = None if found is None else found.target
+    return step
 
 
 # -- flows -------------------------------------------------------------------------------------

@@ -27,9 +27,8 @@ def package(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.external(node)
         return
     kind, subkind = marked(node, Kind.PACKAGE)
-    made = low.add(
-        node, kind, nodes.name_of(node), owner, subkind=subkind, **visibility(node), **outside(node)
-    )
+    said = {**visibility(node), **outside(node), **of_aml(node)}
+    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **said)
     low.lower_all(node.members, made)
 
 
@@ -59,6 +58,7 @@ def outside(node: Node) -> dict[str, AttrValue]:
 
 _AML = {
     "dataType": "data_type",
+    "unit": "unit",
     "category": "category",
     "semantics": "semantics",
     "version": "version",

@@ -3,7 +3,7 @@
 import re
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes
+from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
 
@@ -35,6 +35,7 @@ def give_measures(low: "Lowering", node: Node, made: Element) -> None:
         low.last(lambda name=name: _kind(low, node, made, name))  # type: ignore[misc]
     if measured and len(found) == len(measured):
         low.lead_to(Edge.SPECIALIZES, made, "ScalarValues::Real", Kind.DATA_TYPE)
+    _told(low, node, made)
     for member in node.members:
         value = nodes.value_of(member)
         if nodes.name_of(member) == "mRef" and value is not None:
@@ -42,6 +43,22 @@ def give_measures(low: "Lowering", node: Node, made: Element) -> None:
             unit = nodes.reference(value, "Membership")
             if unit is not None:
                 low.later(lambda member=member, unit=unit: _unit(low, member, made, unit))  # type: ignore[misc]
+
+
+def _told(low: "Lowering", node: Node, made: Element) -> None:
+    """A unit that the library does not have, as metadata of ours says."""
+    one = annotations.ours(node).get("Unit")
+    if one is None:
+        return
+    said = {key: str(value) for key, value in annotations.constants_of(one)}
+    name, symbol = said.get("name", ""), said.get("symbol", "")
+    outside = {"external": True, "library": True}
+    unit = low.make(one, Kind.UNIT, name, made, symbol=symbol, **outside)
+    low.graph.connect(Edge.REFERENCES, made, unit)
+    if said.get("quantity"):
+        quantity = low.make(one, Kind.QUANTITY_KIND, said["quantity"], made, **outside)
+        low.graph.connect(Edge.REFERENCES, made, quantity)
+        low.graph.connect(Edge.REFERENCES, unit, quantity)
 
 
 def _unit(low: "Lowering", node: Node, made: Element, unit: Reference) -> None:
@@ -53,16 +70,20 @@ def _unit(low: "Lowering", node: Node, made: Element, unit: Reference) -> None:
             known = one
             break
     if known is None:
-        known = low.make(node, Kind.UNIT, name, made, symbol=symbol, external=True)
+        known = low.make(node, Kind.UNIT, name, made, symbol=symbol, external=True, library=True)
     low.graph.connect(Edge.REFERENCES, made, known)
 
 
 def _kind(low: "Lowering", node: Node, made: Element, name: str) -> None:
     """A quantity kind; one that the unit of a model's own tells needs no element."""
-    units = [one for one in low.graph.targets(made, Edge.REFERENCES) if one.kind is Kind.INSTANCE]
-    if not units:
-        one = low.make(node, Kind.QUANTITY_KIND, name, made, external=True)
-        low.graph.connect(Edge.REFERENCES, made, one)
+    units = low.graph.targets(made, Edge.REFERENCES)
+    if any(one.kind is Kind.INSTANCE for one in units):
+        return
+    one = low.make(node, Kind.QUANTITY_KIND, name, made, external=True, library=True)
+    low.graph.connect(Edge.REFERENCES, made, one)
+    for unit in units:
+        if unit.kind is Kind.UNIT and unit.owner == made.id:
+            low.graph.connect(Edge.REFERENCES, unit, one)
 
 
 def kind_name(value_type: str) -> str:

@@ -1,0 +1,99 @@
+"""Plants of AutomationML, written as SysML v2 and read again: what they say of themselves."""
+
+from pathlib import Path
+
+import pytest
+from reading_v2 import FRONT
+
+from sysmlc.backends.sysml.document import document
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.caex import FRONTEND as CAEX
+from sysmlc.ir import Graph, Kind
+from sysmlc.ir.compare import compare
+from sysmlc.ir.measures import quantity_kind_of, unit_of
+from sysmlc.passes import pipeline
+from sysmlc.sources import Source
+
+ROOT = Path(__file__).parents[3]
+PLANT = """\
+<CAEXFile SchemaVersion="3.0" FileName="plant.aml">
+ <SuperiorStandardVersion>AutomationML 2.10</SuperiorStandardVersion>
+ <SourceDocumentInformation OriginName="t" OriginID="t" OriginVersion="1"
+  LastWritingDateTime="2026-01-01T00:00:00Z"/>
+ <InstanceHierarchy Name="Plant">
+  <InternalElement Name="cell" ID="c" RefBaseSystemUnitPath="Units/Cell">
+   <InternalElement Name="belt" ID="b" RefBaseSystemUnitPath="Units/Belt">
+    <Attribute Name="speed" AttributeDataType="xs:float" Unit="{unit}"><Value>2</Value></Attribute>
+    <ExternalInterface Name="in" ID="b.in" RefBaseClassPath="Wires/Wire"/>
+   </InternalElement>
+   <ExternalInterface Name="plug" ID="c.plug" RefBaseClassPath="Wires/Wire"/>
+   <InternalLink Name="w" RefPartnerSideA="c.plug" RefPartnerSideB="b.in"/>
+  </InternalElement>
+ </InstanceHierarchy>
+ <InterfaceClassLib Name="Wires"><Version>2.1</Version><InterfaceClass Name="Wire"/>
+ </InterfaceClassLib>
+ <SystemUnitClassLib Name="Units"><Version>1.0</Version>
+  <SystemUnitClass Name="Belt">
+   <Attribute Name="speed" AttributeDataType="xs:float" Unit="{unit}"/>
+   <ExternalInterface Name="in" ID="belt.in" RefBaseClassPath="Wires/Wire"/>
+  </SystemUnitClass>
+  <SystemUnitClass Name="Cell">
+   <InternalElement Name="belt" ID="cell.belt" RefBaseSystemUnitPath="Units/Belt"/>
+   <ExternalInterface Name="plug" ID="cell.plug" RefBaseClassPath="Wires/Wire"/>
+  </SystemUnitClass>
+ </SystemUnitClassLib>
+</CAEXFile>
+"""
+
+
+def plant(data, name="plant.aml"):
+    graph, sink = Graph(), Sink()
+    CAEX.read([Source(name, data)], graph, sink, Coverage())
+    pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(graph, sink)
+    return graph
+
+
+def read_back(graph):
+    text, _ = document(graph, Sink())
+    again, sink = Graph(), Sink()
+    FRONT.read([Source("model.sysml", text.encode())], again, sink, Coverage())
+    pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
+    return again
+
+
+def differences(graph):
+    return [str(one) for one in compare(graph, read_back(graph), ("id",))]
+
+
+@pytest.mark.parametrize("unit", ["m/s", "m³/h", "MTS", ""])
+def test_data_types_units_versions_and_the_ends_of_links_come_back(unit):
+    """``MTS`` is another spelling of m/s, which the text keeps; SI has no m³/h."""
+    assert differences(plant(PLANT.replace("{unit}", unit).encode())) == []
+
+
+def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():
+    again = read_back(plant(PLANT.replace("{unit}", "rpm").encode()))
+    (speed,) = [one for one in again.of_kind(Kind.PROPERTY) if one.name == "speed"]
+    assert speed.attrs["unit"] == "rpm"
+    assert unit_of(again, speed).attrs["symbol"] == "rpm"
+    assert quantity_kind_of(again, speed).name == "rotational frequency"
+
+
+def test_a_name_that_the_text_cannot_have_comes_back():
+    """``Quantities`` is a package of the standard library: the text has another name for ours."""
+    data = PLANT.replace("Units", "Quantities").replace("{unit}", "m").encode()
+    text, _ = document(plant(data), Sink())
+    assert "package Quantities_2 {" in text
+    assert differences(plant(data)) == []
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("name", ["BayGate.aml", "BayGate_caex215.aml"])
+def test_baygate_comes_back_as_it_was(corpus, name):
+    data = (corpus / "aml" / "baygate" / name).read_bytes()
+    assert differences(plant(data, name)) == []
+
+
+def test_the_example_comes_back_but_for_where_its_comments_are():
+    graph = plant((ROOT / "examples/baygate/baygate.aml").read_bytes())
+    assert {one.aspect for one in compare(graph, read_back(graph), ("id",))} == {"comment"}
