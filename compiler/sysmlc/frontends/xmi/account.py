@@ -5,7 +5,6 @@ from collections import Counter
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.losses import losses
 
 
 def account(context: Context, sink: Sink, coverage: Coverage) -> None:
@@ -19,6 +18,8 @@ def account(context: Context, sink: Sink, coverage: Coverage) -> None:
     for feature, number in document.drawn.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
+        from sysmlc.frontends.xmi.losses import losses
+
         counts.losses.extend(losses(context, _types(context)))
     _report_unsupported(context, sink)
     _report_approximated(context, sink)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.enterprise_architect_constraints import constraints
 from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of, qualified
 from sysmlc.frontends.xmi.profiles import mangled
@@ -21,11 +20,6 @@ _STEREOTYPE = re.compile(r"@STEREO;(.*?)@ENDSTEREO", re.DOTALL)
 _PREFIX = "EAID_"
 _LISTS = ("elements", "connectors", "attributes", "operations", "parameters")
 """What holds descriptions of elements, by which they are nested."""
-
-
-def is_extension(document: Document, row: int) -> bool:
-    """Whether the extension in this row is Enterprise Architect's."""
-    return document.attributes[row].get("extender") == "Enterprise Architect"
 
 
 def finish(context: Context) -> None:

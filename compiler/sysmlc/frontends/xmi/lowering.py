@@ -5,7 +5,6 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Sink, Verdict
 from sysmlc.frontends.xmi import (
     behaviour,
-    enterprise_architect,
     expressions,
     interactions,
     metaclasses,
@@ -97,7 +96,7 @@ def _row(context: Context, row: int) -> int:
 def _notation(context: Context, row: int) -> int:
     end = structure.notation(context, row)
     if context.document.parents[row] == 0:
-        if enterprise_architect.is_extension(context.document, row):
+        if context.document.attributes[row].get("extender") == "Enterprise Architect":
             context.extensions.append(row)
         _content_of_extension(context, row)
     return end

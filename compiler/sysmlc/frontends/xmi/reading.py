@@ -11,16 +11,12 @@ from sysmlc.frontends.xmi import (
     behaviour,
     comments,
     dangling,
-    enterprise_architect,
     enterprise_architect_profiles,
     lowering,
     odd_values,
     parts,
     remembered,
     rules,
-    snapshot_parts,
-    snapshot_unread,
-    snapshot_use,
     unread,
     unread_tags,
 )
@@ -52,13 +48,29 @@ def read(
         documents = [document for document in found if document is not None]
         unit = Unit(documents, graph)
         contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
-        models, inside = snapshot_parts.split(models)
-        if beside or inside:
-            snapshots = snapshot_use.read([*beside, *inside], sink)
-            snapshot_use.add(unit, contexts, models, snapshots)
-            odd = snapshot_unread.report(snapshots, [*beside, *inside], unit, sink)
-            snapshot_use.account(snapshots, beside, unit, coverage, odd)
+        if beside or any(b"<filePart" in model.data for model in models):
+            _add_libraries(unit, contexts, models, beside, sink, coverage)
         _finish(unit, contexts, sink, coverage)
+
+
+def _add_libraries(
+    unit: Unit,
+    contexts: list[Context],
+    models: list[Source],
+    beside: list[Source],
+    sink: Sink,
+    coverage: Coverage,
+) -> None:
+    """Add what the models take from snapshots of used projects, beside or inside them."""
+    from sysmlc.frontends.xmi import snapshot_parts, snapshot_unread, snapshot_use
+
+    models, inside = snapshot_parts.split(models)
+    found = [*beside, *inside]
+    if found:
+        snapshots = snapshot_use.read(found, sink)
+        snapshot_use.add(unit, contexts, models, snapshots)
+        odd = snapshot_unread.report(snapshots, found, unit, sink)
+        snapshot_use.account(snapshots, beside, unit, coverage, odd)
 
 
 def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage) -> None:
@@ -71,7 +83,11 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         context.finish()
     for context in contexts:
         applications.lower(context)
-        enterprise_architect.finish(context)
+        if context.extensions:
+            # Readers of what only some tools write are imported when it is there.
+            from sysmlc.frontends.xmi import enterprise_architect
+
+            enterprise_architect.finish(context)
         behaviour.finish(context)
     unit.flush()
     for context in contexts:
