@@ -2,7 +2,7 @@
 
 State machines and activities are derived (design, section 7); constraints written in LTL are
 conjuncts of the contract of the component that they constrain; what requirements assume and
-demand of a subject is a contract of its own.
+demand of a subject is a contract of its own, and so are the pre- and postconditions of a service.
 """
 
 from collections import Counter
@@ -18,6 +18,7 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
 from sysmlc.logic.requirements import derivation as requirements
+from sysmlc.logic.services import derivation as services
 from sysmlc.passes.contract_formulas import add_formulas
 from sysmlc.values import dataclass, replace
 
@@ -60,9 +61,9 @@ class Contracts:
         found = [*self._of_machines(graph, sink), *_of_activities(graph)]
         found = add_formulas(graph, _told_apart(graph, found, sink), sink)
         assumed = self.assumed_low, self.assumed_high
-        found = _told_apart(
-            graph, [*found, *requirements.derive(graph, found, assumed, sink)], sink
-        )
+        found = [*found, *requirements.derive(graph, found, assumed, sink)]
+        taken = [contract.component for contract in found]
+        found = _told_apart(graph, [*found, *services.derive(graph, taken, assumed, sink)], sink)
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:

@@ -20,6 +20,8 @@ from sysmlc.logic.expressions.expression import (
 from sysmlc.logic.expressions.expression import Literal as Constant
 
 _RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
+_MOMENTARY = frozenset(["precondition", "postcondition", "body"])
+"""Kinds of constraints that do not hold at all times."""
 _ARITHMETIC: dict[str, Callable[..., int]] = {"+": add, "-": sub, "*": mul}
 _MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
@@ -116,6 +118,8 @@ def _bodies(
             constraints[one.id] = one
     is_plain = word.isidentifier()
     for constraint in constraints.values():
+        if constraint.subkind in _MOMENTARY:
+            continue
         body = str(constraint.attrs.get("body", ""))
         if is_plain and word not in body and "'" not in body:
             continue

@@ -1,0 +1,1 @@
+"""Services: operations and actions by what they need before and promise after."""
