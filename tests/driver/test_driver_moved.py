@@ -110,7 +110,7 @@ def test_notes_and_blanks_are_not_compiled(runs, old, new):
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        ("= 3;", "= 4;"),
+        ("= 3;", "= 3.5;"),
         ("speed > 2", "speed >= 2"),
         ("action pick;", "action pick; action place;"),
         ("/* What the cell has. */", "/* What a cell has. */"),

@@ -174,11 +174,13 @@ def outcome_of(
         return outcome(_compile(_with_backends(request, unit.emit), settings), has_files)
     opened = open_unit(request)
     on = depends_on(opened, request, unit.emit, has_files)
-    found = kept(store, on, opened)
+    found = kept(store, on, opened, request)
     if found is None:
         request = _with_backends(request, unit.emit)
-        found = outcome(_compile(request, settings, opened), has_files)
-        keep(store, on, opened, found, [backend.name for backend in request.backends])
+        made = _compile(request, settings, opened)
+        found = outcome(made, has_files)
+        names = [backend.name for backend in request.backends]
+        keep(store, on, opened, found, names, made.recorded)
     return found
 
 

@@ -16,12 +16,14 @@ from sysmlc.driver.inputs import unit_root
 from sysmlc.driver.overlays import store_all
 from sysmlc.driver.places import Locator
 from sysmlc.driver.reading import Reading, read_unit
+from sysmlc.driver.recording import Recorded, Recording
 from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
+from sysmlc.passes.pipeline import DERIVING
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
 from sysmlc.values import dataclass
@@ -90,6 +92,8 @@ class Compilation:
     sources: tuple[Source, ...] = ()
     is_complete: bool = True
     """Whether every input could be read; if not, nothing old is removed."""
+    recorded: Recorded | None = None
+    """What it takes to do parts of the compilation again; None where that is not possible."""
 
     def written(self) -> list[Artefact]:
         """The artefacts that are not withheld, sorted by path."""
@@ -144,6 +148,7 @@ class _Run:
         self._sink = opened.sink
         self._coverage = Coverage()
         self._graph = Graph()
+        self._recording = Recording(self._graph, self._sink) if request.cache else None
         self._output = Output()
         self._frontends = opened.frontends
         self._passes = request.pipeline()
@@ -165,9 +170,11 @@ class _Run:
         store_all(reading.overlays, self._graph)
         broken = not all(self._refine(step) for step in self._passes) or broken
         emitted = [] if broken else self._emit(inputs, reading)
+        self._record("driver", False)
         if self._request.strict_input:
             self._report_unsupported()
         diagnostics = self._findings()
+        withheld = withheld_artefacts(emitted, self._graph, diagnostics)
         return Compilation(
             root=self._root,
             graph=self._graph,
@@ -175,8 +182,9 @@ class _Run:
             coverage=self._coverage,
             inputs=inputs,
             artefacts=tuple(emitted),
-            withheld=withheld_artefacts(emitted, self._graph, diagnostics),
+            withheld=withheld,
             sources=self._sources(reading),
+            recorded=self._recording.end(emitted) if self._recording else None,
             is_complete=reading.is_complete
             and not broken
             and not any(map(_cuts_short, diagnostics)),
@@ -212,6 +220,7 @@ class _Run:
 
     def _refine(self, step: Pass) -> bool:
         self._step(f"pass {step.name}")
+        self._record(f"pass {step.name}", step.name in DERIVING)
         done = self._guarded(f"pass {step.name}", lambda: step.run(self._graph, self._sink))
         return self._settled(step.name) and done
 
@@ -226,6 +235,10 @@ class _Run:
             self._sink.report(faults.INVALID_GRAPH, Subject(), where=what, problem=problem)
         return not problems
 
+    def _record(self, reader: str, is_repeatable: bool) -> None:
+        if self._recording is not None:
+            self._recording.begin(reader, is_repeatable)
+
     def _sources(self, reading: Reading) -> tuple[Source, ...]:
         """Everything that findings and traces may point into."""
         laid = (one.source for one in reading.overlays)
@@ -238,6 +251,7 @@ class _Run:
         failed: set[str] = set()
         for backend in self._request.backends:
             self._step(f"emit {backend.name}")
+            self._record(f"emit {backend.name}", True)
             before = {artefact.path for artefact in self._output.artefacts()}
             if not self._guarded(
                 f"back end {backend.name}",

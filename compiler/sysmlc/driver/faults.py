@@ -190,6 +190,10 @@ STOPPING = frozenset(
 """Rules after which we could not do our work: exit code 2."""
 
 
+FAILED = 2
+"""Exit code: we could not do our work."""
+
+
 def exit_code(found: Iterable[Diagnostic], strict: bool = False) -> int:
     """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
     known = {(one.rule.code, one.severity) for one in found}

@@ -6,34 +6,54 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from sysmlc.cache import Cache
-from sysmlc.driver.compilation import Opened
+from sysmlc.driver.compilation import Opened, Request
 from sysmlc.driver.dependencies import Dependencies
+from sysmlc.driver.faults import FAILED
 from sysmlc.driver.outcome import Outcome
 from sysmlc.driver.recall import recall, remember
+from sysmlc.driver.recording import Recorded
 from sysmlc.driver.tracing import COVERAGE, TRACE
-from sysmlc.frontends.base import Worded
+from sysmlc.frontends.base import Valued, Worded
 from sysmlc.sources import Source
 
 STILL = frozenset({"contracts", "plantuml", "recipe"})
 """Back ends whose files state no places in the inputs."""
 
 
-def kept(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
-    """The outcome that an earlier run came to, or None."""
-    return recall(cache, on.key(), opened.root) or _moved(cache, on, opened)
+def kept(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
+    """The outcome that an earlier run came to, or that it would come to now; else None."""
+    return (
+        recall(cache, on.key(), opened.root)
+        or _moved(cache, on, opened)
+        or _restated(cache, on, opened, request)
+    )
 
 
 def keep(
-    cache: Cache, on: Dependencies, opened: Opened, outcome: Outcome, backends: Iterable[str]
+    cache: Cache,
+    on: Dependencies,
+    opened: Opened,
+    outcome: Outcome,
+    backends: Iterable[str],
+    recorded: Recorded | None = None,
 ) -> None:
-    """Keep an outcome that back ends made; where no places matter to them, by its words too."""
+    """Keep an outcome that back ends made; where no places matter to them, by its words too.
+
+    With what was ``recorded`` it is also kept by the shapes of its texts, without literals.
+    """
     remember(cache, on.key(), outcome)
-    wordings = dict(_wordings(opened)) if _is_still(outcome, backends) else {}
+    if outcome.exit_code() == FAILED or not _is_still(outcome, backends):
+        return
+    wordings = dict(_wordings(opened))
     if wordings:
         sources = opened.reading.sources()
         texts = {one.name: one.data.decode() for one in sources if one.name in wordings}
         entry = {"key": on.key(), "digests": _digests(on, wordings), "texts": texts}
         cache.put(on.key(wordings), zlib.compress(json.dumps(entry).encode(), 1))
+    if recorded is not None:
+        from sysmlc.driver.restoring import keep_shape
+
+        keep_shape(cache, on, opened, recorded)
 
 
 def _is_still(outcome: Outcome, backends: Iterable[str]) -> bool:
@@ -50,6 +70,14 @@ def _moved(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
     known = json.loads(zlib.decompress(entry))
     found = recall(cache, known["key"], opened.root)
     return found and _adapted(found, known, opened, _digests(on, wordings))
+
+
+def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
+    if not any(isinstance(one.frontend, Valued) for one in opened.reading.recognised):
+        return None
+    from sysmlc.driver.restoring import restored
+
+    return restored(cache, on, opened, request)
 
 
 def _adapted(

@@ -47,7 +47,10 @@ class Move:
         index = bisect_right(self._starts, at) - 1
         if index < 0 or at > self._old.words[index][1]:
             raise LostError
-        return self._new.words[index][0] + at - self._old.words[index][0]
+        (start, end), (new, new_end) = self._old.words[index], self._new.words[index]
+        if at > start and new_end - new != end - start:
+            raise LostError
+        return new + at - start
 
 
 class _Text:
@@ -84,7 +87,7 @@ def moved(
     ``stale`` has the digest that each of them had, which outputs may state. Raises LostError.
     """
     digests = {stale[source.name]: source.sha256 for source in sources}
-    texts = _Texts(kept.texts, dict(_texts(kept, moves, digests)))
+    texts = Texts(kept.texts, dict(_texts(kept, moves, digests)))
     return replace(
         kept,
         inputs=tuple(
@@ -101,7 +104,7 @@ def moved(
     )
 
 
-class _Texts(Mapping[str, str]):
+class Texts(Mapping[str, str]):
     """Texts of which some are new; the others are unpacked when they are asked for."""
 
     def __init__(self, old: Mapping[str, str], new: dict[str, str]) -> None:
@@ -110,6 +113,9 @@ class _Texts(Mapping[str, str]):
 
     def __getitem__(self, path: str) -> str:
         return self.new[path] if path in self.new else self._old[path]
+
+    def __contains__(self, path: object) -> bool:
+        return path in self.new or path in self._old
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._old)
@@ -178,6 +184,6 @@ def _trace(text: str, moves: Mapping[str, Move]) -> str:
     return place.sub(new, text)
 
 
-def _file(file: OutputFile, texts: _Texts) -> OutputFile:
+def _file(file: OutputFile, texts: Texts) -> OutputFile:
     text = texts.new.get(file.path)
     return file if text is None else replace(file, sha256=digest_of(text))

@@ -5,6 +5,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from functools import cached_property
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,17 @@ from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.values import dataclass
 
 _LENGTH = 8
-"""Bytes that say how long the first part of an entry is; the second holds the texts."""
+"""Bytes that say how long a part of an entry is: the outcome, its texts' lengths; then texts."""
 
 
 def remember(cache: Cache, key: str, outcome: Outcome) -> None:
     """Keep an outcome, unless a fault of ours or of the machine is part of it."""
     if outcome.exit_code() == 2:
         return
-    first = _packed(_form(outcome))
-    cache.put(key, len(first).to_bytes(_LENGTH, "big") + first + _packed(dict(outcome.texts)))
+    texts = {path: _compressed(text) for path, text in outcome.texts.items()}
+    parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
+    lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
+    cache.put(key, b"".join([*lengths, *parts, *texts.values()]))
 
 
 def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
@@ -32,17 +35,27 @@ def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
     entry = cache.get(key)
     if entry is None:
         return None
-    start = _LENGTH + int.from_bytes(entry[:_LENGTH], "big")
-    return _outcome(_unpacked(entry[_LENGTH:start]), root, _Texts(entry[start:]))
+    lengths = [int.from_bytes(entry[at : at + _LENGTH], "big") for at in (0, _LENGTH)]
+    start = 2 * _LENGTH
+    middle, end = start + lengths[0], start + sum(lengths)
+    texts = _Texts(entry[end:], _unpacked(entry[middle:end]))
+    return _outcome(_unpacked(entry[start:middle]), root, texts)
 
 
 def _packed(value: object) -> bytes:
-    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"))
-    return zlib.compress(text.encode("utf-8", "surrogatepass"), 1)
+    return _compressed(json.dumps(value, ensure_ascii=False, separators=(",", ":")))
 
 
 def _unpacked(data: bytes) -> Any:  # noqa: ANN401 - JSON
-    return json.loads(zlib.decompress(data).decode("utf-8", "surrogatepass"))
+    return json.loads(_decompressed(data))
+
+
+def _compressed(text: str) -> bytes:
+    return zlib.compress(text.encode("utf-8", "surrogatepass"), 1)
+
+
+def _decompressed(data: bytes) -> str:
+    return zlib.decompress(data).decode("utf-8", "surrogatepass")
 
 
 def _form(outcome: Outcome) -> dict[str, object]:
@@ -85,22 +98,28 @@ def _diagnostic(found: Diagnostic) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class _Texts(Mapping[str, str]):
-    """The texts of an outcome; most runs only compare digests and need none of them."""
+    """The texts of an outcome, each unpacked when it is asked for; most runs need none."""
 
     packed: bytes
+    lengths: Mapping[str, int]
+    """How many bytes of ``packed`` are which text, in order."""
 
     @cached_property
-    def _loaded(self) -> dict[str, str]:
-        return dict(_unpacked(self.packed))
+    def _starts(self) -> dict[str, int]:
+        return dict(zip(self.lengths, accumulate(self.lengths.values(), initial=0), strict=False))
 
     def __getitem__(self, path: str) -> str:
-        return self._loaded[path]
+        start = self._starts[path]
+        return _decompressed(self.packed[start : start + self.lengths[path]])
+
+    def __contains__(self, path: object) -> bool:
+        return path in self.lengths
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._loaded)
+        return iter(self.lengths)
 
     def __len__(self) -> int:
-        return len(self._loaded)
+        return len(self.lengths)
 
 
 def _outcome(kept: dict[str, Any], root: Path, texts: Mapping[str, str]) -> Outcome:

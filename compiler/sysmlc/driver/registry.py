@@ -96,6 +96,11 @@ def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
     return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
 
 
+def one_pass(name: str, options: Mapping[str, Mapping[str, object]]) -> Pass:
+    """One pass with its options. Raises ConfigError, and KeyError for a name that is none."""
+    return _with_options(pipeline.load(name), options.get(name, {}))
+
+
 def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
     if not options:
         return one

@@ -1,11 +1,12 @@
 """What a front end is: it recognises its files and reads them into the graph."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Place, Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import AttrValue, Graph
+from sysmlc.ir.reads import Literal, Value
 from sysmlc.sources import Source
 
 
@@ -64,6 +65,23 @@ class Worded(Protocol):
 
     def words(self, source: Source) -> Sequence[tuple[int, int]]:
         """Where its words start and end, in characters; the last one is the end of the text."""
+
+
+@runtime_checkable
+class Valued(Worded, Protocol):
+    """A front end that can say what other literals in a text change (``Graph.reads``)."""
+
+    def shape(self, source: Source) -> str:
+        """As ``wording``, but for the values of literals."""
+
+    def values(
+        self, old: Source, new: Source, found: Sequence[Literal], asked: Container[int]
+    ) -> Mapping[Value, AttrValue] | None:
+        """What attributes become where two texts of one shape have other literals.
+
+        ``found`` are the attributes that were literals of the old one, ``asked`` the places of
+        literals that mean more. None where a literal is another one that is no such attribute.
+        """
 
 
 @runtime_checkable

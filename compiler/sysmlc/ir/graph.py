@@ -8,6 +8,7 @@ from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new, with_each_new
+from sysmlc.ir.reads import Reads
 from sysmlc.ir.reference import End, Reference, References
 
 _T = TypeVar("_T")
@@ -32,6 +33,8 @@ class Graph:
         self._drawn: dict[Edge, list[Element]] = {edge: [] for edge in Edge}
         self._derived: dict[type, tuple[object, ...]] = {}
         self.pending = References()
+        self.reads: Reads | None = None
+        """Who asks for values of the text; None: nobody wants to know."""
 
     # -- reading -------------------------------------------------------------------------------
 
@@ -303,14 +306,45 @@ class Graph:
     def store(self, type_: type[_T], values: Iterable[_T]) -> None:
         """Keep derived values (recipes, contracts, token graphs), replacing earlier ones."""
         self._derived[type_] = tuple(values)
+        if self.reads is not None:
+            self.reads.store(type_.__module__)
 
     def derived(self, type_: type[_T]) -> Sequence[_T]:
         """The derived values of a type, in the order in which the pass stored them."""
+        if self.reads is not None:
+            self.reads.use(type_.__module__)
         return cast("Sequence[_T]", self._derived.get(type_, ()))
 
     def has_derived(self, module: str) -> bool:
         """Whether there are derived values of a type of this module, which need not be imported."""
+        if self.reads is not None:
+            self.reads.use(module)
         return any(type_.__module__ == module for type_, values in self._derived.items() if values)
+
+    # -- as rows -------------------------------------------------------------------------------
+
+    def index(self, edge: Edge, *, backwards: bool = False) -> Index:
+        """Neighbours by edges of one kind, for who keeps a whole graph; not to be changed.
+
+        Owners are not there backwards: elements name them.
+        """
+        if not backwards:
+            return self._out[edge]
+        return {} if edge is Edge.OWNS else self._incoming(edge)
+
+    def fill(self, edge: Edge, forwards: Index, backwards: Index) -> None:
+        """Take all edges of one kind, as ``index`` gave them of an equal graph."""
+        self._out[edge] = forwards
+        if edge is Edge.OWNS:
+            self._owned = forwards
+        else:
+            self._in[edge] = backwards
+            self._drawn.pop(edge, None)
+
+    def add_loose(self, element: Element) -> None:
+        """Add an element whose owner and edges are filled in afterwards."""
+        self._elements[element.id] = element
+        self._fresh.append(element)
 
     # -- inside --------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.reads import during
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
@@ -44,10 +45,22 @@ class Activities:
         for activity in graph.of_kind(Kind.ACTIVITY):
             if _is_drawn_elsewhere(activity):
                 continue
-            try:
-                yield self._token_graph(graph, activity, raising, sink)
-            except activity_drawing.CannotPlayError:
-                continue
+            with during(graph, activity.id):
+                found = self._found(graph, activity, raising, sink)
+            if found is not None:
+                yield found
+
+    def part(self, graph: Graph, about: Element, sink: Sink) -> object:
+        """The token graph of one activity, or None."""
+        return self._found(graph, about, find_raising(graph), sink)
+
+    def _found(
+        self, graph: Graph, activity: Element, raising: Raising, sink: Sink
+    ) -> TokenGraph | None:
+        try:
+            return self._token_graph(graph, activity, raising, sink)
+        except activity_drawing.CannotPlayError:
+            return None
 
     def _token_graph(
         self, graph: Graph, activity: Element, raising: Raising, sink: Sink

@@ -1,9 +1,20 @@
 """What a pass is: options as fields, a name, its predecessors, and ``run``."""
 
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, runtime_checkable
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Element, Graph
+
+
+@runtime_checkable
+class InParts(Protocol):
+    """A pass that does for one element after the other what no other one concerns.
+
+    While it is at one it says so (``ir.reads.during``).
+    """
+
+    def part(self, graph: Graph, about: Element, sink: Sink) -> object:
+        """What is derived for one element; equal values have equal consequences."""
 
 
 class Pass(Protocol):

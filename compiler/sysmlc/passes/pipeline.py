@@ -30,6 +30,10 @@ NAMES = (
 """Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""
 
 
+DERIVING = frozenset({"activities", "recipe", "platform", "contracts"})
+"""Passes that leave the graph as it is: they store derived values, and report."""
+
+
 class InvalidGraphError(RuntimeError):
     """A front end or a pass left a graph that ``verify`` rejects: our fault, not the model's."""
 

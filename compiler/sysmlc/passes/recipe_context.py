@@ -50,25 +50,37 @@ class Context:
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
     _literals: dict[str, list[Element]] = field(default_factory=dict)
+    _ends: set[str] = field(default_factory=set)
+    _subjects: set[str] = field(default_factory=set)
 
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
         """Level that the options, ``classify`` or a stereotype give the element itself."""
-        if self.levels:
-            chosen = self.levels.get(element.id) or self.levels.get(self.name(element))
-            if chosen:
-                return chosen
+        chosen = self._chosen(element) if self.levels else ""
+        if chosen:
+            return chosen
         found = str(element.attrs.get("level", ""))
         if found in LEVELS.values():
             return found
         return self._applied_level(element) or self.derived.get(element.id, "")
 
+    def _chosen(self, element: Element) -> str:
+        """What the options say, by id or by qualified name: few names end as they do there."""
+        if not self._ends:
+            self._ends.update(map(_end, self.levels))
+        is_named = _end(self._segment(element)) in self._ends
+        named = self.levels.get(self.name(element)) if is_named else None
+        return self.levels.get(element.id) or named or ""
+
     def _applied_level(self, element: Element) -> str:
-        if not query.applications(self.graph, element):
+        if not self._subjects:
+            self._subjects.update(_subjects(self.graph))
+        if element.id not in self._subjects:
             return ""
-        applied = (name for name in LEVELS if self.applied(element, name))
-        return next((LEVELS[name] for name in applied), "")
+        found = query.applications(self.graph, element)
+        names = {name for one in found for name in _stereotypes(one)}
+        return next((level for name, level in LEVELS.items() if name in names), "")
 
     def level(self, element: Element | None) -> str:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
@@ -115,9 +127,7 @@ class Context:
     def applied(self, element: Element, stereotype: str) -> Element | None:
         """Application of a stereotype of the shipped profile, or of one that specialises it."""
         for application in query.applications(self.graph, element):
-            names = query.lineage(application)
-            ours = application.attrs.get("namespace") in (NAMESPACE, None)
-            if stereotype in names and (ours or len(names) > 1):
+            if stereotype in _stereotypes(application):
                 return application
         return None
 
@@ -148,6 +158,25 @@ class Context:
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
             self._segments.update(_numbered(siblings))
         return self._segments[element.id]
+
+
+def _end(name: str) -> str:
+    """The last part of a qualified name."""
+    return name.rpartition("::")[2]
+
+
+def _subjects(graph: Graph) -> Iterator[str]:
+    """Ids of what stereotypes are applied to; the empty one, so that it is never nothing."""
+    yield ""
+    for application in graph.of_kind(Kind.APPLICATION):
+        yield from (one.id for one in graph.targets(application, Edge.SUBJECT))
+
+
+def _stereotypes(application: Element) -> tuple[str, ...]:
+    """Stereotypes that are applied; what another profile calls like ours only by its general."""
+    names = query.lineage(application)
+    is_ours = application.attrs.get("namespace") in (NAMESPACE, None)
+    return names if is_ours or len(names) > 1 else ()
 
 
 def activity_nodes(context: Context, activity: Element) -> list[Element]:

@@ -11,6 +11,7 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.reads import during
 from sysmlc.plantuml import label, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -22,18 +23,24 @@ _LABEL = 30
 _FRAME = 60
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All activity diagrams, in the order of the model."""
+def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
+    """All activity diagrams, in the order of the model; ``only`` those of one activity."""
     for activity in graph.of_kind(Kind.ACTIVITY):
-        if activity.attrs.get("external"):
+        if activity.attrs.get("external") or only not in ("", activity.id):
             continue
-        drawing = _Drawing(graph, activity)
-        view = drawing.view()
-        if view.nodes:
-            signature = drawing.signature()
-            said = [item.id for item in graph.owned(activity) if item.kind is Kind.PARAMETER]
-            details = tuple(said) if signature else ()
-            yield from divided(graph, activity, view, "act", "Activity diagram", signature, details)
+        with during(graph, f"act {activity.id}"):
+            found = list(_of_activity(graph, activity))
+        yield from found
+
+
+def _of_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
+    drawing = _Drawing(graph, activity)
+    view = drawing.view()
+    if view.nodes:
+        signature = drawing.signature()
+        said = [item.id for item in graph.owned(activity) if item.kind is Kind.PARAMETER]
+        details = tuple(said) if signature else ()
+        yield from divided(graph, activity, view, "act", "Activity diagram", signature, details)
 
 
 def whole(graph: Graph, activity: Element) -> GraphView:

@@ -22,7 +22,7 @@ from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
-from sysmlc.output import Output
+from sysmlc.output import Artefact, Output
 from sysmlc.plantuml import comment
 from sysmlc.values import dataclass
 
@@ -47,6 +47,8 @@ KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
     sd.diagrams,
     uc.diagrams,
 )
+_PARTS = {"act": act.diagrams, "bdd": bdd.diagrams, "ibd": ibd.diagrams, "stm": stm.diagrams}
+"""Kinds of diagrams that can be made of one element alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,15 @@ class PlantUml:
         """Write every diagram that shows something; report what none of them shows."""
         with room_for(stm.depth(graph)):
             self._emit(graph, output, sink, options)
+
+    def part(self, graph: Graph, about: str, options: EmitOptions) -> Iterator[Artefact]:
+        """The diagrams of one kind about one element, as ``act`` and its id."""
+        kind, _, id = about.partition(" ")
+        renderer = Renderer(options.templates)
+        with room_for(stm.depth(graph)):
+            for one in _PARTS[kind](graph, id):
+                text = renderer.text(one, _header(graph, one))
+                yield Artefact(f"diagrams/{one.name}.{kind}.puml", text, one.trace(), self.name)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:

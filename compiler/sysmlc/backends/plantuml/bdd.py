@@ -1,6 +1,7 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import nullcontext
 
 from sysmlc.backends.plantuml import foreign, labels, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -9,6 +10,7 @@ from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import BoxView, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.reads import during
 from sysmlc.plantuml import keyword_label, padded, plain
 
 CLASSIFIERS = (
@@ -36,13 +38,17 @@ _UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All block definition diagrams of the graph, in the order of its packages."""
+def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
+    """All block definition diagrams, in the order of the packages; ``only`` those of one."""
     every = [relation for relation in relations(graph) if _is_between_boxes(graph, relation)]
     homes = _homes(graph)
     drawn = {item.id for items in homes.values() for item in items}
     for package, classifiers in homes.items():
-        yield from _of_package(graph, graph.get(package), classifiers, every, drawn)
+        if only not in ("", package):
+            continue
+        with nullcontext() if package is None else during(graph, f"bdd {package}"):
+            found = list(_of_package(graph, graph.get(package), classifiers, every, drawn))
+        yield from found
 
 
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:

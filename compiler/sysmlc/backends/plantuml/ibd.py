@@ -16,6 +16,7 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
+from sysmlc.ir.reads import during
 from sysmlc.plantuml import label, lines, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -28,14 +29,18 @@ _TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
 """What leads from a part to its type, and from an instance that is drawn like one."""
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All internal block diagrams, in the order of the model."""
+def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
+    """All internal block diagrams, in the order of the model; ``only`` those of one block."""
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
     flows = free_flows(graph)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        found = connections(graph, block, flows)
-        if found and not block.attrs.get("external"):
-            yield from _of_block(graph, block, found)
+        if only not in ("", block.id):
+            continue
+        with during(graph, f"ibd {block.id}"):
+            joined = connections(graph, block, flows)
+            is_drawn = joined and not block.attrs.get("external")
+            found = list(_of_block(graph, block, joined)) if is_drawn else []
+        yield from found
 
 
 def _of_block(graph: Graph, block: Element, found: list[Connection]) -> Iterator[Diagram]:

@@ -8,6 +8,7 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.pieces import pieces
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.reads import during
 from sysmlc.plantuml import label, lines, plain, small, stack
 
 VERTICES = (Kind.STATE, Kind.PSEUDOSTATE, Kind.FINAL_STATE)
@@ -27,14 +28,21 @@ _REFERENCE = "connection-point"
 _ROW = 44
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All state machine diagrams, in the order of the model."""
+def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
+    """All state machine diagrams, in the order of the model; ``only`` those of one machine."""
     for machine in graph.of_kind(Kind.STATE_MACHINE):
-        view = whole(graph, machine)
-        if view.nodes:
-            regions = tuple(item.id for item in _regions(graph, machine))
-            title = "State machine diagram"
-            yield from divided(graph, machine, view, "stm", title, details=regions)
+        if only in ("", machine.id):
+            with during(graph, f"stm {machine.id}"):
+                found = list(_of_machine(graph, machine))
+            yield from found
+
+
+def _of_machine(graph: Graph, machine: Element) -> Iterator[Diagram]:
+    view = whole(graph, machine)
+    if view.nodes:
+        regions = tuple(item.id for item in _regions(graph, machine))
+        title = "State machine diagram"
+        yield from divided(graph, machine, view, "stm", title, details=regions)
 
 
 def divided(

@@ -185,9 +185,7 @@ def assign(low: "Lowering", node: Node, owner: Element) -> Element:
     if found is not None:
         low.set(made, body=print_statement(found))
     elif (document := low.document(node)) is not None and node.end > node.start >= 0:
-        from sysmlc.language.text.words import said
-
-        low.set(made, body=said(document.text, node.start, node.end))
+        low.set(made, body=nodes.quoted(node, document.text))
     _inside(low, node, made)
     return made
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import expressions, nodes, values
+from sysmlc.frontends.sysml import nodes, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import Edge, Element, Kind
@@ -40,7 +40,7 @@ def _parts(accepting: Node) -> tuple[Node | None, Node | None]:
 
 def _timed(low: "Lowering", made: Element, value: Node) -> None:
     kind = str(value.facts.get("kind", ""))
-    given = next(iter(expressions.arguments(value)), None)
+    given = next(iter(nodes.arguments(value)), None)
     if kind in _TIMES:
         when = "" if given is None else duration(low, given)
         low.set(made, subkind="time", when=when, relative=_TIMES[kind])

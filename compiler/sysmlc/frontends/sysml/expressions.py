@@ -3,6 +3,7 @@
 from functools import reduce
 
 from sysmlc.frontends.sysml import nodes
+from sysmlc.frontends.sysml.nodes import arguments
 from sysmlc.language.tree import Node, Reference
 from sysmlc.logic.expressions.expression import (
     Binary,
@@ -50,9 +51,7 @@ def text(node: Node, source: str = "") -> str:
         from sysmlc.language.notation import expression
 
         return expression(node)
-    from sysmlc.language.text.words import said
-
-    return said(source, node.start, node.end) if 0 <= node.start < node.end else ""
+    return nodes.quoted(node, source)
 
 
 def _printed(expression: Expression) -> str | None:
@@ -158,12 +157,6 @@ def _call(node: Node) -> Expression:
     return Call(_chain(Name(found.chain[0]), found.chain[1:]), tuple(given))
 
 
-def arguments(node: Node) -> list[Node]:
-    """The arguments of an operator or an invocation, in order; named ones as features."""
-    return [one for one in node.members if one.membership in _ARGUMENTS]
-
-
-_ARGUMENTS = frozenset({"ParameterMembership", "FeatureMembership", "OwningMembership", ""})
 _READERS = {
     "LiteralBoolean": _literal,
     "LiteralString": _literal,

@@ -1,10 +1,11 @@
 """The front end for SysML v2 and KerML."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import AttrValue, Graph
+from sysmlc.ir.reads import Literal, Value
 from sysmlc.sources import Source
 from sysmlc.values import dataclass
 
@@ -52,6 +53,20 @@ class SysmlFrontend:
         from sysmlc.frontends.sysml.wording import spans
 
         return spans(source)
+
+    def shape(self, source: Source) -> str:
+        """The same without the values of literals."""
+        from sysmlc.frontends.sysml.wording import shape
+
+        return shape(source, self.cache)
+
+    def values(
+        self, old: Source, new: Source, found: Sequence[Literal], asked: Container[int]
+    ) -> Mapping[Value, AttrValue] | None:
+        """What attributes become where two texts of one shape have other literals."""
+        from sysmlc.frontends.sysml.wording import values
+
+        return values(old, new, found, asked)
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Parse, resolve and lower all files of the unit."""

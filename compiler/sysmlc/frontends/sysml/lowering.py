@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Place, Sink, Subject, Verdict
 from sysmlc.frontends.sysml import nodes, stubs
+from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.places import Places
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
@@ -52,6 +53,7 @@ class Lowering:
         """Identities of nodes that were lowered, or that an element was made for."""
         self.skipped: set[int] = set()
         """Identities of members that are read with something else."""
+        self.literals: Literals = UNWATCHED
         self._handlers = handlers
         self._documents = {id(one.root): one for one in documents}
         self._later: list[Callable[[], None]] = []

@@ -13,6 +13,7 @@ _EXPRESSIONS = """
 EXPRESSIONS = frozenset(_EXPRESSIONS.split())
 TEXTS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
 """Metaclasses of what annotates its owner and gives it no feature."""
+_ARGUMENTS = frozenset({"ParameterMembership", "FeatureMembership", "OwningMembership", ""})
 _SUBSETS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
 
 
@@ -45,6 +46,21 @@ def members(node: Node, *kinds: str) -> Iterator[Node]:
 def held(node: Node, *memberships: str) -> Iterator[Node]:
     """Members that these memberships own, in order."""
     return (one for one in node.members if one.membership in memberships)
+
+
+def quoted(node: Node, text: str) -> str:
+    """What the text of a document says of a node, in one line, without notes."""
+    from sysmlc.language.text.words import said
+
+    for one in node.walk():
+        # Whoever asks for literals is told of, and a text that is quoted has them all.
+        one.facts.get("value")
+    return said(text, node.start, node.end) if 0 <= node.start < node.end else ""
+
+
+def arguments(node: Node) -> list[Node]:
+    """The arguments of an operator or an invocation, in order; named ones as features."""
+    return [one for one in node.members if one.membership in _ARGUMENTS]
 
 
 def value_of(node: Node) -> Node | None:

@@ -8,6 +8,7 @@ from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
 from sysmlc.frontends.sysml.libraries import FILES, READ, SHIPPED
+from sysmlc.frontends.sysml.literals import watched
 from sysmlc.frontends.sysml.rules import NO_LIBRARY
 from sysmlc.frontends.sysml.settled import settle
 from sysmlc.frontends.sysml.unit import lower
@@ -34,7 +35,8 @@ def read(
     from sysmlc.language.names import Model, resolve
 
     models = [source for source in sources if not is_description(source)]
-    documents = [_document(source, sink, cache) for source in models]
+    faulty: set[str] = set()
+    documents = [_document(source, sink, cache, faulty) for source in models]
     found = _library(library, cache, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
@@ -52,13 +54,14 @@ def read(
     if not own:
         return
     ours += _missing(own, ours, cache)
+    literals = watched([one for one in own if one.path not in faulty], graph)
     model = resolve([*own, *ours], found, sink)
     check(model, sink)
     settle(own, sink)
     graph.store(Model, [*graph.derived(Model), model])
     shared = [one for one in ours if one.root.members[0].name in READ and _is_named(one, models)]
     settle(shared, sink)
-    lower([*own, *shared], model, graph, sink, coverage)
+    lower([*own, *shared], model, graph, sink, coverage, literals)
     _mark(graph, shared)
 
 
@@ -77,7 +80,7 @@ def _mark(graph: Graph, libraries: Sequence[Document]) -> None:
                 graph.set(one, external=True)
 
 
-def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document:
+def _document(source: Source, sink: Sink, cache: "Cache | None", faulty: set[str]) -> Document:
     """The tree of one file; what is wrong in it is reported by its reader."""
     if is_xml(source):
         from sysmlc.language.exchange import read as read_exchange
@@ -85,7 +88,11 @@ def _document(source: Source, sink: Sink, cache: "Cache | None") -> Document:
         return read_exchange(source, sink)
     from sysmlc.language.stored import read as read_stored
 
-    return read_stored(source, source.name, language(source), sink, cache)
+    before = len(sink)
+    found = read_stored(source, source.name, language(source), sink, cache)
+    if len(sink) > before:
+        faulty.add(source.name)
+    return found
 
 
 def _is_ours(document: Document) -> bool:

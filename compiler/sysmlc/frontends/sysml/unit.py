@@ -10,6 +10,7 @@ from sysmlc.frontends.sysml.blame import blame
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.libraries import SHIPPED
+from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.strays import tell
@@ -22,10 +23,16 @@ if TYPE_CHECKING:
 
 
 def lower(
-    documents: Sequence[Document], model: "Model", graph: Graph, sink: Sink, coverage: Coverage
+    documents: Sequence[Document],
+    model: "Model",
+    graph: Graph,
+    sink: Sink,
+    coverage: Coverage,
+    literals: Literals = UNWATCHED,
 ) -> None:
     """Add the elements of all documents to the graph and account for every node of them."""
     low = Lowering(documents, model, graph, sink, HANDLERS)
+    low.literals = literals
     low.accepted = accepted(documents)
     low.flowing = flowing(documents)
     for document in documents:
@@ -33,6 +40,7 @@ def lower(
             low.lower_all(document.root.members, None)
     low.last(lambda: _give_pins(low, documents))
     low.finish()
+    literals.finish(graph)
     tell(low, documents)
     blame(low, documents)
     for document in documents:

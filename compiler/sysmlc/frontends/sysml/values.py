@@ -16,9 +16,11 @@ def give(low: "Lowering", element: Element, key: str, node: Node) -> None:
     Enumeration values have the attribute ``<key>_instance``, other expressions
     ``<key>_language``.
     """
-    literal = constant(node)
+    with low.literals.unnoted():
+        literal = constant(node)
     if literal is not None:
         low.graph.set(element, **{key: literal})
+        low.literals.give(low, element, key, node)
         return
     low.last(lambda: _refer(low, element, key, node))
 
@@ -62,7 +64,7 @@ def constant(node: Node) -> AttrValue:
 
 
 def _operation(node: Node) -> AttrValue:
-    operator, args = node.facts.get("operator"), expressions.arguments(node)
+    operator, args = node.facts.get("operator"), nodes.arguments(node)
     if operator == "-" and len(args) == 1:
         found = constant(args[0])
         is_number = isinstance(found, int | float) and not isinstance(found, bool)
@@ -81,7 +83,7 @@ def _sequence(args: list[Node]) -> AttrValue:
         left, right = args
         if not _add(constant(left), found):
             return None
-        args = expressions.arguments(right) if right.facts.get("operator") == "," else [right]
+        args = nodes.arguments(right) if right.facts.get("operator") == "," else [right]
     return tuple(found) if all(_add(constant(one), found) for one in args) else None
 
 
@@ -99,7 +101,7 @@ _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "Lit
 def measure(node: Node) -> str:
     """Name of the unit of a quantity (``5 [SI::mm]`` gives ``mm``), or the empty string."""
     if node.kind == "OperatorExpression" and node.facts.get("operator") == "[":
-        args = expressions.arguments(node)
+        args = nodes.arguments(node)
         found = nodes.reference(args[1], "Membership") if len(args) == 2 else None
         return "" if found is None else nodes.last_name(found)
     return ""

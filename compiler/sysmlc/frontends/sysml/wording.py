@@ -1,10 +1,16 @@
 """What files say, apart from where: equal for texts that are only laid out otherwise."""
 
+from collections.abc import Callable, Container, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from sysmlc.frontends.sysml import forms
 from sysmlc.frontends.sysml.detect import is_xml
 from sysmlc.frontends.sysml.libraries import FILES
+from sysmlc.ir import AttrValue
+from sysmlc.ir.reads import Literal, Value
 from sysmlc.language.text import words
+from sysmlc.language.text.scan import TOKEN
 from sysmlc.sources.encoding import codec
 
 if TYPE_CHECKING:
@@ -17,31 +23,79 @@ def digest(source: "Source", cache: "Cache | None") -> str:
 
     The name of a library of ours counts anywhere in a text, for it may bring that library.
     """
-    text = _text(source)
-    if text is None:
-        return ""
-    found = _digest(source, text, cache)
-    named = [str(int(name in text)) for name in FILES]
-    return "".join([found, *named]) if found else ""
+    return _told(source, cache, 0)
+
+
+def shape(source: "Source", cache: "Cache | None") -> str:
+    """The same without the values of literals."""
+    return _told(source, cache, 1)
 
 
 def spans(source: "Source") -> words.Spans:
     """Where the tokens of a file are, in characters; none where ``digest`` is empty."""
     text = _text(source)
-    return (words.spans(text) or []) if text is not None else []
+    return (_spans(text) or []) if text is not None else []
 
 
-def _digest(source: "Source", text: str, cache: "Cache | None") -> str:
+def values(
+    old: "Source", new: "Source", found: "Sequence[Literal]", asked: Container[int]
+) -> dict[Value, AttrValue] | None:
+    """The attributes that other literals make other ones, for texts of one shape.
+
+    None where a literal is another one that is no attribute, or is among those ``asked`` for.
+    """
+    before, after = _text(old) or "", _text(new) or ""
+    changed: dict[int, AttrValue] = {}
+    for one, other in zip(_spans(before) or (), _spans(after) or (), strict=True):
+        piece = after[slice(*other)]
+        if piece != before[slice(*one)]:
+            changed[one[0]] = words.literal(piece)
+    made = {}
+    for literal in found:
+        places = set(forms.places(literal.form))
+        if not places.isdisjoint(changed):
+            made[literal.id, literal.key] = forms.value(literal.form, _reader(before, changed))
+    given = {place for literal in found for place in forms.places(literal.form)}
+    is_whole = all(at in given and at not in asked for at in changed)
+    return made if is_whole and None not in made.values() else None
+
+
+def _reader(text: str, changed: dict[int, AttrValue]) -> Callable[[int], AttrValue]:
+    def literal(at: int) -> AttrValue:
+        if at in changed:
+            return changed[at]
+        token = TOKEN.match(text, at)
+        return words.literal(token[0]) if token else None
+
+    return literal
+
+
+@lru_cache(maxsize=4)
+def _spans(text: str) -> words.Spans | None:
+    return words.spans(text)
+
+
+def _told(source: "Source", cache: "Cache | None", which: int) -> str:
+    text = _text(source)
+    if text is None:
+        return ""
+    found = _digests(source, text, cache)[which]
+    named = [str(int(name in text)) for name in FILES]
+    return "".join([found, *named]) if found else ""
+
+
+def _digests(source: "Source", text: str, cache: "Cache | None") -> tuple[str, str]:
     from sysmlc.language.stored import code
 
     if cache is None:
-        return words.digest(text)
+        return words.digests(text)
     key = f"{source.sha256}-words-{code()}"
     known = cache.get(key)
     if known is None:
-        known = words.digest(text).encode() or b"-"
+        known = " ".join(words.digests(text)).encode()
         cache.put(key, known)
-    return known.decode().strip("-")
+    said, _, shape = known.decode().partition(" ")
+    return said, shape
 
 
 def _text(source: "Source") -> str | None:

@@ -22,6 +22,8 @@ TOKEN = re.compile(
 """Blanks and notes, then a token; the number of the group that matched tells its kind."""
 BAD = 6
 """The group of what is no token; the end of the text is no group."""
+DIGITS = 1_000
+"""Digits of the longest natural number that is taken."""
 _HEAD = 64
 """Characters in which a file of another encoding, UTF-16 or a binary one, has a zero."""
 _REST = re.compile(r"[\w ]*")

@@ -1,8 +1,11 @@
 """What a text says, apart from where: its tokens, and what parts them (KerML 8.2.2.1)."""
 
+import math
 from hashlib import sha256
 
-from sysmlc.language.text.scan import BAD, TOKEN
+from sysmlc.language.text.scan import BAD, DIGITS, TOKEN, unquoted
+
+_TRUTH = frozenset({"true", "false"})
 
 Spans = list[tuple[int, int]]
 """Where each token starts and ends, in characters; the last one is the end of the text."""
@@ -21,21 +24,57 @@ def spans(text: str) -> Spans | None:
     return found
 
 
-def digest(text: str) -> str:
-    """Equal for texts that differ in blanks, line ends and notes between their tokens only.
+def digests(text: str) -> tuple[str, str]:
+    """What a text says, and what it says but for the values of literals; empty without tokens.
 
-    Two tokens stay together, in one line or in two as they were: faults are mended by that. What
-    stands before the first is not looked at. Empty for a text that is not made of tokens.
+    The first is equal for texts that differ in blanks, line ends and notes between their tokens
+    only. Two tokens stay together, in one line or in two as they were: faults are mended by that.
+    What stands before the first is not looked at. The second knows of literals of what kind they
+    are: a text, a natural or another number, a truth value.
     """
     found = spans(text)
     if found is None or "\0" in text:
-        return ""
-    hashed, last = sha256(), found[0][0]
+        return "", ""
+    said, shape, last = [], [], found[0][0]
     for start, end in found:
-        piece = text[start:end]
-        hashed.update(f"{_between(text, last, start)}{len(piece)} {piece}".encode())
+        piece, between = text[start:end], _between(text, last, start)
+        whole = f"{between}{len(piece)} {piece}"
+        kind = literal_kind(piece)
+        said.append(whole)
+        shape.append(f"{between}{kind}" if kind else whole)
         last = end
-    return hashed.hexdigest()
+    return _hashed(said), _hashed(shape)
+
+
+def digest(text: str) -> str:
+    """The first of the ``digests`` of a text."""
+    return digests(text)[0]
+
+
+def _hashed(said: list[str]) -> str:
+    return sha256("".join(said).encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def literal_kind(piece: str) -> str:
+    """What kind of literal a token is; empty for any other token."""
+    if piece[:1] == '"':
+        return "text"
+    if piece[:1].isdigit() or (piece[:1] == "." and piece[1:2].isdigit()):
+        return "natural" if piece.isdigit() and len(piece) <= DIGITS else "number"
+    return "truth" if piece in _TRUTH else ""
+
+
+def literal(piece: str) -> str | int | float | bool | None:
+    """The value of a literal; None for another token, and for a number that is too large."""
+    kind = literal_kind(piece)
+    if kind == "text":
+        return unquoted(piece)
+    if kind == "truth":
+        return piece == "true"
+    if kind == "natural":
+        return int(piece)
+    found = float(piece) if kind else math.inf
+    return None if math.isinf(found) else found
 
 
 def said(text: str, start: int, end: int) -> str:

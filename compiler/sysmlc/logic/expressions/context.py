@@ -87,16 +87,12 @@ def context_of(
     numbers = _numbers(graph)
     if classifier is None:
         return Context("", {}, _literals(graph), numbers)
-    named = of_ports(graph, classifier) | _named(graph, classifier)
-    named |= of_objects(graph, classifier)
-    if within is not None and within is not classifier:
-        named |= _named(graph, within) | of_objects(graph, within)
-    names = sorted(named, key=lambda name: (named[name].ordinal, name))
-    variables = unique(names, "value", "event", "none")
+    named = _known(graph, classifier, within)
+    variables = _variables(named)
     fixed = {one.name: value for one in named.values() if (value := _fixed(one)) is not None}
     features = {
         name: _feature(graph, named[name], variable, assumed, fixed, _seen(classifier, name))
-        for name, variable in zip(names, variables, strict=True)
+        for name, variable in variables.items()
     }
     features |= {
         name: replace(one, direction=direction_at(graph, classifier, name, one.element))
@@ -113,6 +109,26 @@ def context_of(
                 features[name] = replace(made, direction=one.direction)
         features |= _texts(graph, features, said)
     return Context(classifier.name, features, _literals(graph), numbers)
+
+
+def variables_of(
+    graph: Graph, classifier: Element | None, within: Element | None = None
+) -> dict[str, str]:
+    """The variables that names stand for in ``context_of``, without what values they have."""
+    return {} if classifier is None else _variables(_known(graph, classifier, within))
+
+
+def _known(graph: Graph, classifier: Element, within: Element | None) -> dict[str, Element]:
+    named = of_ports(graph, classifier) | _named(graph, classifier)
+    named |= of_objects(graph, classifier)
+    if within is not None and within is not classifier:
+        named |= _named(graph, within) | of_objects(graph, within)
+    return named
+
+
+def _variables(named: Mapping[str, Element]) -> dict[str, str]:
+    names = sorted(named, key=lambda name: (named[name].ordinal, name))
+    return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
 
 
 def _seen(classifier: Element, name: str) -> tuple[Element, str] | None:

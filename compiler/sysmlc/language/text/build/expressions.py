@@ -5,11 +5,8 @@ from collections.abc import Sequence
 
 from sysmlc.language.text.build.operators import ARGUMENT, argument
 from sysmlc.language.text.build.owning import FEATURE, made, own
-from sysmlc.language.text.scan import Fault, Tokens, unquoted
+from sysmlc.language.text.scan import DIGITS, Fault, Tokens, unquoted
 from sysmlc.language.tree import Node, Reference, Relation
-
-_DIGITS = 1_000
-"""Digits of the longest natural number that is taken."""
 
 
 def _literal(
@@ -22,7 +19,7 @@ def _literal(
 
 def _number(tokens: Tokens, at: int, begin: int, token: int) -> Node:
     written = tokens[token]
-    if written.isdigit() and len(written) <= _DIGITS:
+    if written.isdigit() and len(written) <= DIGITS:
         return _literal("LiteralInteger", int(written), tokens, begin, at)
     value = float(written)
     if math.isinf(value):

@@ -1,0 +1,91 @@
+"""What a compilation notes, so that parts of it can be done again when a literal is another one."""
+
+from collections.abc import Iterable, Mapping
+from hashlib import sha256
+
+from sysmlc.diagnostics import Diagnostic, Sink
+from sysmlc.ir import Graph
+from sysmlc.ir.reads import Literal, Reads, Value
+from sysmlc.ir.rows import Rows, rows
+from sysmlc.output import Artefact
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A file by its path: the back end, a digest of its trace, and what the trace begins with."""
+
+    path: str
+    backend: str
+    trace: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """The graph that passes and back ends saw, and who asked for what.
+
+    ``literals`` are attributes that are words of the texts; ``asked`` are literals, by file and
+    place, that mean more. ``readers`` has, for each attribute, who asked for it; ``stored`` and
+    ``used`` who kept and who asked for derived values, by module; ``heard`` a digest of what each
+    pass and back end reported.
+    """
+
+    graph: Rows
+    literals: tuple[Literal, ...]
+    asked: tuple[tuple[str, int], ...]
+    readers: Mapping[Value, tuple[str, ...]]
+    stored: Mapping[str, tuple[str, ...]]
+    used: Mapping[str, tuple[str, ...]]
+    heard: Mapping[str, str]
+    made: tuple[Made, ...]
+
+
+class Recording:
+    """Notes who is at work, from the front ends to the last back end."""
+
+    def __init__(self, graph: Graph, sink: Sink) -> None:
+        self._graph = graph
+        self._sink = sink
+        self._reads = graph.reads = Reads()
+        self._heard: dict[str, list[Diagnostic]] = {}
+        self._seen: Rows | None = None
+
+    def begin(self, reader: str, is_repeatable: bool) -> None:
+        """From now on ``reader`` is at work; one that is repeatable leaves the graph as it is."""
+        self._reads.reader = reader
+        if is_repeatable and self._seen is None and self._reads.literals:
+            self._seen = rows(self._graph)
+        if self._seen is not None:
+            self._sink.listen(self._heard.setdefault(reader, []))
+
+    def end(self, artefacts: Iterable[Artefact]) -> Recorded | None:
+        """What was noted; None when nothing can be done again: a later pass changed the graph."""
+        self._sink.listen(None)
+        self._graph.reads = None
+        reads, seen = self._reads, self._seen
+        if seen is None or len(self._graph.pending) or seen != rows(self._graph):
+            return None
+        return Recorded(
+            graph=seen,
+            literals=tuple(x for x in reads.literals if (x.id, x.key) not in reads.rewritten),
+            asked=tuple(sorted(reads.asked)),
+            readers={value: tuple(readers) for value, readers in reads.readers.items()},
+            stored={module: tuple(who) for module, who in reads.stored.items()},
+            used={module: tuple(who) for module, who in reads.used.items()},
+            heard={reader: digest_of_findings(found) for reader, found in self._heard.items()},
+            made=tuple(made(one) for one in artefacts),
+        )
+
+
+def made(artefact: Artefact) -> Made:
+    """What is noted of a file."""
+    trace = sha256("\n".join(artefact.trace).encode()).hexdigest()
+    about = artefact.trace[0] if artefact.trace else ""
+    return Made(artefact.path, artefact.backend, trace, about)
+
+
+def digest_of_findings(found: Iterable[Diagnostic]) -> str:
+    """Equal for the same findings, in whatever order and however often."""
+    told = {repr((one.rule.code, one.message, one.subject, one.notes, one.help)) for one in found}
+    return sha256("\n".join(sorted(told)).encode("utf-8", "surrogatepass")).hexdigest()

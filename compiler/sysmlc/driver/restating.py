@@ -1,0 +1,224 @@
+"""Parts of a compilation done again, on the graph of that time with other values."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import TypeVar
+
+from sysmlc.backends.base import EmitOptions, InputFile
+from sysmlc.backends.base import InParts as FilesInParts
+from sysmlc.diagnostics import Diagnostic, Place, Sink
+from sysmlc.driver import registry
+from sysmlc.driver.compilation import Request
+from sysmlc.driver.recording import Recorded, digest_of_findings, made
+from sysmlc.ir import AttrValue, Graph
+from sysmlc.ir.reads import Value
+from sysmlc.ir.rows import graph_of
+from sysmlc.output import Output
+from sysmlc.passes.base import InParts, Pass
+from sysmlc.passes.pipeline import DERIVING, NAMES
+from sysmlc.values import dataclass
+
+_T = TypeVar("_T")
+_PASS, _EMIT = "pass", "emit"
+
+
+class LostError(Exception):
+    """More than some files would be another one, or nobody knows what: all has to be compiled."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """A pass or a back end (``what``) by its name, perhaps while it was at one ``part``."""
+
+    what: str
+    name: str
+    part: str = ""
+
+    @property
+    def whole(self) -> "Reader":
+        """The pass or back end with all that it does."""
+        return Reader(self.what, self.name)
+
+    @property
+    def order(self) -> int:
+        """When it runs: the front ends first, then the passes, then the back ends."""
+        return NAMES.index(self.name) if self.what == _PASS else len(NAMES) * (self.what == _EMIT)
+
+
+def _reader(text: str) -> Reader:
+    return Reader(*text.split(" ", 2)) if " " in text else Reader(text, "")
+
+
+def restated(
+    known: Recorded,
+    changed: Mapping[Value, AttrValue],
+    request: Request,
+    inputs: tuple[InputFile, ...],
+) -> dict[str, str]:
+    """The texts of files, by path, that may be others when attributes have other values.
+
+    ``inputs`` are what files of that time name. Raises LostError, also when findings, the paths
+    of files or their traces would be others.
+    """
+    readers = {_reader(who) for value in changed for who in known.readers[value]}
+    if any(who.what not in (_PASS, _EMIT) for who in readers):
+        raise LostError
+    parts = sorted(
+        (one for one in readers if one.what == _PASS and one.part), key=lambda one: repr(one)
+    )
+    again = _Again(known, request, inputs)
+    before = [again.derived(one) for one in parts]
+    again.give(changed)
+    after = [again.derived(one) for one in parts]
+    differ = {one.whole for one, old, new in zip(parts, before, after, strict=True) if old != new}
+    return dict(again.files(readers.difference(parts) | differ))
+
+
+class _Partial(Graph):
+    """A graph without what passes derived, but for those that ran again."""
+
+    missing: Collection[str] = ()
+    """Modules of types of which there were derived values."""
+
+    def derived(self, type_: type[_T]) -> Sequence[_T]:
+        self._ask(type_.__module__)
+        return super().derived(type_)
+
+    def has_derived(self, module: str) -> bool:
+        self._ask(module)
+        return super().has_derived(module)
+
+    def _ask(self, module: str) -> None:
+        if module in self.missing:
+            raise LostError
+
+
+class _Again:
+    """Passes and back ends that run a second time."""
+
+    def __init__(self, known: Recorded, request: Request, inputs: tuple[InputFile, ...]) -> None:
+        self._known = known
+        self._request = request
+        self._options = EmitOptions(request.templates, inputs, _nowhere, request.diagrams)
+        self._graph = _Partial()
+        graph_of(known.graph, self._graph)
+        self._stored = {module: {*map(_reader, by)} for module, by in known.stored.items()}
+        self._used = {module: {*map(_reader, by)} for module, by in known.used.items()}
+        self._done: set[Reader] = set()
+
+    def give(self, changed: Mapping[Value, AttrValue]) -> None:
+        """Set the attributes."""
+        for (id, key), value in changed.items():
+            self._graph.set(self._graph[id], **{key: value})
+
+    def derived(self, who: Reader) -> tuple[object, str]:
+        """What a pass derives for one element, and a digest of what it reports."""
+        step, element = self._pass(who), self._graph.get(who.part)
+        if not isinstance(step, InParts) or element is None:
+            raise LostError
+        self._expect(who)
+        sink, heard = _listening()
+        found = step.part(self._graph, element, sink)
+        return found, digest_of_findings(heard)
+
+    def files(self, affected: set[Reader]) -> Iterator[tuple[str, str]]:
+        """The texts that come out where these run again, and who asks for what they derive."""
+        for name in NAMES:
+            if (step := Reader(_PASS, name)) in affected:
+                self._run(step)
+                affected |= self._users(step)
+        emitting = sorted({one.name for one in affected if one.what == _EMIT})
+        for name in emitting:
+            whole = Reader(_EMIT, name)
+            ours = [whole] if whole in affected else [one for one in affected if one.whole == whole]
+            for one in ours:
+                yield from self._part(one) if one.part else self._emitted(one)
+
+    # -- passes --------------------------------------------------------------------------------
+
+    def _pass(self, who: Reader) -> Pass:
+        if who.name not in DERIVING:
+            raise LostError
+        return registry.one_pass(who.name, self._request.config.passes)
+
+    def _run(self, who: Reader) -> None:
+        """Run a pass, and first those that derived what it asks for."""
+        if who in self._done:
+            return
+        self._done.add(who)
+        step = self._pass(who)
+        self._prepare(who)
+        sink, heard = _listening()
+        step.run(self._graph, sink)
+        self._compare(who, heard)
+
+    def _prepare(self, who: Reader) -> None:
+        for module, by in self._used.items():
+            if who in {one.whole for one in by}:
+                for maker in sorted(self._stored.get(module, ()), key=lambda one: one.order):
+                    if maker.what == _PASS and maker.order < who.order:
+                        self._run(maker)
+        self._expect(who)
+
+    def _expect(self, who: Reader) -> None:
+        """What was derived before, by whom did not run again, is missing."""
+        self._graph.missing = {
+            module
+            for module, by in self._stored.items()
+            if any(one.order < who.order and one.whole not in self._done for one in by)
+        }
+
+    def _users(self, who: Reader) -> set[Reader]:
+        """Who asked for what a pass derives."""
+        modules = [module for module, by in self._stored.items() if who in by]
+        found = {one.whole for module in modules for one in self._used.get(module, ())}
+        if any(one.what not in (_PASS, _EMIT) for one in found):
+            raise LostError
+        return found - {who}
+
+    def _compare(self, who: Reader, heard: list[Diagnostic]) -> None:
+        if digest_of_findings(heard) != self._known.heard.get(f"{who.what} {who.name}"):
+            raise LostError
+
+    # -- back ends -----------------------------------------------------------------------------
+
+    def _emitted(self, who: Reader) -> Iterator[tuple[str, str]]:
+        """All that a back end writes: the same files with the same traces."""
+        self._prepare(who)
+        output = Output()
+        sink, heard = _listening()
+        registry.load_backends([who.name])[0].emit(self._graph, output, sink, self._options)
+        self._compare(who, heard)
+        found = output.artefacts()
+        known = {one for one in self._known.made if one.backend == who.name}
+        if {*map(made, found)} != known:
+            raise LostError
+        yield from ((one.path, one.text) for one in found)
+
+    def _part(self, who: Reader) -> Iterator[tuple[str, str]]:
+        """The files about one thing: which is which of that time is told by the trace."""
+        backend = registry.load_backends([who.name])[0]
+        if not isinstance(backend, FilesInParts):
+            raise LostError
+        self._expect(who)
+        found = list(backend.part(self._graph, who.part, self._options))
+        form, _, id = who.part.partition(" ")
+        ours = [made(one) for one in found]
+        known = [
+            one
+            for one in self._known.made
+            if one.backend == who.name and one.about == id and f".{form}." in one.path
+        ]
+        paths = {one.trace: one.path for one in known}
+        if sorted(one.trace for one in ours) != sorted(paths) or len(paths) != len(known):
+            raise LostError
+        yield from ((paths[one.trace], of.text) for one, of in zip(ours, found, strict=True))
+
+
+def _listening() -> tuple[Sink, list[Diagnostic]]:
+    sink, heard = Sink(), list[Diagnostic]()
+    sink.listen(heard)
+    return sink, heard
+
+
+def _nowhere(_places: object) -> Mapping[Place, Place]:
+    raise LostError

@@ -1,0 +1,141 @@
+"""Outcomes for texts in which only literals are others than in an earlier run."""
+
+import marshal
+import zlib
+from collections.abc import Iterator, Mapping
+
+from sysmlc.cache import Cache
+from sysmlc.driver import moving
+from sysmlc.driver.compilation import Opened, Request
+from sysmlc.driver.dependencies import Dependencies
+from sysmlc.driver.outcome import Outcome, digest_of
+from sysmlc.driver.recall import recall
+from sysmlc.driver.recording import Made, Recorded
+from sysmlc.driver.restating import LostError, restated
+from sysmlc.frontends.base import Valued
+from sysmlc.ir import AttrValue
+from sysmlc.ir.reads import Literal, Value
+from sysmlc.sources import Source
+from sysmlc.values import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """What is kept by shape: the key of the outcome, its texts by file, what was recorded."""
+
+    key: str
+    digests: Mapping[str, str]
+    texts: Mapping[str, bytes]
+    recorded: Recorded
+
+
+def keep_shape(cache: Cache, on: Dependencies, opened: Opened, recorded: Recorded) -> None:
+    """Keep what is needed to do parts of a compilation again."""
+    shapes = dict(_shapes(opened))
+    sources = opened.reading.sources()
+    texts = {one.name: zlib.compress(one.data, 1) for one in sources if one.name in shapes}
+    digests = {name: digest for name, digest, _ in on.inputs}
+    if shapes:
+        entry = (on.key(), digests, texts, _packed(recorded))
+        cache.put(on.key(shapes), marshal.dumps(entry))  # type: ignore[arg-type]
+
+
+def restored(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
+    """The outcome of an earlier run with what other literals change in it; None if it is lost."""
+    shapes = dict(_shapes(opened))
+    found = cache.get(on.key(shapes)) if shapes else None
+    known = _entry(found) if found else None
+    before = recall(cache, known.key, opened.root) if known else None
+    if known is None or before is None:
+        return None
+    try:
+        return _restored(known, before, opened, request)
+    except (LostError, moving.LostError):
+        return None
+
+
+def _restored(known: _Entry, before: Outcome, opened: Opened, request: Request) -> Outcome:
+    changed: dict[Value, AttrValue] = {}
+    moves: dict[str, moving.Move] = {}
+    sources: list[Source] = []
+    for frontend, old, new in _edited(known, opened):
+        moves[new.name] = moving.Move(frontend, old, new)
+        sources.append(new)
+        changed |= _values(frontend, old, new, known.recorded)
+    texts = restated(known.recorded, changed, request, before.inputs)
+    return moving.moved(_with(before, texts), moves, sources, known.digests)
+
+
+def _edited(known: _Entry, opened: Opened) -> Iterator[tuple[Valued, Source, Source]]:
+    """Texts that are others now, as they were and as they are."""
+    for one in opened.reading.recognised:
+        name, frontend = one.source.name, one.frontend
+        if one.source.sha256 != known.digests.get(name):
+            if not isinstance(frontend, Valued) or name not in known.texts:
+                raise LostError
+            yield frontend, Source(name, zlib.decompress(known.texts[name])), one.source
+
+
+def _values(
+    frontend: Valued, old: Source, new: Source, recorded: Recorded
+) -> Mapping[Value, AttrValue]:
+    literals = [one for one in recorded.literals if one.file == new.name]
+    asked = {place for file, place in recorded.asked if file == new.name}
+    found = frontend.values(old, new, literals, asked)
+    if found is None:
+        raise LostError
+    return found
+
+
+def _with(before: Outcome, texts: Mapping[str, str]) -> Outcome:
+    """The outcome with other texts of files that are not withheld."""
+    said = {path: text for path, text in texts.items() if path in before.texts}
+    files = tuple(
+        replace(one, sha256=digest_of(said[one.path])) if one.path in said else one
+        for one in before.files
+    )
+    return replace(before, files=files, texts=moving.Texts(before.texts, said))
+
+
+def _shapes(opened: Opened) -> Iterator[tuple[str, str]]:
+    """What each text says but for literals, by the name of its file."""
+    for one in opened.reading.recognised:
+        said = one.frontend.shape(one.source) if isinstance(one.frontend, Valued) else ""
+        if said:
+            yield one.source.name, said
+
+
+# -- as bytes ----------------------------------------------------------------------------------
+
+
+def _packed(one: Recorded) -> tuple[object, ...]:
+    return (
+        one.graph,
+        [(x.file, x.form, x.id, x.key) for x in one.literals],
+        one.asked,
+        dict(one.readers),
+        dict(one.stored),
+        dict(one.used),
+        dict(one.heard),
+        [(x.path, x.backend, x.trace, x.about) for x in one.made],
+    )
+
+
+def _entry(data: bytes) -> _Entry | None:
+    """What was kept; None when it is damaged."""
+    try:
+        key, digests, texts, packed = marshal.loads(data)
+        graph, literals, asked, readers, stored, used, heard, made = packed
+    except (EOFError, TypeError, ValueError):
+        return None
+    recorded = Recorded(
+        graph,
+        tuple(Literal(*one) for one in literals),
+        asked,
+        readers,
+        stored,
+        used,
+        heard,
+        tuple(Made(*one) for one in made),
+    )
+    return _Entry(key, digests, texts, recorded)

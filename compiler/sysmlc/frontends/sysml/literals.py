@@ -1,0 +1,122 @@
+"""Attributes that are literals of the text, word for word, and literals that mean more."""
+
+from collections.abc import ItemsView, Iterator, KeysView, Sequence, ValuesView
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml.forms import form, value
+from sysmlc.ir import AttrValue, Element, Graph
+from sysmlc.ir.reads import Literal, Watched
+from sysmlc.language.tree import Document, Fact, Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_KINDS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
+Place = tuple[str, int]
+"""A file, and the character at which a literal starts."""
+
+
+class Literals:
+    """Which attributes literals of the text were given to, and which literals others asked for.
+
+    A literal that names, checks or the lowering asked for may mean anything; who only gives it
+    to an attribute asks ``unnoted``.
+    """
+
+    def __init__(self, documents: Sequence[Document] = ()) -> None:
+        self._values: dict[Place, AttrValue] = {}
+        self._asked: set[Place] = set()
+        self._is_noted = True
+        self._files = {id(one.root) for one in documents}
+        for document in documents:
+            for node in document.root.walk():
+                if node.kind in _KINDS:
+                    self._watch(node, (document.path, node.start))
+
+    def _watch(self, node: Node, place: Place) -> None:
+        found = node.facts.get("value")
+        if found is not None:
+            self._values[place] = found
+            node.facts = Facts(node.facts, place, self)
+
+    def note(self, place: Place) -> None:
+        """Somebody asked for a literal."""
+        if self._is_noted:
+            self._asked.add(place)
+
+    @contextmanager
+    def unnoted(self) -> Iterator[None]:
+        """Literals that are asked for here are only given to an attribute."""
+        self._is_noted = False
+        try:
+            yield
+        finally:
+            self._is_noted = True
+
+    def give(self, low: "Lowering", element: Element, key: str, node: Node) -> None:
+        """An attribute was set to the literal that an expression is."""
+        document, reads = low.document(node), low.graph.reads
+        if reads is None or document is None or id(document.root) not in self._files:
+            return
+        with self.unnoted():
+            found = form(node)
+        known = value(found, lambda at: self._values.get((document.path, at)))
+        attrs = element.attrs.plain() if isinstance(element.attrs, Watched) else element.attrs
+        if known is not None and repr(known) == repr(attrs.get(key)):
+            reads.watch(element, Literal(document.path, found, element.id, key))
+        else:
+            list(map(self.note, self._within(document.path, node)))
+
+    def _within(self, path: str, node: Node) -> Iterator[Place]:
+        return ((path, one.start) for one in node.walk() if one.kind in _KINDS)
+
+    def finish(self, graph: Graph) -> None:
+        """Leave what was given to attributes and asked for by nobody else."""
+        if graph.reads is not None:
+            graph.reads.asked |= self._asked
+
+
+UNWATCHED = Literals()
+"""Where nobody wants to know."""
+
+
+def watched(documents: Sequence[Document], graph: Graph) -> Literals:
+    """The literals of texts, where somebody wants to know of them."""
+    texts = [one for one in documents if one.text]
+    return UNWATCHED if graph.reads is None else Literals(texts)
+
+
+class Facts(dict[str, Fact]):
+    """Facts of a literal; it is noted when somebody asks for them."""
+
+    __slots__ = ("_literals", "_place")
+
+    def __init__(self, facts: dict[str, Fact], place: Place, literals: Literals) -> None:
+        super().__init__(facts)
+        self._place = place
+        self._literals = literals
+
+    def __getitem__(self, key: str) -> Fact:
+        self._literals.note(self._place)
+        return super().__getitem__(key)
+
+    def get(self, key: str, default: Fact | None = None) -> Fact | None:  # type: ignore[override]
+        self._literals.note(self._place)
+        return super().get(key, default)
+
+    def __iter__(self) -> Iterator[str]:
+        self._literals.note(self._place)
+        return super().__iter__()
+
+    def keys(self) -> KeysView[str]:  # type: ignore[override]
+        self._literals.note(self._place)
+        return super().keys()
+
+    def values(self) -> ValuesView[Fact]:  # type: ignore[override]
+        self._literals.note(self._place)
+        return super().values()
+
+    def items(self) -> ItemsView[str, Fact]:  # type: ignore[override]
+        self._literals.note(self._place)
+        return super().items()

@@ -1,0 +1,317 @@
+"""A literal that is another one: only what asked for it is done again, as in a clean build."""
+
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc import cache, resources
+from sysmlc.cli import group
+from sysmlc.driver import compilation
+from sysmlc.language import library
+
+LINE = """\
+package Line {
+    private import Parts::*;
+    part def Cell {
+        attribute speed : ScalarValues::Integer = 3;
+        attribute rate : ScalarValues::Real = 1.5;
+        attribute label : ScalarValues::String = "left, or right";
+        attribute isOn : ScalarValues::Boolean = true;
+        attribute offset : ScalarValues::Integer = -4;
+        attribute sizes : ScalarValues::Integer [3] = (1, 2, 3);
+        attribute both : ScalarValues::Integer = 2 + 3;
+        part arm : Arm[1..2];
+        part lost : Nowhere;
+        action serve {
+            in tray : ScalarValues::Integer = 5;
+            attribute count : ScalarValues::Integer := 0;
+            first start;
+            then decide;
+                if speed > 2 then done;
+                else pick;
+            action pick { in place : ScalarValues::Integer = 6; }
+        }
+        exhibit state modes {
+            attribute limit : ScalarValues::Integer = 7;
+            entry; then idle;
+            state idle;
+            state busy;
+            transition first idle accept Start if limit > 1 then busy;
+            transition first busy accept Start then idle;
+        }
+        assert constraint { speed < 9 }
+    }
+    attribute def Start;
+    enum def Level { enum low = 1; enum high = 2; }
+}
+"""
+PARTS = """\
+package Parts {
+    doc /* What the cell has: 3 arms. */
+    part def Arm { attribute 'größe' : ScalarValues::Real = 1; part gone : Missing; }
+    requirement def <'R1'> Fast { attribute most : ScalarValues::Integer = 8; }
+}
+"""
+LITERAL = re.compile(
+    r"//[^\n]*|/\*.*?\*/|'[^']*'|"
+    r'("[^"]*"|(?<![\w.])\d+(?:\.\d+)?(?![\w.])|\b(?:true|false)\b)',
+    re.DOTALL,
+)
+
+
+@pytest.fixture
+def runs(monkeypatch, tmp_path):
+    """A cache of its own and a folder with a model; the list of units that were compiled."""
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(library.VARIABLE, str(resources.path("metamodels", "core")))
+    monkeypatch.chdir(tmp_path)
+    Path("unit").mkdir()
+    Path("unit/line.sysml").write_text(LINE)
+    Path("unit/parts.sysml").write_text(PARTS)
+    happened, real = [], compilation._Run.compilation
+
+    def counted(run):
+        happened.append(run)
+        return real(run)
+
+    monkeypatch.setattr(compilation._Run, "compilation", counted)
+    return happened
+
+
+def sysmlc(*arguments):
+    result = CliRunner().invoke(group.sysmlc, list(arguments))
+    return result.exit_code, result.stdout, result.stderr
+
+
+def files(folder: str) -> dict[str, str]:
+    return {p.relative_to(folder).as_posix(): p.read_text() for p in Path(folder).rglob("*.*")}
+
+
+def assert_is_as_from_a_clean_build(*options):
+    """The outputs and every finding are those of a run without a cache."""
+    shutil.rmtree("clean", ignore_errors=True)
+    told = sysmlc("unit", "-o", "out", *options, "--format", "json")
+    assert told == sysmlc("unit", "-o", "clean", *options, "--format", "json", "--no-cache")
+    assert files("out") == files("clean")
+
+
+def edited(name: str, old: str, new: str) -> None:
+    path = Path("unit") / name
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+def is_compiled(runs, *options) -> bool:
+    """Whether the unit is compiled as a whole, beside the clean build."""
+    before = len(runs)
+    assert_is_as_from_a_clean_build(*options)
+    return len(runs) > before + 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("rate : ScalarValues::Real = 1.5", "rate : ScalarValues::Real = 22.75"),
+        ('"left, or right"', '"above"'),
+        ("offset : ScalarValues::Integer = -4", "offset : ScalarValues::Integer = -40"),
+        ("(1, 2, 3)", "(10, 2, 300)"),
+        ("in place : ScalarValues::Integer = 6", "in place : ScalarValues::Integer = 66"),
+        ("count : ScalarValues::Integer := 0", "count : ScalarValues::Integer := 11"),
+        ("ScalarValues::Real = 1;", "ScalarValues::Real = 100;"),
+        ("ScalarValues::Integer = 8;", "ScalarValues::Integer = 9;"),
+    ],
+)
+def test_a_literal_that_is_a_value_is_not_compiled(runs, old, new):
+    sysmlc("unit", "-o", "out")
+    before = files("out")
+    edited("line.sysml" if old in LINE else "parts.sysml", old, new)
+    assert not is_compiled(runs)
+    assert files("out") != before
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("Arm[1..2]", "Arm[1..3]"),
+        ("speed < 9", "speed < 8"),
+        ("2 + 3", "2 + 4"),
+        ("= 3;", "= 3.5;"),
+        ("= 3;", "= true;"),
+        ("= 3;", "= -3;"),
+        ("= 3;", "= speed;"),
+        ("= 3;", "= 1e999;"),
+        ("3 arms", "4 arms"),
+        ("<'R1'>", "<'R2'>"),
+    ],
+)
+def test_what_may_mean_more_is_compiled(runs, old, new):
+    sysmlc("unit")
+    edited("line.sysml" if old in LINE else "parts.sysml", old, new)
+    assert is_compiled(runs)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("limit : ScalarValues::Integer = 7", "limit : ScalarValues::Integer = 99")]
+)
+def test_a_value_that_findings_speak_of_comes_to_what_a_clean_build_finds(runs, old, new):
+    sysmlc("unit")
+    edited("line.sysml", old, new)
+    assert_is_as_from_a_clean_build()
+
+
+def test_several_literals_and_notes_at_once(runs):
+    sysmlc("unit")
+    edited("line.sysml", "= 1.5;", "= 2.5; // faster\n")
+    edited("line.sysml", "(1, 2, 3)", "(1,   20, 3)")
+    edited("parts.sysml", "Real = 1;", "Real =   17;")
+    assert not is_compiled(runs)
+
+
+def test_one_literal_after_the_other_and_back(runs):
+    sysmlc("unit")
+    for new in ("2.5", "3.5", "3.25", "1.5"):
+        text = re.sub(r"(?<=Real = )\d\.\d+", new, Path("unit/line.sysml").read_text())
+        Path("unit/line.sysml").write_text(text)
+        assert not is_compiled(runs)
+
+
+def test_what_was_restated_is_known_afterwards(runs):
+    sysmlc("unit", "-o", "out")
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    told = sysmlc("unit", "-o", "out", "--format", "json")
+    assert told[2] == sysmlc("unit", "-o", "out", "--format", "json")[2]
+    edited("line.sysml", "= 2.5;", "= 2.5; // a note")
+    assert not is_compiled(runs)
+
+
+def test_checks_know_of_literals_too(runs):
+    sysmlc("check", "unit")
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    told = sysmlc("check", "unit")
+    assert len(runs) == 1
+    assert told == sysmlc("check", "unit", "--no-cache")
+
+
+@pytest.mark.parametrize("emit", ["+graph", "+sysml", "+ecore", "+sysmlx"])
+def test_back_ends_that_tell_places_are_compiled(runs, emit):
+    sysmlc("unit", "--emit", emit)
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    assert is_compiled(runs, "--emit", emit)
+
+
+def test_a_file_with_a_fault_in_its_syntax_is_compiled(runs):
+    edited("line.sysml", "attribute rate :", "attribute rate : :")
+    sysmlc("unit")
+    edited("line.sysml", '"left, or right"', '"above"')
+    assert is_compiled(runs)
+
+
+def test_a_rule_that_the_project_silenced_stays_silent(runs):
+    Path("unit/sysmlc.toml").write_text('[rules]\nassumed-range = "off"\n')
+    sysmlc("unit")
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    assert not is_compiled(runs)
+
+
+def test_a_damaged_entry_costs_time_only(runs, tmp_path):
+    sysmlc("unit")
+    for entry in (tmp_path / "cache").rglob("*.entry"):
+        entry.write_bytes(entry.read_bytes()[:-7])
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    assert is_compiled(runs)
+
+
+def another(literal: str, chosen: random.Random) -> str:
+    """A literal of the same kind."""
+    if literal in ("true", "false"):
+        return chosen.choice(["true", "false"])
+    if literal.startswith('"'):
+        return chosen.choice(['""', '"left"', '"Level::low"', '"größer\\n"', '"a b"'])
+    return (
+        f"{chosen.randrange(30)}.{chosen.randrange(9)}"
+        if "." in literal
+        else (str(chosen.choice([0, 1, 2, 3, 9, 15, 16, 1234])))
+    )
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_any_literals_come_to_what_a_clean_build_comes_to(runs, seed):
+    chosen = random.Random(seed)
+    sysmlc("unit")
+    for _ in range(4):
+        path = Path("unit") / chosen.choice(["line.sysml", "line.sysml", "parts.sysml"])
+        text = path.read_text()
+        found = [one for one in LITERAL.finditer(text) if one[1]]
+        for one in sorted(
+            chosen.sample(found, min(len(found), chosen.randrange(1, 4))), reverse=True, key=_start
+        ):
+            text = text[: one.start()] + another(one[1], chosen) + text[one.end() :]
+        path.write_text(text)
+        assert_is_as_from_a_clean_build()
+
+
+def _start(found: re.Match[str]) -> int:
+    return found.start()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_edits_of_every_kind_mixed(runs, seed):
+    chosen = random.Random(seed)
+    sysmlc("unit")
+    for _ in range(4):
+        path = Path("unit/line.sysml")
+        text = path.read_text()
+        edits = [
+            lambda t: t.replace("= 1.5;", f"= {chosen.randrange(9)}.5;"),
+            lambda t: t.replace(";\n", "; // note\n", 1),
+            lambda t: t.replace("part arm", "part hand"),
+            lambda t: t.replace("action pick {", "action place; action pick {"),
+            lambda t: t.replace(":= 0", f":= {chosen.randrange(20)}"),
+        ]
+        path.write_text(chosen.choice(edits)(chosen.choice(edits)(text)))
+        assert_is_as_from_a_clean_build()
+
+
+def test_an_example_with_another_number(runs):
+    shutil.rmtree("unit")
+    example = Path(__file__).parents[2] / "examples" / "lego-recipe-v2"
+    shutil.copytree(example, "unit")
+    sysmlc("unit")
+    for path in sorted(Path("unit").glob("*.sysml")):
+        text = path.read_text()
+        path.write_text(re.sub(r"(?<== )\d+(?=;| \[)", lambda one: f"{one[0]}1", text, count=1))
+        assert_is_as_from_a_clean_build()
+
+
+@pytest.mark.corpus
+def test_the_laboratory_with_another_number(runs, corpus):
+    shutil.rmtree("unit")
+    shutil.copytree(corpus / "sysml2" / "ice-lab", "unit")
+    sysmlc("unit")
+    edited("services/conveyor.sysml", ":= 0;", ":= 1042; // more\n")
+    assert not is_compiled(runs)
+    edited("recipes/demo_lego.sysml", "palletNumber = 1;", "palletNumber = 12;")
+    assert not is_compiled(runs)
+    edited("services/robotic_cell.sysml", "== true", "== false")
+    assert_is_as_from_a_clean_build()
+
+
+def test_it_is_the_same_whatever_the_seed_of_hashes(runs):
+    def run(seed, *options):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        command = [sys.executable, "-m", "sysmlc", "unit", *options]
+        return subprocess.run(command, env=environment, capture_output=True, check=False).stderr
+
+    run("1", "-o", "out")
+    edited("line.sysml", "= 1.5;", "= 2.5;")
+    restated = run("2", "-o", "out")
+    assert restated == run("3", "-o", "clean", "--no-cache")
+    assert files("out") == files("clean")
