@@ -186,6 +186,8 @@ _EDGES = frozenset(
 _OF_KINDS = {
     Edge.REFERENCES: frozenset(
         {
+            Kind.PROPERTY,
+            Kind.PORT,
             Kind.COMMENT,
             Kind.CONSTRAINT,
             Kind.IMPORT,

@@ -177,7 +177,15 @@ def typing(book: Book, scope: Entry | None, element: Element) -> tuple[list[str]
             continue
         name = book.name(scope, element, Edge.SUBSETS, feature)
         subsets += [] if name is None else [name]
-    return types, subsets
+    return types, [*subsets, *_referred(book, scope, element)]
+
+
+def _referred(book: Book, scope: Entry | None, element: Element) -> list[str]:
+    """Features of other classifiers that a feature of a model in SysML v2 is one of."""
+    is_feature = element.kind in (Kind.PROPERTY, Kind.PORT)
+    found = book.graph.targets(element, Edge.REFERENCES) if is_feature else []
+    names = (book.name(scope, element, Edge.REFERENCES, one) for one in found)
+    return [one for one in names if one is not None]
 
 
 def type_name(book: Book, scope: Entry | None, holder: Element, type_: Element) -> str | None:
@@ -217,6 +225,10 @@ def _redefine(book: Book, entry: Entry, head: Head) -> None:
         name = book.redefined(entry.parent, feature)
         if name is None or other is None:
             book.lost(element, "redefines")
+            continue
+        if other.parent is entry.parent:
+            book.approximated(element, "redefinition within one owner", "a subset")
+            head.subsets = [*(head.subsets or ()), name]
             continue
         is_same = is_same or other.name == entry.name
         head.redefines.append(name)

@@ -48,9 +48,18 @@ def _part(book: Book, entry: Entry, element: Element, part: Element) -> list[Lin
     if name is None:
         return book.drop(entry, "represents")
     names = [name, *(quoted(one.name) for one in (*steps, part)[1:])]
-    for one in reversed(names):
+    for one in reversed(names[1:]):
         body = [Line(f"part :>> {one}", body)]
-    return body
+    return [Line(f"part {_mark(book, entry, element, steps[0] if steps else part)} {name}", body)]
+
+
+def _mark(book: Book, entry: Entry, element: Element, part: Element) -> str:
+    """A member cannot redefine another one of its own owner: it is one of its values."""
+    other = book.plan.entry(part)
+    if other is None or other.parent is None or other.parent is not entry.parent:
+        return ":>>"
+    book.approximated(element, "values of a part beside it", "a subset of the part")
+    return ":>"
 
 
 def _contents(book: Book, entry: Entry, element: Element) -> list[Line]:

@@ -49,8 +49,7 @@ def _result(book: Book, entry: Entry, element: Element) -> str:
     if action.subkind != "read":
         return ""
     feature = book.graph.target(action, Edge.CALLS)
-    inside = entry.parent.parent if entry.parent is not None else None
-    found = None if feature is None else book.name(inside, action, Edge.CALLS, feature)
+    found = None if feature is None else book.name(entry.parent, action, Edge.CALLS, feature)
     return found or ""
 
 

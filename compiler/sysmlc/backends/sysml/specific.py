@@ -14,7 +14,7 @@ _REFERRING = tuple(edge for edge in Edge if edge not in (Edge.TYPED_BY, Edge.OWN
 def feature_of(graph: Graph, element: Element) -> Element | None:
     """The feature whose members a class holds; None when it is a definition of its own.
 
-    It has the name of the feature, stands beside it, and nothing else refers to it.
+    It has the name of the feature or none, stands beside it, and nothing else refers to it.
     """
     if not element.attrs.get("property_specific") or element.kind not in _CLASSES:
         return None
@@ -22,7 +22,7 @@ def feature_of(graph: Graph, element: Element) -> Element | None:
     if len(typed) != 1 or typed[0].kind not in _FEATURES or not _SAID.issuperset(element.attrs):
         return None
     (feature,) = typed
-    is_beside = feature.owner == element.owner and feature.name == element.name
+    is_beside = feature.owner == element.owner and element.name in ("", feature.name)
     is_alone = graph.targets(feature, Edge.TYPED_BY) == [element]
     is_used = any(graph.sources(element, edge) for edge in _REFERRING)
     return feature if is_beside and is_alone and not is_used else None

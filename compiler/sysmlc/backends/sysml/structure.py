@@ -1,12 +1,13 @@
 """Packages, definitions, features, enumerations and operations."""
 
 from sysmlc.backends.sysml import annotations, declarations
+from sysmlc.backends.sysml.actors import actor_of
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import Head, definition_head, feature_head, typing
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.library import quantity_of, scalar_of, unit_name
 from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import qualified
+from sysmlc.backends.sysml.references import qualified, visible
 from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
@@ -231,11 +232,15 @@ def association(book: Book, entry: Entry) -> list[Line]:
     """A connection definition; ends that classes own are repeated in it."""
     element = entry.element
     assert element is not None
+    if actor_of(book.graph, element) is not None:
+        book.said.update(one.id for one in book.graph.owned(element))
+        return []
     ends = []
-    for end in book.graph.targets(element, Edge.END):
-        own = book.plan.entry(end)
-        if own is None or own.parent is entry:
-            continue
+    found = [(one, book.plan.entry(one)) for one in book.graph.targets(element, Edge.END)]
+    repeated = [(end, own) for end, own in found if own is not None and own.parent is not entry]
+    # A type that is called as an end is hidden by it.
+    visible(book.plan, entry).update((own.name, own) for _, own in repeated)
+    for end, own in repeated:
         types, _ = typing(book, entry, end)
         count = declarations.multiplicity(book, entry, end)
         keyword = own.shape.keyword if count or own.shape.keyword != "ref" else ""

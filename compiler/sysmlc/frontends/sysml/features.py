@@ -107,7 +107,7 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
     """Texts belong to the feature itself, other members to the class that is made for it."""
     own = low.made_for.get(id(node))
     for one in nodes.body_of(node):
-        if nodes.is_text(one):
+        if _is_of_itself(one, node):
             low.lower(one, made)
         elif own is not None:
             low.lower(one, own)
@@ -115,7 +115,7 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
 
 def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     """A class for what a usage has beyond its type (SysML 1.6 clause 8.3.2.10)."""
-    rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
+    rest = [one for one in nodes.body_of(node) if not _is_of_itself(one, node)]
     rest = [one for one in rest if not is_interface_id(low, one, made)]
     if not rest:
         return None
@@ -127,7 +127,16 @@ def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
         low.set(own, variation=True)
     low.made_for[id(node)] = own
     low.later(lambda: low.lead_all(Edge.SPECIALIZES, own, types_of(low, node)))
+    # Metadata may say another name of the feature than the text has.
+    low.last(lambda: low.graph.rename(own, made.name))
     return own
+
+
+def _is_of_itself(one: Node, feature: Node) -> bool:
+    """Whether a member says something of the feature: a text, or what it realises."""
+    is_realization = one.kind == "Dependency" and "Realization" in annotations.ours(one)
+    is_own = is_realization and not one.name and nodes.target(one, "client") is feature
+    return is_own or nodes.is_text(one)
 
 
 def is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:

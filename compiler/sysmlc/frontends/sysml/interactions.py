@@ -61,11 +61,21 @@ def message(low: "Lowering", node: Node, owner: Element) -> None:
     """A message from one lifeline to another."""
     sort = annotations.said(node, "Kind", "name") or "asynch-signal"
     made = low.add(node, Kind.MESSAGE, nodes.name_of(node), owner, subkind=str(sort))
-    for payload in payloads(node):
+    called = annotations.said(node, "Kind", "calls")
+    for payload in () if called else payloads(node):
         for found in nodes.references(payload, "FeatureTyping"):
             low.refer(Edge.CALLS, made, found)
+    if called:
+        low.last(lambda: _call(low, made, str(called)))
     low.last(lambda: _join(low, node, made))
     annotations.texts(low, node, made, "a message", payloads(node))
+
+
+def _call(low: "Lowering", made: Element, name: str) -> None:
+    """The operation that a message calls, by the qualified name that metadata of ours says."""
+    known = low.graph.get(low.id_of(name))
+    if known is not None:
+        low.graph.connect(Edge.CALLS, made, known)
 
 
 def _join(low: "Lowering", node: Node, made: Element) -> None:

@@ -42,7 +42,8 @@ def _actor(low: "Lowering", node: Node, made: Element) -> None:
 
     One that the model has already is not made again.
     """
-    low.last(lambda: _join(low, node, made))
+    # The ends of associations are there only behind what is done last.
+    low.last(lambda: low.last(lambda: _join(low, node, made)))
 
 
 def _join(low: "Lowering", node: Node, made: Element) -> None:
