@@ -7,7 +7,15 @@ import small_games
 from contracts_in_lines import contract
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.formula import Var
 from sysmlc.synthesis import routes
 from sysmlc.synthesis.solve import by_single_moves, solve_arena
@@ -34,27 +42,43 @@ def arena(text: str):
 
 
 def moving(text: str) -> list[list[str]]:
-    """The variables that change in each of the steps."""
+    """The numbers that change in each of the ways."""
     found = arena(text)
-    names = [
-        found.symbols.names(found.manager.cube(dict.fromkeys(way.moving, True)))
-        for way in routes.routes(found)
-    ]
-    return [[name for name in one if name in ("a", "b", "c")] for one in names]
+    ways = routes.routes(found)
+    return [[name for name in "abc" if f"{name}.0" in bits] for bits in ways.moving] if ways else []
 
 
-def test_what_no_rule_ties_together_moves_apart():
+def test_each_number_moves_alone():
     assert moving(LIFTS) == [["a"], ["b"], ["c"]]
 
 
-def test_what_a_rule_ties_together_moves_together():
-    tied = "env d: bool\npromise always a=b -> d\nassume always move_a=up & move_b=up -> d'"
-    assert moving(f"{LIFTS}\npromise always !(move_a'=up & move_b'=up)") == []
-    assert moving(f"{LIFTS}\n{tied}") == [["a"], ["b"], ["c"]]
+@pytest.mark.parametrize(
+    "line",
+    [
+        "promise always !(move_a'=up & move_b'=up)",
+        "promise always a!=b",
+        "env d: bool\npromise always a=b -> d\nassume always move_a=up & move_b=up -> d'",
+    ],
+)
+def test_rules_about_two_that_leave_one_free_to_move_tie_nothing(line):
+    assert moving(f"{LIFTS}\n{line}") == [["a"], ["b"], ["c"]]
+
+
+def test_what_cannot_move_without_another_moves_with_it(monkeypatch):
+    tied = f"{LIFTS}\npromise always move_a'=move_b'"
+    assert moving(tied) == []
+    monkeypatch.setattr(routes, "FEWEST", 2)
+    assert moving(tied) == [["c"], ["a", "b"]]
 
 
 def test_a_plant_that_does_not_obey_has_no_routes():
     assert moving(LIFTS.replace("move_a=stay -> a'=a", "move_a=stay -> a'<=a")) == []
+
+
+def test_numbers_that_the_system_gives_after_the_environment_move_alone_too():
+    own = "\n".join(f"sys {name}: 0..3\nenv goal_{name}: 0..3" for name in "abc")
+    rules = "\n".join(f"promise always {name}' <= {name} + 1" for name in "abc")
+    assert moving(f"{own}\n{rules}") == [["a"], ["b"], ["c"]]
 
 
 def test_what_needs_two_moves_at_once_is_found_with_all_moves():
@@ -94,7 +118,7 @@ def fleet(seed: int) -> Contract:
     """Random machines that obey commands, some of them alike, with rules between them."""
     die = random.Random(seed)
     names = "pq" if die.random() < 0.7 else "pqr"
-    places = {one: Variable(one, Owner.ENVIRONMENT, BooleanDomain()) for one in names}
+    places = {one: Variable(one, Owner.ENVIRONMENT, IntegerDomain(0, 1)) for one in names}
     commands = {one: Variable(f"x{one}", Owner.SYSTEM, BooleanDomain()) for one in names}
     where, every = list(places.values()), [*places.values(), *commands.values()]
     assumptions = [
@@ -108,7 +132,7 @@ def fleet(seed: int) -> Contract:
         *small_games.conjuncts(die, Class.LIVENESS, 3, where, []),
     ]
     if die.random() < 0.3:
-        paired = f.iff(*(Var(one.name) for one in where[:2]))
+        paired = f.eq(*(Var(one.name) for one in where[:2]))
         assumptions.append(Conjunct(paired, Class.INIT, ""))
         guarantees.append(Conjunct(paired, Class.SAFETY, ""))
     assumptions += small_games.conjuncts(die, Class.LIVENESS, 1, where, [])

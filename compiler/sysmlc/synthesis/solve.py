@@ -60,7 +60,7 @@ def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
 def by_single_moves(arena: Arena) -> Solution | None:
     """The solution if the game is won by moves of one component at a time (``routes``)."""
     ways = routes(arena)
-    if not ways:
+    if ways is None:
         return None
     with arena.manager.calm():
         found = _Solver(arena, SingleSteps(arena, ways), is_complete=False).run()
