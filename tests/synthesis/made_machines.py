@@ -1,28 +1,38 @@
-"""Machines of contracts, random plays of them, and machines that are spoilt on purpose."""
+"""Controllers of contracts, random plays of them, and ones that are spoilt on purpose."""
 
 import random
 
 import networkx as nx
 from explicit import rules, valuations
 
+from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import evaluation, violation
-from sysmlc.synthesis import Manager, make_game, solve
-from sysmlc.synthesis.mealy import Move, explored
-from sysmlc.synthesis.strategy import Controller
+from sysmlc.logic.formula import Const, negate
+from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis.arena import plain
+from sysmlc.synthesis.derived import without_derived
+from sysmlc.synthesis.mealy import Machine
+from sysmlc.synthesis.shift import shifted
+from sysmlc.synthesis.solve import solve_arena
+from sysmlc.synthesis.strategy import strategy
+from sysmlc.synthesis.synthesise import Form, made
 from sysmlc.synthesis.verify import faults
 from sysmlc.values import replace
 
 
-def controller(contract, engine=""):
-    """The controller, or None when there is none."""
-    solution = solve(make_game(contract, Manager(engine)))
-    return Controller(solution) if solution.is_realizable else None
+def planned(contract, engine="", is_encoded=True):
+    """The game and its strategy, or None when there is none."""
+    game = make_game(contract, Manager(engine))
+    game = without_derived(game) if is_encoded else game
+    solution = solve_arena(shifted(game) if is_encoded else plain(game))
+    return (game, strategy(game, solution)) if solution.is_realizable else None
 
 
-def machine(contract, engine=""):
-    found = controller(contract, engine)
-    return found and explored(found)
+def controller(contract, form=Form.ANY, engine="", is_encoded=True):
+    """A controller that is not checked, or None when there is none."""
+    found = planned(contract, engine, is_encoded)
+    return found and made(contract, *found, form)
 
 
 def said(machine, contract):
@@ -61,34 +71,69 @@ def broken(contract, steps):
     return found + [one for one in safe if one.class_ is Class.INIT and violation(one, steps) == 0]
 
 
-def followed(machine):
-    """An ``answer`` for a play of a machine."""
-    state = 0
+def followed(controller):
+    """An ``answer`` for a play of a controller."""
+    state, last = 0, {}
 
     def answer(inputs):
-        nonlocal state
-        move = machine.moves[state][tuple(inputs[one.name] for one in machine.inputs)]
-        state = move.state
-        return dict(zip([one.name for one in machine.outputs], move.output, strict=True))
+        nonlocal state, last
+        outputs, state = controller.step(state, last, inputs)
+        last = inputs | outputs
+        return outputs
 
     return answer
 
 
-def spoilt(machine, contract, seed):
-    """The machine with one move changed: another output, another state, or none at all."""
+def spoilt(controller, seed):
+    """The controller with one thing changed, or None when there is nothing to change."""
     die = random.Random(seed)
-    moves = [dict(one) for one in machine.moves]
-    state = die.choice([at for at, one in enumerate(moves) if one])
-    row = die.choice(list(moves[state]))
-    move = moves[state].pop(row)
-    kind = die.choice(["output", "state", "none"])
-    outputs = [tuple(one.values()) for one in valuations(contract, Owner.SYSTEM)]
+    change = spoilt_machine if isinstance(controller, Machine) else spoilt_table
+    return change(controller, die)
+
+
+def spoilt_machine(machine, die):
+    """One move with another output, state or condition, or without it."""
+    places = [(at, move) for at, moves in enumerate(machine.states) for move in moves]
+    if not places:
+        return None
+    state, move = die.choice(places)
+    kind = die.choice(["output", "state", "when", "none", "twice"])
+    changed = [move]
     if kind == "output":
-        others = [one for one in outputs if one != move.output] or [move.output]
-        moves[state][row] = Move(die.choice(others), move.state)
+        at = die.randrange(len(move.output))
+        values = domains.values(machine.outputs[at].domain)
+        output = [*move.output[:at], Const(die.choice(values)), *move.output[at + 1 :]]
+        changed = [replace(move, output=tuple(output))]
     if kind == "state":
-        moves[state][row] = Move(move.output, die.randrange(machine.size))
-    return replace(machine, moves=tuple(moves))
+        changed = [replace(move, state=die.randrange(machine.size))]
+    if kind == "when":
+        changed = [replace(move, when=negate(move.when))]
+    if kind == "none":
+        changed = []
+    states = [list(moves) for moves in machine.states]
+    place = states[state].index(move)
+    states[state][place : place + 1] = changed
+    if kind == "twice":
+        die.shuffle(states[state])
+    return replace(machine, states=tuple(map(tuple, states)))
+
+
+def spoilt_table(table, die):
+    """One node with its ends exchanged or one of them constant, or an output that is constant."""
+    kind = die.choice(["exchange", "end", "output"])
+    if kind == "output":
+        at = die.randrange(len(table.modes))
+        mode = table.modes[at]
+        outputs = list(mode.outputs)
+        outputs[die.randrange(len(outputs))] = die.randrange(2)
+        modes = [*table.modes[:at], replace(mode, outputs=tuple(outputs)), *table.modes[at + 1 :]]
+        return replace(table, modes=tuple(modes))
+    if not table.nodes:
+        return None
+    at = die.randrange(len(table.nodes))
+    bit, low, high = table.nodes[at]
+    ends = (bit, high, low) if kind == "exchange" else (bit, die.randrange(2), high)
+    return replace(table, nodes=(*table.nodes[:at], ends, *table.nodes[at + 1 :]))
 
 
 class Closed:
@@ -113,16 +158,21 @@ class Closed:
         assumed = rules(self.contract.assumptions, class_)
         allowed = [one for one in self.given if all(holds(rule, steps, one) for rule in assumed)]
         found = []
+        last = steps[-1] if steps else {}
         for inputs in allowed:
-            row = tuple(inputs[one.name] for one in self.machine.inputs)
-            move = self.machine.moves[state].get(row)
-            if move is None:
+            try:
+                outputs, after = self.machine.step(state, last, inputs)
+            except (LookupError, ValueError):
+                outputs, after = {}, None
+            if after is None or not self.are_values(outputs):
                 self.stuck = True
             else:
-                names = [one.name for one in self.machine.outputs]
-                values = inputs | dict(zip(names, move.output, strict=True))
-                found.append((tuple(values.items()), move.state))
+                found.append((tuple((inputs | outputs).items()), after))
         return found
+
+    def are_values(self, outputs):
+        known = {one.name: one.domain for one in self.contract.variables}
+        return all(domains.contains(known[name], value) for name, value in outputs.items())
 
     def broken(self):
         """The guarantees that some run breaks."""

@@ -1,4 +1,4 @@
-"""Controllers and machines of contracts, and the check that nothing of theirs can pass by."""
+"""Controllers of contracts, and the check that nothing of theirs can pass by."""
 
 from itertools import pairwise
 
@@ -8,10 +8,18 @@ import small_games
 from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Class
+from sysmlc.logic.formula import TRUE, Const
+from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import LimitError, Manager, make_game, solve
-from sysmlc.synthesis.mealy import Move, explored
+from sysmlc.synthesis.arena import nodes
+from sysmlc.synthesis.conditions import machine as written
+from sysmlc.synthesis.listing import listed
+from sysmlc.synthesis.manager import TooLargeError
+from sysmlc.synthesis.mealy import Move
+from sysmlc.synthesis.memory import reached, registers
 from sysmlc.synthesis.minimise import minimised
-from sysmlc.synthesis.strategy import AssumptionBrokenError, Controller
+from sysmlc.synthesis.strategy import strategy
+from sysmlc.synthesis.synthesise import Form
 from sysmlc.values import replace
 
 SUITE = 200
@@ -46,132 +54,200 @@ DOOR = """
 """
 
 
-def realizable(kind, seeds):
+COUNTING = """
+    env go: bool
+    sys n: 0..20
+    sys done: bool
+    promise at first n=0 & !done
+    promise always go' & n<20 -> n'=n+1
+    promise always go' & n=20 -> n'=0
+    promise always !go' -> n'=n
+    promise always done' <-> n'=20
+"""
+FOLLOWING = """
+    env wanted: 0..9
+    sys at: 0..9
+    assume always at!=wanted -> wanted'=wanted
+    promise at first at=0
+    promise always at<wanted -> at'=at+1
+    promise always at>wanted -> at'=at-1
+    promise always at=wanted -> at'=at
+    promise recurs at=wanted
+"""
+FORMS = list(Form)
+
+
+def realizable(kind, seeds, form=Form.ANY, is_encoded=True):
     made = [kind(seed) for seed in seeds]
-    found = ((one, machines.machine(one)) for one in made)
-    return [(one, machine) for one, machine in found if machine]
+    found = ((one, machines.controller(one, form, "", is_encoded)) for one in made)
+    return [(one, controller) for one, controller in found if controller]
+
+
+def drafted(made, **limits):
+    """The draft of a contract's machine, not minimised."""
+    game, plan = machines.planned(made)
+    found = reached(plan, nodes(game.init_assumptions), nodes(game.assumptions))
+    return listed(found, registers(found), **limits)
 
 
 def test_a_controller_answers_step_by_step():
-    lamp = machines.controller(contract(LAMP))
-    state = lamp.start({"press": True})
-    assert lamp.values(state) == {"press": True, "lamp": "off"}
-    state = lamp.step(state, {"press": True})
-    assert lamp.values(state) == {"press": True, "lamp": "on"}
-    assert lamp.values(lamp.step(state, {"press": False}))["lamp"] == "on"
+    answer = machines.followed(machines.controller(contract(LAMP)))
+    given = [True, True, False]
+    assert [answer({"press": one})["lamp"] for one in given] == ["off", "on", "on"]
 
 
-def test_goals_take_turns_and_waiting_is_for_what_recurs():
-    door = machines.controller(contract(DOOR))
-    state = door.start({"arrived": False, "blocked": False})
-    seen = []
+@pytest.mark.parametrize("form", FORMS)
+def test_goals_take_turns_and_waiting_is_for_what_recurs(form):
+    answer = machines.followed(machines.controller(contract(DOOR), form))
+    seen = [answer({"arrived": False, "blocked": False})["door"]]
     for step in range(24):
-        given = {"arrived": True, "blocked": step % 3 == 0}
-        state = door.step(state, given)
-        seen.append(door.values(state)["door"])
+        seen.append(answer({"arrived": True, "blocked": step % 3 == 0})["door"])
     assert all(abs(one - other) <= 1 for one, other in pairwise(seen))
     assert seen.count(0) >= 3
     assert seen.count(2) >= 3
 
 
-def test_inputs_that_break_an_assumption_are_refused():
-    told = contract("env a: bool\nsys x: bool\nassume at first a\nassume always a -> !a'")
-    one = machines.controller(told)
-    with pytest.raises(AssumptionBrokenError):
-        one.start({"a": False})
-    with pytest.raises(AssumptionBrokenError):
-        one.step(one.start({"a": True}), {"a": True})
-
-
-def test_a_lost_game_has_no_controller():
-    lost = contract("env a: bool\nsys x: bool\npromise always x <-> a'")
+def test_a_lost_game_has_no_strategy():
+    lost = make_game(contract("env a: bool\nsys x: bool\npromise always x <-> a'"), Manager())
     with pytest.raises(ValueError, match="was won"):
-        Controller(solve(make_game(lost, Manager())))
+        strategy(lost, solve(lost))
 
 
 @pytest.mark.parametrize("start", range(0, SUITE, 50))
 @pytest.mark.parametrize("kind", KINDS)
-def test_machines_of_random_contracts_pass_the_check(kind, start):
-    for made, machine in realizable(kind, range(start, start + 50)):
-        assert machines.said(machine, made) == []
-        small = minimised(machine)
-        assert small.size <= machine.size
-        assert machines.said(small, made) == []
+@pytest.mark.parametrize("form", FORMS)
+def test_controllers_of_random_contracts_pass_the_check(kind, form, start):
+    for made, controller in realizable(kind, range(start, start + 50), form):
+        assert machines.said(controller, made) == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_random_plays_keep_the_contract(kind):
-    for at, (made, machine) in enumerate(realizable(kind, range(SUITE // 2))):
-        steps = machines.play(made, machines.followed(minimised(machine)), 40, at)
+def test_controllers_of_games_as_they_are_written_pass_the_check(kind):
+    for made, controller in realizable(kind, range(SUITE // 4), is_encoded=False):
+        assert machines.said(controller, made) == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("form", FORMS)
+def test_random_plays_keep_the_contract(kind, form):
+    for at, (made, controller) in enumerate(realizable(kind, range(SUITE // 2), form)):
+        steps = machines.play(made, machines.followed(controller), 40, at)
         assert not steps or machines.broken(made, steps) == []
 
 
-def test_the_machine_is_the_same_without_cudd():
+@pytest.mark.parametrize("form", FORMS)
+def test_the_controller_answers_the_same_without_cudd(form):
     for seed in range(40):
         made = small_games.contract(seed)
-        assert machines.machine(made) == machines.machine(made, "autoref")
+        one, other = (machines.controller(made, form, engine) for engine in ("", "autoref"))
+        assert one == other or form is Form.TABLE
+        plays = [
+            machines.play(made, machines.followed(each), 20, seed) for each in (one, other) if each
+        ]
+        assert not plays or plays[0] == plays[1]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_check_finds_in_spoilt_machines_what_listing_all_states_finds(kind):
+@pytest.mark.parametrize("form", FORMS)
+def test_the_check_finds_in_spoilt_controllers_what_listing_all_states_finds(kind, form):
     caught = []
-    for made, machine in realizable(kind, range(SUITE // 2)):
-        if not any(machine.moves):
-            continue
+    for made, controller in realizable(kind, range(SUITE // 2), form):
         for seed in range(4):
-            spoilt = machines.spoilt(machine, made, f"{made.component} {seed}")
+            spoilt = machines.spoilt(controller, f"{made.component} {seed}")
+            if spoilt is None:
+                continue
             found = machines.said(spoilt, made)
             judge = machines.Closed(spoilt, made)
             assert [one.conjunct for one in found if one.conjunct] == judge.broken()
             assert any(one.conjunct is None for one in found) == judge.stuck
             caught += [one.conjunct.class_ if one.conjunct else None for one in found]
-    assert {Class.SAFETY, None} <= {*caught}
+    assert {*caught} >= {Class.SAFETY, *([] if form is Form.TABLE else [None])}
     assert kind is small_games.plant or Class.LIVENESS in caught
 
 
 def test_a_fault_shows_the_steps_that_lead_to_it():
     made = contract(LAMP)
-    machine = minimised(machines.machine(made))
-    always = Move(("on",), 0)
-    first, *_ = machines.said(replace(machine, moves=({(False,): always, (True,): always},)), made)
+    machine = machines.controller(made)
+    always = Move(TRUE, (Const("on"),), 0)
+    first, *_ = machines.said(replace(machine, states=((always,),)), made)
     assert first.conjunct is made.guarantees[0]
-    assert first.steps == ({"press": False, "lamp": "on"},)
+    assert first.steps == ({"press": first.steps[0]["press"], "lamp": "on"},)
 
 
 def test_a_machine_that_never_comes_to_a_goal_shows_the_loop():
     made = contract("env a: bool\nsys x: bool\npromise recurs x")
-    idle = {(value,): Move((False,), 0) for value in (False, True)}
-    lazy = replace(machines.machine(made), moves=(idle,))
-    (fault,) = machines.said(lazy, made)
+    idle = (Move(TRUE, (Const(False),), 0),)
+    (fault,) = machines.said(replace(machines.controller(made), states=(idle,)), made)
     assert fault.conjunct is made.guarantees[0]
     assert fault.loop is not None
     assert not any(step["x"] for step in fault.steps[fault.loop :])
 
 
-def test_too_many_states_or_moves_are_said():
-    door = machines.controller(contract(DOOR))
-    with pytest.raises(LimitError, match="the limit of 3 states of the machine"):
-        explored(door, most_states=3)
-    with pytest.raises(LimitError, match="the limit of 5 moves of the machine"):
-        explored(door, most_moves=5)
+def test_too_many_states_moves_or_conditions_are_said():
+    door = contract(DOOR)
+    with pytest.raises(TooLargeError, match="the limit of 1 states of the machine"):
+        drafted(door, most_states=1)
+    with pytest.raises(TooLargeError, match="the limit of 5 moves of the machine"):
+        drafted(door, most_moves=5)
+    with pytest.raises(TooLargeError, match="the limit of 4 cases in the conditions"):
+        written(minimised(drafted(door)), door, most=4)
 
 
 def test_states_that_no_allowed_input_tells_apart_are_one():
-    toggle = minimised(machines.machine(contract(LAMP)))
-    assert toggle.size == 3
-    assert minimised(machines.machine(contract(TURNS))).size == 1
+    assert machines.controller(contract(LAMP)).size == 3
+    assert machines.controller(contract(TURNS)).size == 1
 
 
 def test_what_time_does_not_suffice_to_join_stays_apart():
     made = contract(TURNS)
-    machine = machines.machine(made)
-    hasty = minimised(machine, most=0)
-    assert hasty.size > minimised(machine).size
+    hasty = written(minimised(drafted(made), most=0), made)
+    assert hasty.size > machines.controller(made).size
     assert machines.said(hasty, made) == []
+
+
+def test_a_counter_is_a_register():
+    made = contract(COUNTING)
+    machine = machines.controller(made)
+    assert [one.name for one in machine.registers] == ["n"]
+    assert machine.size <= 3
+    assert machines.controller(made, Form.LISTED).size >= 20
+    values = {print_formula(move.output[0]) for moves in machine.states[1:] for move in moves}
+    assert values == {"n", "n + 1", "0"}
+
+
+def test_what_a_counter_is_compared_with_is_kept_beside_it():
+    made = contract(FOLLOWING)
+    machine = machines.controller(made)
+    assert [one.name for one in machine.registers] == ["wanted", "at"]
+    assert machine.size == 2
+    told = {print_formula(one.output[0]): print_formula(one.when) for one in machine.states[1]}
+    assert told == {
+        "at": "at=wanted' | wanted!=wanted'",
+        "at + 1": "wanted=wanted' & at<wanted'",
+        "at - 1": "wanted=wanted' & at>wanted'",
+    }
+
+
+def test_registers_go_on_from_what_was_the_step_before():
+    answer = machines.followed(machines.controller(contract(FOLLOWING)))
+    wanted = [2, 2, 2, 1, 1]
+    assert [answer({"wanted": one})["at"] for one in wanted] == [0, 1, 2, 2, 1]
+
+
+def test_a_table_is_one_where_no_machine_can_be_listed():
+    cells = "\n".join(f"env a{at}: 0..30\nsys x{at}: 0..30" for at in range(3))
+    said = "\n".join(f"promise always x{at}' * 7 mod 31 = a{at}'" for at in range(3))
+    made = contract(f"{cells}\n{said}")
+    table = machines.controller(made)
+    assert len(table.nodes) > 30
+    assert machines.said(table, made) == []
+    with pytest.raises(LimitError):
+        machines.controller(made, Form.LISTED)
 
 
 def test_many_bits_are_no_deep_recursion():
     names = [f"x{at}" for at in range(600)]
     wide = contract("\n".join(["env a: bool", *(f"sys {one}: bool" for one in names)]))
-    state = machines.controller(wide).start({"a": True})
-    assert len(state.code) == 601
+    for form in FORMS:
+        answer = machines.followed(machines.controller(wide, form))
+        assert len(answer({"a": True})) == 600

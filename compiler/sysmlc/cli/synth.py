@@ -42,6 +42,14 @@ no machine, or the work could not be done.""",
     metavar="DIR",
     help="Write the machines there, and what defeats a contract that cannot be kept.",
 )
+@click.option(
+    "--machine",
+    "machine_form",
+    type=click.Choice(("own", "table", "gr1c")),
+    default="own",
+    show_default=True,
+    help="Form of the machines that are written.",
+)
 @click.option("--play", "is_played", is_flag=True, help="Play against what defeats the contract.")
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
 @click.option(
@@ -62,6 +70,7 @@ def command(
     component: str,
     is_decided_only: bool,
     output: Path | None,
+    machine_form: str,
     is_played: bool,
     language: str,
     engine: str | None,
@@ -74,8 +83,9 @@ def command(
 
     FILE is a model or a contract, in one of the forms of docs/synthesis.md. Each machine is
     checked against its contract; with -o it is written, as JSON and, when it is small, as a
-    diagram in PlantUML. Of a contract that cannot be kept -o writes how an environment defeats
-    it, as diagrams and in SysML v2; with --play you are the component and see for yourself.
+    diagram in PlantUML; where it cannot be listed, as a table of decisions. Of a contract that
+    cannot be kept -o writes how an environment defeats it, as diagrams and in SysML v2; with
+    --play you are the component and see for yourself.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
@@ -96,7 +106,7 @@ def command(
             ctx.exit(_played(read, component, options))
         if is_decided_only:
             ctx.exit(_decided(read, component, settings, options))
-        ctx.exit(_synthesised(read, component, settings, options, output))
+        ctx.exit(_synthesised(read, component, settings, options, output, machine_form))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
@@ -117,21 +127,19 @@ def _synthesised(
     settings: "Settings",
     options: "Options",
     output: Path | None,
+    form: str,
 ) -> int:
     from sysmlc.cli.contract_files import chosen, write
-    from sysmlc.synthesis.synthesise import synthesised
+    from sysmlc.synthesis.files import TABLE, written
+    from sysmlc.synthesis.synthesise import Form, synthesised
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
-    made = [synthesised(one, read.place, read.sink, options) for one in contracts]
+    kind = Form.TABLE if form == TABLE else Form.ANY
+    made = [synthesised(one, read.place, read.sink, options, kind) for one in contracts]
+    told = written(made, read.place, read.sink, form)
     if output is not None:
-        write((*_machines(made), *_counters(read, made, options)), output)
-    return _told(read, settings, made)
-
-
-def _machines(made: "Sequence[Synthesis]") -> "Iterable[tuple[str, str]]":
-    from sysmlc.synthesis.machine_text import files
-
-    return files((one.machine, one.contract) for one in made if one.machine)
+        write((*told.files, *_counters(read, made, options)), output)
+    return _told(read, settings, told.made)
 
 
 def _counters(

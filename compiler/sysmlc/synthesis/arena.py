@@ -117,6 +117,7 @@ class Steps:
 
 
 def products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
+    """Turns as ``played`` takes them."""
     return tuple((turn.owner, Product(manager, turn.parts, turn.bits)) for turn in turns)
 
 

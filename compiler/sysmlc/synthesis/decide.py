@@ -7,6 +7,7 @@ from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
+from sysmlc.synthesis.arena import Arena
 from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
@@ -75,11 +76,27 @@ class Verdict:
         return f"{self.component}: {words[self.is_realizable]}{figures}"
 
 
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """A verdict, with the game that it is about when one was made."""
+
+    verdict: Verdict
+    game: Game | None = None
+    """Without variables that follow from others."""
+    arena: Arena | None = None
+    """The game as it was decided."""
+
+
 def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
     """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported.
 
     What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduction``).
     """
+    return decided(contract, place, sink, options).verdict
+
+
+def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> Decision:
+    """``decide``, with the game for those who go on with it."""
     doing = ["translating the contract"]
 
     def progress(step: str) -> None:
@@ -91,14 +108,15 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
     try:
         game = make_game(reduced(contract).contract, manager)
         with manager.guard(), manager.calm():
-            arena = shifted(without_derived(game))
+            encoded = without_derived(game)
+            arena = shifted(encoded)
         solution = solve_arena(arena, is_complete=False)
     except OutsideGr1Error as problem:
         _report_outside(contract, problem, place, sink)
-        return Verdict(contract.component, None)
+        return Decision(Verdict(contract.component, None))
     except LimitError as problem:
         _report_limit(contract, problem, manager, doing[0], place, sink)
-        return Verdict(contract.component, None)
+        return Decision(Verdict(contract.component, None))
     if not solution.is_realizable:
         reasons = tuple(reasons_of(game)) if options.is_explained else ()
         sink.report(
@@ -108,7 +126,7 @@ def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Ve
             component=contract.component,
         )
     figures = _figures(contract, game, solution)
-    return Verdict(contract.component, solution.is_realizable, figures)
+    return Decision(Verdict(contract.component, solution.is_realizable, figures), encoded, arena)
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:

@@ -1,46 +1,63 @@
 """Machines as JSON (metamodels/sysmlc-machine.schema.json) and as state machines in PlantUML."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import islice
+from collections.abc import Iterator, Mapping, Sequence
 
 from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.formats.document_text import type_of
-from sysmlc.logic.printing import print_literal
-from sysmlc.naming import file_names
+from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.printing import print_formula
 from sysmlc.output import json_text
-from sysmlc.synthesis.mealy import Machine, Move, Row
+from sysmlc.plantuml import plain
+from sysmlc.synthesis.mealy import Machine, Move
 
-FORMAT = "sysmlc-machine/1"
-MOST_SHOWN = 12
-"""States up to which a diagram can be read."""
+FORMAT = "sysmlc-machine/2"
+MOST_STATES = 12
+MOST_ARROWS = 40
+"""States and moves up to which a diagram can be read."""
 _MOST_LINES = 4
-"""Conditions that an arrow tells one by one."""
-
-
-def files(made: Iterable[tuple[Machine, Contract]]) -> Iterator[tuple[str, str]]:
-    """Name and text of the files of some machines; small ones have a diagram too."""
-    known = {contract.component: (machine, contract) for machine, contract in made}
-    for component, name in file_names(known).items():
-        machine, contract = known[component]
-        yield f"{name}.machine.json", json_of(machine, contract)
-        if machine.size <= MOST_SHOWN:
-            yield f"{name}.machine.puml", plantuml_of(machine, contract)
+"""Cases of a condition that an arrow tells one by one."""
 
 
 def json_of(machine: Machine, contract: Contract) -> str:
     """The machine as JSON text, a line a move."""
+    names = register_names(machine)
     head = {
         "format": FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "inputs": [_declared(one) for one in machine.inputs],
-        "outputs": [_declared(one) for one in machine.outputs],
+        "inputs": [declared(one) for one in machine.inputs],
+        "outputs": [declared(one) for one in machine.outputs],
+        "registers": [{"name": name, "of": of} for of, name in names.items()],
     }
-    states = ",\n".join(f"    [{_listed(moves)}]" for moves in machine.moves)
+    states = ",\n".join(f"    [{_listed(moves, names)}]" for moves in machine.states)
     return f'{json_text(head, 2)[:-2]},\n  "states": [\n{states}\n  ]\n}}\n'
 
 
-def _declared(variable: Variable) -> dict[str, object]:
+def register_names(machine: Machine) -> dict[str, str]:
+    """What the register of a variable is called: ``last_x``, or longer if that is taken."""
+    known = {one.name for one in (*machine.inputs, *machine.outputs)}
+    found: dict[str, str] = {}
+    for one in machine.registers:
+        name = f"last_{one.name}"
+        while name in known:
+            name += "_"
+        found[one.name] = name
+    return found
+
+
+def named(formula: Formula, registers: Mapping[str, str]) -> Formula:
+    """A condition or an output of a move over the names of inputs and registers."""
+    match formula:
+        case Var(name, primed):
+            return Var(name if primed else registers[name])
+        case Apply(op, parts):
+            return Apply(op, tuple(named(part, registers) for part in parts))
+        case _:
+            return formula
+
+
+def declared(variable: Variable) -> dict[str, object]:
+    """A variable as JSON."""
     return {
         "name": variable.name,
         "type": type_of(variable.domain),
@@ -48,61 +65,63 @@ def _declared(variable: Variable) -> dict[str, object]:
     }
 
 
-def _listed(moves: Mapping[Row, Move]) -> str:
+def _listed(moves: Sequence[Move], names: Mapping[str, str]) -> str:
     if not moves:
         return ""
     lines = (
-        f'      {{"input": {_row(row)}, "output": {_row(move.output)}, "next": {move.state}}}'
-        for row, move in moves.items()
+        f'      {{"when": {json_text(_said(move.when, names), 0)}, '
+        f'"output": [{", ".join(_value(one, names) for one in move.output)}], '
+        f'"next": {move.state}}}'
+        for move in moves
     )
     return "\n" + ",\n".join(lines) + "\n    "
 
 
-def _row(row: Row) -> str:
-    return "[" + ", ".join(json_text(one, 0) for one in row) + "]"
+def _value(output: Formula, names: Mapping[str, str]) -> str:
+    if isinstance(output, Const):
+        return json_text(output.value, 0)
+    return f'{{"value": {json_text(_said(output, names), 0)}}}'
+
+
+def _said(formula: Formula, names: Mapping[str, str]) -> str:
+    return print_formula(named(formula, names))
+
+
+def has_diagram(machine: Machine) -> bool:
+    """Whether the machine is so small that a diagram of it can be read."""
+    return machine.size <= MOST_STATES and machine.count <= MOST_ARROWS
 
 
 def plantuml_of(machine: Machine, contract: Contract) -> str:
     """The machine as a state diagram: on an arrow what is given, and below it what is answered."""
-    lines = ["@startuml", f"title {' '.join(contract.component.split())}", "hide empty description"]
+    names = register_names(machine)
+    lines = ["@startuml", f"title {plain(contract.component)}", "hide empty description"]
     lines += [f"state S{at}" for at in range(machine.size)]
     lines += ["[*] --> S0"]
-    for state, moves in enumerate(machine.moves):
-        lines += _arrows(state, moves, machine)
-    return "\n".join((*lines, "@enduml", ""))
+    for state, moves in enumerate(machine.states):
+        lines += (f"S{state} --> S{move.state} : {_label(move, machine, names)}" for move in moves)
+    return "\n".join((*lines, *_legend(names), "@enduml", ""))
 
 
-def _arrows(state: int, moves: Mapping[Row, Move], machine: Machine) -> Iterator[str]:
-    groups: dict[Move, list[Row]] = {}
-    for row, move in moves.items():
-        groups.setdefault(move, []).append(row)
-    for move, rows in groups.items():
-        others = [row for row, other in moves.items() if other != move]
-        given = list(islice(_conditions(rows, others, machine), _MOST_LINES + 1))
-        if len(given) > _MOST_LINES:
-            given[_MOST_LINES - 1 :] = ["or more"]
-        label = "\\n".join([*given, f"/ {_answer(move, machine)}"])
-        yield f"S{state} --> S{move.state} : {label}"
+def _label(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
+    when = move.when
+    cases = when.args if isinstance(when, Apply) and when.op is Op.OR else (when,)
+    given = ["any" if one == Const(True) else _said(one, names) for one in cases]
+    if len(given) > _MOST_LINES:
+        given[_MOST_LINES - 1 :] = ["or more"]
+    return "\\n".join([*given, f"/ {_answer(move, machine, names)}"])
 
 
-def _conditions(rows: Sequence[Row], others: Sequence[Row], machine: Machine) -> Iterator[str]:
-    """What the rows have in common that none of the others has, in as few words as is simple."""
-    left = rows
-    while left:
-        row, kept = left[0], tuple(range(len(machine.inputs)))
-        for place in kept:
-            fewer = tuple(one for one in kept if one != place)
-            if not any(_is_same(row, other, fewer) for other in others):
-                kept = fewer
-        said = (f"{machine.inputs[at].name}={print_literal(row[at])}" for at in kept)
-        yield " ".join(said) or "any"
-        left = [one for one in left if not _is_same(row, one, kept)]
-
-
-def _is_same(one: Row, other: Row, places: Iterable[int]) -> bool:
-    return all(one[place] == other[place] for place in places)
-
-
-def _answer(move: Move, machine: Machine) -> str:
+def _answer(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
+    """The outputs; registers that go on as they were are left out."""
     pairs = zip(machine.outputs, move.output, strict=True)
-    return " ".join(f"{one.name}={print_literal(value)}" for one, value in pairs)
+    told = [f"{one.name}={_said(value, names)}" for one, value in pairs if value != Var(one.name)]
+    return " ".join(told) or "as before"
+
+
+def _legend(names: Mapping[str, str]) -> Iterator[str]:
+    if names:
+        yield "legend"
+        yield from (f"  {name} is what {of} was in the step before" for of, name in names.items())
+        yield "  an output that is not told stays what it was"
+        yield "endlegend"

@@ -70,6 +70,10 @@ class LimitError(Exception):
         self.limit = limit
 
 
+class TooLargeError(LimitError):
+    """One form of an outcome is too large; another one may not be."""
+
+
 @dataclass(frozen=True, slots=True)
 class Usage:
     """What a manager has used so far."""

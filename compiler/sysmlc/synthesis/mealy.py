@@ -1,122 +1,68 @@
-"""Controllers as Mealy machines: states, and for each input an output and the next state.
+"""Mealy machines with conditions and registers.
 
-State 0 is before the first step; its moves take the first inputs. What the assumptions exclude has
-no move.
+In every step the machine takes the first move of its state whose condition holds. Conditions are
+formulas: a primed variable is an input of this step, one without a prime a register, which holds
+what the variable was in the step before. State 0 is before the first step and knows no registers.
+Inputs that the assumptions exclude may have no move.
 """
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 
-from sysmlc.logic.contract import Owner, Variable
-from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.manager import LimitError
-from sysmlc.synthesis.strategy import Bits, Controller, State
+from sysmlc.logic.contract import Variable
+from sysmlc.logic.evaluate import evaluation, value_of
+from sysmlc.logic.formula import Formula, Literal
 from sysmlc.values import dataclass
-
-Row = tuple[Literal, ...]
-"""Values of variables, in their order."""
-MOST_STATES = 100_000
-MOST_MOVES = 200_000
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """What a machine answers, and where it goes on."""
+    """What a machine answers when a condition holds, and where it goes on."""
 
-    output: Row
+    when: Formula
+    output: tuple[Formula, ...]
+    """For each output a literal, or a number that a register gives: ``n``, ``n + 1``, ``n - 1``."""
     state: int
 
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A deterministic machine; ``moves[state][input]`` is what it does."""
+    """A deterministic machine; ``states[state]`` is what it may do there."""
 
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
-    moves: tuple[Mapping[Row, Move], ...]
+    registers: tuple[Variable, ...]
+    """Inputs and outputs whose last values conditions and outputs may name."""
+    states: tuple[tuple[Move, ...], ...]
 
     @property
     def size(self) -> int:
         """Number of states, the one before the first step among them."""
-        return len(self.moves)
+        return len(self.states)
 
-    def run(self, inputs: Iterable[Row]) -> Iterator[Row]:
-        """The outputs for some inputs, step by step; KeyError for one without a move."""
-        state = 0
-        for row in inputs:
-            move = self.moves[state][row]
-            yield move.output
-            state = move.state
+    @property
+    def count(self) -> int:
+        """Number of moves."""
+        return sum(map(len, self.states))
 
+    def step(
+        self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
+    ) -> tuple[dict[str, Literal], int]:
+        """The outputs for inputs, and the next state; LookupError if there is no move.
 
-def explored(
-    controller: Controller, most_states: int = MOST_STATES, most_moves: int = MOST_MOVES
-) -> Machine:
-    """The machine of a controller, with the states that some environment can lead it to.
+        ``last`` has inputs and outputs of the step before.
+        """
+        move = self.taken(state, last, now)
+        names = (one.name for one in self.outputs)
+        values = (value_of(one, last) for one in move.output)
+        return dict(zip(names, values, strict=True)), move.state
 
-    Raises LimitError when there are more states or moves, or a limit of the manager is reached.
-    """
-    return _Exploration(controller, most_states, most_moves).run()
+    def taken(self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]) -> Move:
+        """The move for these inputs, after a step with these values; LookupError if there is none.
 
-
-class _Exploration:
-    def __init__(self, controller: Controller, most_states: int, most_moves: int) -> None:
-        self._controller = controller
-        self._most = most_states, most_moves
-        self._found: list[State] = []
-        self._places: dict[State, int] = {}
-        self._futures: dict[Hashable, int] = {}
-        self._rows: dict[tuple[Owner, tuple[bool, ...]], Row] = {}
-        self._count = 0
-        variables = controller.symbols.variables.values()
-        self._sides = {
-            owner: tuple(one for one in variables if one.owner is owner) for owner in Owner
-        }
-
-    def run(self) -> Machine:
-        """Follow all inputs, the states that were found first first."""
-        controller = self._controller
-        moves = [self._moves((one, controller.first(one)) for one in controller.first_inputs())]
-        for state in self._found:
-            given = controller.next_inputs(state)
-            moves.append(self._moves((one, controller.after(state, one)) for one in given))
-        sides = self._sides
-        return Machine(sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM], tuple(moves))
-
-    def _moves(self, found: Iterable[tuple[Bits, State]]) -> dict[Row, Move]:
-        moves: dict[Row, Move] = {}
-        for given, state in found:
-            if state not in self._places:
-                self._places[state] = self._place(state)
-            row = self._row(Owner.ENVIRONMENT, tuple(given.values()))
-            count = len(self._controller.inputs)
-            moves[row] = Move(self._row(Owner.SYSTEM, state.code[count:]), self._places[state])
-            self._limit()
-        return moves
-
-    def _place(self, state: State) -> int:
-        """The number of the state, that of an earlier one with the same future if there is one."""
-        future = self._controller.future(state)
-        if future not in self._futures:
-            self._found.append(state)
-            self._futures[future] = len(self._found)
-        return self._futures[future]
-
-    def _limit(self) -> None:
-        self._count += 1
-        self._controller.symbols.manager.check("listing the states of a machine")
-        for what, used, most in (
-            ("states", len(self._found), self._most[0]),
-            ("moves", self._count, self._most[1]),
-        ):
-            if used > most:
-                raise LimitError(f"{what} of the machine", f"{most:,}")
-
-    def _row(self, owner: Owner, code: tuple[bool, ...]) -> Row:
-        """The values of one side's variables for their bits."""
-        key = owner, code
-        if key not in self._rows:
-            controller = self._controller
-            bits = controller.inputs if owner is Owner.ENVIRONMENT else controller.outputs
-            values = controller.symbols.decode(dict(zip(bits, code, strict=True)))
-            self._rows[key] = tuple(values[one.name] for one in self._sides[owner])
-        return self._rows[key]
+        ``last`` has inputs and outputs of the step before.
+        """
+        found = (one for one in self.states[state] if evaluation(one.when)(last, now))
+        move = next(found, None)
+        if move is None:
+            raise LookupError(f"state {state} has no move for {dict(now)}")
+        return move

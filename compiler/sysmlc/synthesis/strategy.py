@@ -1,224 +1,183 @@
-"""A controller from the layers of a solved game: its answers, computed state by state.
+"""A strategy from the layers of a solved game: outputs as functions, goal by goal.
 
-A state is what all variables are, and the goal in turn. In it the system takes an answer that
-leads to the nearest layer of the goal; where none is nearer it waits among the states in which an
-assumption does not recur (Piterman, Pnueli, Sa'ar 2006, section 4). Choices are the same each time,
-whatever the library and the order of bits.
+A controller remembers what all variables were in the step before, and the goal in turn. What it
+answers is given by functions of that and of the inputs, as decision diagrams: nothing is listed.
+The arena may be encoded (``derived``, ``shift``); the functions are those of the variables of the
+contract: a command is chosen with the answers of its step, in which the arena already knows where
+it is; variables that follow from others are computed from them.
 """
 
-from bisect import bisect_left
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from sysmlc.logic.contract import Owner
-from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.arena import Turn
-from sysmlc.synthesis.image import CLUSTER
+from sysmlc.synthesis.aims import aims
+from sysmlc.synthesis.arena import played, products
+from sysmlc.synthesis.choice import chosen, joined, substituted
+from sysmlc.synthesis.determined import answers
+from sysmlc.synthesis.game import Game
+from sysmlc.synthesis.image import Product
 from sysmlc.synthesis.manager import Manager, Node
 from sysmlc.synthesis.solve import Solution
-from sysmlc.synthesis.symbols import next_bit
+from sysmlc.synthesis.symbols import Symbols, next_bit
 from sysmlc.values import dataclass
 
-Bits = Mapping[str, bool]
-
-
-class AssumptionBrokenError(ValueError):
-    """The environment gave inputs that the contract does not allow it."""
+Functions = Mapping[str, Node]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
-    """Where a controller is."""
+class Mode:
+    """What is done while one goal is in turn."""
 
-    code: tuple[bool, ...]
-    """The bits of inputs and outputs, in the order of ``Controller.bits``."""
-    goal: int
-    """The goal in turn; one that holds here already has been counted, unless all do."""
+    outputs: Functions
+    """Each bit of the outputs: over bits of the step before, and primed ones of the inputs."""
+    onward: tuple[Node, ...]
+    """For each mode, over the same bits, when it is the next one."""
 
 
 @dataclass(frozen=True, slots=True)
-class _View:
-    """What is allowed from a state on."""
+class Strategy:
+    """How to keep a contract."""
 
-    asked: tuple[Node, ...]
-    """Assumptions about the next inputs."""
-    owed: tuple[Node, ...]
-    """Guarantees about the next inputs and outputs."""
+    symbols: Symbols
+    inputs: tuple[str, ...]
+    """Names of the variables of the environment."""
+    outputs: tuple[str, ...]
+    first: Mode
+    """The first step: nothing is remembered."""
+    modes: tuple[Mode, ...]
+    """Later steps; one for each goal, and maybe one for what comes after the first step."""
 
-
-class Controller:
-    """Answers the environment so that a contract is kept."""
-
-    def __init__(self, solution: Solution) -> None:
-        """Settle what is joined once and for all; nothing is explored.
-
-        Raises ValueError for a game that is lost, not solved to its end, or encoded with turns
-        of its own.
-        """
-        arena = solution.arena
-        if arena.is_ahead or not (solution.is_realizable and solution.is_complete):
-            raise ValueError("a controller needs a plain game that was won")
-        self._manager, self.symbols = arena.manager, arena.symbols
-        self._solution = solution
-        (self._first_inputs, self.inputs), (self._first_outputs, self.outputs) = (
-            (_joined(arena.manager, turn), turn.bits) for turn in arena.start
-        )
-        self._asked, self._owed = (_joined(arena.manager, turn) for turn in arena.turns)
-        self._goals = arena.goals or (arena.manager.true,)
-        self.bits = (*self.inputs, *self.outputs)
-        self._seen: tuple[State, _View] | None = None
-
-    def start(self, inputs: Mapping[str, Literal]) -> State:
-        """The first state for the first inputs.
-
-        Raises AssumptionBrokenError when the assumptions do not allow these inputs.
-        """
-        return self.first(self._coded(inputs))
-
-    def step(self, state: State, inputs: Mapping[str, Literal]) -> State:
-        """The next state for the next inputs.
-
-        Raises AssumptionBrokenError when the assumptions do not allow these inputs.
-        """
-        return self.after(state, self._coded(inputs))
-
-    def values(self, state: State) -> dict[str, Literal]:
-        """What the variables are in a state."""
-        return self.symbols.decode(self._bits(state))
-
-    def future(self, state: State) -> Hashable:
-        """What all later steps depend on: states with the same future are answered the same."""
-        view, now = self._view(state), self._bits(state)
-        if self._holds(self._goals[state.goal], now):
-            return view, state.goal
-        here, waiting = self._layer(state.goal, now)
-        return view, state.goal, here, waiting
-
-    def first_inputs(self) -> Iterator[Bits]:
-        """All first inputs that the assumptions allow."""
-        return assignments(self._manager, _all(self._manager, self._first_inputs), self.inputs)
-
-    def next_inputs(self, state: State) -> Iterator[Bits]:
-        """All next inputs that the assumptions allow in a state, as bits without primes."""
-        allowed = self.symbols.unprime(_all(self._manager, self._view(state).asked))
-        return assignments(self._manager, allowed, self.inputs)
-
-    def first(self, inputs: Bits) -> State:
-        """``start`` for bits."""
-        if not self._is_true(self._first_inputs, inputs):
-            raise AssumptionBrokenError("the first inputs break an assumption")
-        possible = self._possible(self._first_outputs, inputs)
-        return self._chosen(self._nearest(possible, inputs, 0)[1], inputs, 0)
-
-    def after(self, state: State, inputs: Bits) -> State:
-        """``step`` for bits."""
-        given = {next_bit(bit): value for bit, value in inputs.items()}
-        view = self._view(state)
-        if not self._is_true(view.asked, given):
-            raise AssumptionBrokenError("the next inputs break an assumption")
-        possible = self.symbols.unprime(self._possible(view.owed, given))
-        return self._chosen(self._answers(state, possible, inputs), inputs, state.goal)
-
-    def _answers(self, state: State, possible: Node, inputs: Bits) -> Node:
-        """The answers that lead nearer to the goal, or on from it, or wait."""
-        now = self._bits(state)
-        rank, found = self._nearest(possible, inputs, state.goal)
-        if self._holds(self._goals[state.goal], now):
-            return found
-        here, waiting = self._layer(state.goal, now)
-        if rank < here:
-            return found
-        return possible & self._manager.assign(waiting, inputs)
-
-    def _layer(self, goal: int, now: Bits) -> tuple[int, Node]:
-        """The layer of a state, and where the system may wait there, for the first assumption."""
-        layers = self._solution.layers[goal]
-        here = bisect_left(layers, True, key=lambda layer: self._holds(layer.states, now))
-        found = (one for one in layers[here].waiting if self._holds(one, now))
-        return here, next(found, self._manager.false)
-
-    def _nearest(self, possible: Node, inputs: Bits, goal: int) -> tuple[int, Node]:
-        """The first layer that some answer leads to, and the answers that do."""
-        layers = self._solution.layers[goal]
-
-        def reached(place: int) -> Node:
-            return possible & self._manager.assign(layers[place].states, inputs)
-
-        places = range(len(layers))
-        rank = bisect_left(places, True, key=lambda place: reached(place) != self._manager.false)
-        return rank, reached(rank)
-
-    def _chosen(self, answers: Node, inputs: Bits, goal: int) -> State:
-        values = dict(inputs) | next(assignments(self._manager, answers, self.outputs))
-        return State(tuple(values[bit] for bit in self.bits), self._in_turn(values, goal))
-
-    def _in_turn(self, now: Bits, goal: int) -> int:
-        """The first goal from this one on that does not hold now; itself when all hold."""
-        count = len(self._goals)
-        turns = ((goal + more) % count for more in range(count))
-        return next((one for one in turns if not self._holds(self._goals[one], now)), goal)
-
-    def _view(self, state: State) -> _View:
-        """What is allowed from here; that of the last state is kept."""
-        if self._seen is None or self._seen[0] != state:
-            now = self._bits(state)
-            asked, owed = (
-                tuple(self._manager.assign(node, now) for node in parts)
-                for parts in (self._asked, self._owed)
-            )
-            self._seen = state, _View(asked, owed)
-        return self._seen[1]
-
-    def _bits(self, state: State) -> Bits:
-        return dict(zip(self.bits, state.code, strict=True))
-
-    def _coded(self, inputs: Mapping[str, Literal]) -> Bits:
-        found: dict[str, bool] = {}
-        for one in self.symbols.variables.values():
-            if one.owner is Owner.ENVIRONMENT:
-                found |= self.symbols.code(one.name, inputs[one.name])
-        return found
-
-    def _possible(self, parts: Iterable[Node], given: Bits) -> Node:
-        return _all(self._manager, (self._manager.assign(part, given) for part in parts))
-
-    def _is_true(self, parts: Iterable[Node], given: Bits) -> bool:
-        return all(self._holds(part, given) for part in parts)
-
-    def _holds(self, node: Node, given: Bits) -> bool:
-        return self._manager.assign(node, given) == self._manager.true
+    @property
+    def manager(self) -> Manager:
+        """Owner of the diagrams."""
+        return self.symbols.manager
 
 
-def assignments(manager: Manager, node: Node, bits: Sequence[str]) -> Iterator[dict[str, bool]]:
-    """All values of the bits that make the diagram true, in the order of binary numbers.
+def strategy(game: Game, solution: Solution) -> Strategy:
+    """The strategy that a solution of the (encoded) game has.
 
-    ``bits`` must contain the support.
+    Raises ValueError for a game that is lost or not solved to its end, LimitError.
     """
-    waiting: list[tuple[Node, tuple[bool, ...]]] = [(node, ())]
-    while waiting:
-        left, values = waiting.pop()
-        if left == manager.false:
-            continue
-        if len(values) == len(bits):
-            yield dict(zip(bits, values, strict=True))
-            continue
-        bit = bits[len(values)]
-        waiting += ((manager.assign(left, {bit: one}), (*values, one)) for one in (True, False))
+    if not (solution.is_realizable and solution.is_complete):
+        raise ValueError("a strategy needs a game that was won and solved to its end")
+    with game.manager.guard():
+        return _Maker(game, solution).strategy()
 
 
-def _joined(manager: Manager, turn: Turn) -> tuple[Node, ...]:
-    """The parts of a turn, neighbours joined while they stay small."""
-    found: list[Node] = []
-    for part in turn.parts:
-        both = found[-1] & part if found else part
-        if found and len(both) <= CLUSTER:
-            found[-1] = both
-        else:
-            found.append(part)
-    return tuple(found)
+class _Maker:
+    def __init__(self, game: Game, solution: Solution) -> None:
+        self.game, self.solution, self.arena = game, solution, solution.arena
+        self.manager, self.symbols = game.manager, game.symbols
+        self.count = max(1, len(self.arena.goals))
+        self.answers = answers(self.arena)
+        self._owed = Product(self.manager, self.answers.parts, ())
 
+    def strategy(self) -> Strategy:
+        """All modes, and the first step."""
+        symbols = self.symbols
+        sides = {
+            owner: tuple(one.name for one in symbols.variables.values() if one.owner is owner)
+            for owner in Owner
+        }
+        first, modes = self._ahead() if self.arena.is_ahead else self._plain()
+        inputs, outputs = sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM]
+        return Strategy(symbols, inputs, outputs, first, modes)
 
-def _all(manager: Manager, parts: Iterable[Node]) -> Node:
-    found = manager.true
-    for part in parts:
-        found = found & part
-    return found
+    def _plain(self) -> tuple[Mode, tuple[Mode, ...]]:
+        first = self._first(self.solution.winning)
+        modes = (self._mode(goal, self._answers(goal), ()) for goal in range(self.count))
+        return self._mode(0, first, ()), tuple(modes)
+
+    def _ahead(self) -> tuple[Mode, tuple[Mode, ...]]:
+        """The same for commands that are chosen in the state that the answers lead to."""
+        winning = self.solution.winning
+        commands = [self._commands(goal) for goal in range(self.count)]
+        modes = [self._mode(goal, self._answers(goal), commands) for goal in range(self.count)]
+        begun = chosen(self.manager, self._answered(winning), self.answers.bits)
+        modes.append(self._mode(0, self._whole(begun), commands))
+        onward = (*(self.manager.false,) * self.count, self.manager.true)
+        return Mode(self._completed(self._first(self.symbols.prime(winning))), onward), tuple(modes)
+
+    def _first(self, winning: Node) -> Functions:
+        """Outputs for the first inputs, so that the rest can be won."""
+        _, turn, *later = self.arena.start
+        outputs = [bit for bit in turn.bits if not bit.endswith("'")]
+        moved = [bit for bit in turn.bits if bit.endswith("'")]
+        possible = Product(self.manager, turn.parts, moved)(
+            played(products(self.manager, later), winning)
+        )
+        found = chosen(self.manager, possible, outputs)
+        return {bit: self.symbols.prime(node) for bit, node in found.items()}
+
+    def _answers(self, goal: int) -> Functions:
+        """The outputs that are chosen after the inputs."""
+        return self._whole(self._chosen(goal, self._answered, self.answers.bits))
+
+    def _chosen(self, goal: int, leading: Callable[[Node], Node], bits: Sequence[str]) -> Functions:
+        pieces = (
+            (aim.where, chosen(self.manager, aim.possible, bits))
+            for aim in aims(self.solution, goal, leading, bits)
+        )
+        return joined(self.manager, pieces)
+
+    def _whole(self, found: Functions) -> Functions:
+        """All bits of the answer, by their names without primes."""
+        found = self.answers.completed(self.symbols, found)
+        return {bit.removesuffix("'"): node for bit, node in found.items()}
+
+    def _answered(self, there: Node) -> Node:
+        """The answers that lead to states, as far as there is a choice."""
+        return self._owed(self.answers.within(self.symbols, self.symbols.prime(there)))
+
+    def _commands(self, goal: int) -> Functions:
+        """Commands as functions of the state in which they are chosen."""
+        whole, after = self.arena.command, products(self.manager, self.arena.turns[1:])
+        if whole is None:
+            return {}
+        bits = [bit for bit in whole.bits if not bit.endswith("'")]
+        choice = Product(self.manager, whole.parts, [bit for bit in whole.bits if bit not in bits])
+
+        def leading(there: Node) -> Node:
+            return choice(played(after, self.symbols.prime(there)))
+
+        return self._chosen(goal, leading, bits)
+
+    def _mode(self, goal: int, answers: Functions, commands: Sequence[Functions]) -> Mode:
+        """A mode from the answers of a step and the commands for each goal that may be next."""
+        onward = self._onward(goal, answers)
+        by_case = joined(
+            self.manager,
+            (
+                (where, {bit: self._after(node, answers) for bit, node in functions.items()})
+                for where, functions in zip(onward, commands, strict=False)
+            ),
+        )
+        more = (self.manager.false,) if commands else ()
+        return Mode(self._completed({**answers, **by_case}), (*onward, *more))
+
+    def _onward(self, goal: int, answers: Functions) -> tuple[Node, ...]:
+        """When which goal is the next: the first one from this one on that does not hold."""
+        if not self.arena.goals:
+            return (self.manager.true,)
+        found = [self.manager.false] * self.count
+        left = self.manager.true
+        for more in range(self.count):
+            place = (goal + more) % self.count
+            is_held = self._after(self.arena.goals[place], answers)
+            found[place] = left & ~is_held
+            left = left & is_held
+        found[goal] = found[goal] | left
+        return tuple(found)
+
+    def _after(self, node: Node, answers: Functions) -> Node:
+        """What is said about a step, over its inputs and what is remembered."""
+        by = {next_bit(bit): function for bit, function in answers.items()}
+        return substituted(self.manager, self.symbols.prime(node), by)
+
+    def _completed(self, outputs: Functions) -> Functions:
+        """With the outputs that follow from others."""
+        found = dict(outputs)
+        for name, bits in reversed(list(self.game.definitions.items())):
+            if self.symbols.variables[name].owner is Owner.SYSTEM:
+                found |= {bit: self._after(node, found) for bit, node in bits.items()}
+        return found

@@ -1,72 +1,132 @@
-"""From a contract to a machine that is known to keep it."""
+"""From a contract to a controller that is known to keep it."""
+
+from enum import StrEnum
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.decide import Options, Place, Verdict, decide
-from sysmlc.synthesis.game import make_game
-from sysmlc.synthesis.manager import LimitError, Manager
-from sysmlc.synthesis.mealy import Machine, explored
+from sysmlc.synthesis.arena import Arena, nodes
+from sysmlc.synthesis.closed import Controller
+from sysmlc.synthesis.conditions import machine
+from sysmlc.synthesis.decide import Options, Place, Verdict, decided
+from sysmlc.synthesis.game import Game
+from sysmlc.synthesis.listing import listed
+from sysmlc.synthesis.manager import LimitError, Limits, Manager, TooLargeError
+from sysmlc.synthesis.mealy import Machine
+from sysmlc.synthesis.memory import reached, registers
 from sysmlc.synthesis.minimise import minimised
-from sysmlc.synthesis.solve import solve
-from sysmlc.synthesis.strategy import Controller
+from sysmlc.synthesis.solve import solve_arena
+from sysmlc.synthesis.strategy import Strategy, strategy
+from sysmlc.synthesis.table import tabled
 from sysmlc.synthesis.verify import Fault, faults
 from sysmlc.values import dataclass
+
+_LEAST = 0.01
+"""CPU seconds that a check has when all that were given are used up."""
+
+
+class Form(StrEnum):
+    """What a controller is made as."""
+
+    ANY = "any"
+    """A machine; a table when there are too many states or conditions."""
+    LISTED = "listed"
+    """A machine without registers, or none."""
+    TABLE = "table"
 
 
 @dataclass(frozen=True, slots=True)
 class Synthesis:
-    """A verdict, and the machine when there is one that passes the check."""
+    """A verdict, and the controller when there is one that passes the check."""
 
     verdict: Verdict
     contract: Contract
-    machine: Machine | None = None
+    """With history bits where it needs them."""
+    machine: Controller | None = None
 
     @property
     def exit_code(self) -> int:
-        """0 with a machine, 1 unrealizable, 2 not decided or no machine."""
+        """0 with a controller, 1 unrealizable, 2 not decided or no controller."""
         return self.verdict.exit_code or 2 * (self.machine is None)
 
     def text(self) -> str:
-        """The verdict on one line, with figures of the machine behind it."""
+        """The verdict on one line, with figures of the controller behind it."""
         if self.machine is None:
             return self.verdict.text()
-        size, moves = self.machine.size, sum(map(len, self.machine.moves))
-        states = "1 state" if size == 1 else f"{size:,} states"
-        return f"{self.verdict.text()}; machine: {states}, {moves:,} moves, checked"
+        return f"{self.verdict.text()}; {_figures(self.machine)}, checked"
 
 
-def synthesised(contract: Contract, place: Place, sink: Sink, options: Options) -> Synthesis:
-    """Decide a contract, and make a machine that keeps it; what fails is reported."""
-    verdict = decide(contract, place, sink, options)
-    if not verdict.is_realizable:
-        return Synthesis(verdict, contract)
+def _figures(made: Controller) -> str:
+    if not isinstance(made, Machine):
+        modes = "1 mode" if len(made.modes) == 1 else f"{len(made.modes)} modes"
+        return f"controller: {len(made.nodes):,} nodes, {modes}"
+    states = "1 state" if made.size == 1 else f"{made.size:,} states"
+    known = len(made.registers)
+    kept = f", {known} register{'s' * (known > 1)}" if known else ""
+    return f"machine: {states}, {made.count:,} moves{kept}"
+
+
+def synthesised(
+    contract: Contract, place: Place, sink: Sink, options: Options, form: Form = Form.ANY
+) -> Synthesis:
+    """Decide a contract, and make a controller that keeps it; what fails is reported."""
+    decision = decided(contract, place, sink, options)
+    if not decision.verdict.is_realizable or decision.game is None or decision.arena is None:
+        return Synthesis(decision.verdict, contract)
+    told = reduced(contract).contract
     try:
-        found = _checked(contract, options)
+        found = controller(told, decision.game, decision.arena, options, form)
     except LimitError as problem:
         found = str(problem)
-    if isinstance(found, Machine):
-        return Synthesis(verdict, contract, found)
+    if not isinstance(found, str):
+        return Synthesis(decision.verdict, told, found)
     component = contract.component
     sink.report(rules.NO_MACHINE, place(contract.origin), component=component, why=found)
-    return Synthesis(verdict, contract)
+    return Synthesis(decision.verdict, told)
 
 
-def _checked(contract: Contract, options: Options) -> Machine | str:
-    """A machine that keeps the contract, or why the one that was made is none."""
-    made = reduced(contract).contract
-    game = make_game(made, _manager(options))
-    solution = solve(game)
+def controller(
+    contract: Contract, game: Game, arena: Arena, options: Options, form: Form = Form.ANY
+) -> Controller | str:
+    """A controller that keeps the contract, or why the one that was made is none.
+
+    ``game`` and ``arena`` are the contract's, encoded (``decide.Decision``), and won. Raises
+    LimitError.
+    """
     with game.manager.guard():
-        machine = minimised(explored(Controller(solution)))
-    fault = next(faults(machine, made, _manager(options)), None)
-    return _said(fault) if fault else machine
+        plan = strategy(game, solve_arena(arena))
+        found = made(contract, game, plan, form)
+    fault = next(faults(found, contract, _fresh(game.manager, options)), None)
+    return _said(fault) if fault else found
 
 
-def _manager(options: Options) -> Manager:
-    return Manager(options.engine, options.limits, options.progress)
+def made(contract: Contract, game: Game, plan: Strategy, form: Form = Form.ANY) -> Controller:
+    """A strategy in the form that is wanted, not checked yet. Raises LimitError."""
+    if form is Form.TABLE:
+        return tabled(plan)
+    try:
+        return _listed(contract, game, plan, form)
+    except TooLargeError:
+        if form is Form.LISTED:
+            raise
+    return tabled(plan)
+
+
+def _listed(contract: Contract, game: Game, plan: Strategy, form: Form) -> Machine:
+    found = reached(plan, nodes(game.init_assumptions), nodes(game.assumptions))
+    counting = () if form is Form.LISTED else registers(found)
+    return machine(minimised(listed(found, counting)), contract)
+
+
+def _fresh(manager: Manager, options: Options) -> Manager:
+    """Another manager, with what is left of the time."""
+    limits = options.limits
+    if limits.seconds:
+        left = max(_LEAST, limits.seconds - manager.usage().seconds)
+        limits = Limits(limits.nodes, limits.memory, left)
+    return Manager(options.engine, limits, options.progress)
 
 
 def _said(fault: Fault) -> str:

@@ -1,19 +1,19 @@
-"""Whether a machine keeps a contract: an independent check of machine and assumptions together.
+"""Whether a controller keeps a contract: an independent check of it and the assumptions together.
 
-Nothing is shared with what made the machine: the contract's formulas are translated anew, the
-machine is a relation over a variable for its state, and fair runs are looked for (``algebra``).
+Nothing is shared with what made it: the contract's formulas are translated anew, the controller is
+a relation over a variable for its state (``closed``), and fair runs are looked for (``algebra``).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from sysmlc.logic.contract import Class, Conjunct, Contract, IntegerDomain, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem, Universe
 from sysmlc.synthesis.algebra.traces import lasso, one, shortest
+from sysmlc.synthesis.closed import Controller, memory, relation
 from sysmlc.synthesis.image import Product
 from sysmlc.synthesis.manager import Manager, Node
-from sysmlc.synthesis.mealy import Machine, Move, Row
 from sysmlc.values import dataclass, replace
 
 
@@ -28,35 +28,34 @@ class Fault:
     """After the last step it goes on at this one; None when the steps alone show it."""
 
 
-def faults(machine: Machine, contract: Contract, manager: Manager) -> Iterator[Fault]:
-    """Why a machine does not keep a contract; nothing when it does. The manager must be new.
+def faults(controller: Controller, contract: Contract, manager: Manager) -> Iterator[Fault]:
+    """Why a controller does not keep a contract; nothing when it does. The manager must be new.
 
-    In every run in which the environment keeps its assumptions the machine has an answer, keeps
+    In every run in which the environment keeps its assumptions the controller has an answer, keeps
     the initial guarantees and those for every step, and, if all that should recur of the
     environment does, what should recur of the system does. Raises OutsideGr1Error, LimitError;
     SymbolError for a machine with other values than the contract's.
     """
     with manager.guard():
-        yield from _Check(machine, contract, manager).faults()
+        yield from _Check(controller, contract, manager).faults()
 
 
 class _Check:
-    def __init__(self, machine: Machine, contract: Contract, manager: Manager) -> None:
+    def __init__(self, controller: Controller, contract: Contract, manager: Manager) -> None:
         self.manager, self.contract = manager, contract
-        self.memory = _memory(machine, contract)
+        self.memory = memory(controller, contract)
         extended = replace(contract, variables=(*contract.variables, self.memory))
         self.universe = Universe((extended,), manager)
         self.symbols = self.universe.symbols
-        relation = _Relation(self, machine)
-        self.first, self.moves = relation.first(), relation.moves()
+        done = relation(controller, self.symbols, self.memory)
+        self.first, self.moves = done.first, done.later
         assumed = self.universe.system(contract.assumptions)
         self.allowed = assumed.parts
         self.starts = assumed.init
-        parts = (*assumed.parts, self.moves)
-        self.runs = Runs(FairSystem(self.symbols, self.starts & self.first, parts, ()))
-        self.fair = Runs(
-            FairSystem(self.symbols, self.starts & self.first, parts, assumed.fairness)
-        )
+        parts = (*assumed.parts, *self.moves)
+        starts = Product(manager, self.first, ())(self.starts)
+        self.runs = Runs(FairSystem(self.symbols, starts, parts, ()))
+        self.fair = Runs(FairSystem(self.symbols, starts, parts, assumed.fairness))
 
     def faults(self) -> Iterator[Fault]:
         """All of them, one for each conjunct at most."""
@@ -67,11 +66,11 @@ class _Check:
                 yield from _SEARCHES[conjunct.class_](self, conjunct, broken)
 
     def _unanswered(self) -> Iterator[Fault]:
-        own = self.symbols.all_bits(self._own())
-        if self.starts & ~self.manager.exist(own, self.first) != self.manager.false:
+        answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
+        if self.starts & ~answered(self.manager.true) != self.manager.false:
             yield Fault(None)
         after = self.symbols.all_bits(self._own(), primed=True)
-        stuck = ~self.manager.exist(after, self.moves)
+        stuck = ~Product(self.manager, self.moves, after)(self.manager.true)
         yield from self._stepping(None, stuck, self.allowed)
 
     def _own(self) -> tuple[str, ...]:
@@ -117,41 +116,3 @@ _SEARCHES = {
     Class.SAFETY: _Check.in_a_step,
     Class.LIVENESS: _Check.for_ever,
 }
-
-
-class _Relation:
-    """The moves of a machine as diagrams."""
-
-    def __init__(self, check: _Check, machine: Machine) -> None:
-        self._check, self._machine = check, machine
-
-    def first(self) -> Node:
-        """What the machine makes of the first inputs."""
-        return self._any(self._machine.moves[0], primed=False)
-
-    def moves(self) -> Node:
-        """All later steps."""
-        check, found = self._check, self._check.manager.false
-        for state, moves in enumerate(self._machine.moves):
-            here = check.symbols.encode({check.memory.name: state})
-            found = found | (here & self._any(moves, primed=True))
-        return found
-
-    def _any(self, moves: Mapping[Row, Move], primed: bool) -> Node:
-        found = self._check.manager.false
-        for row, move in moves.items():
-            found = found | self._check.symbols.encode(self._values(row, move), primed)
-        return found
-
-    def _values(self, row: Row, move: Move) -> dict[str, Literal]:
-        machine, memory = self._machine, self._check.memory
-        names = [one.name for one in (*machine.inputs, *machine.outputs, memory)]
-        return dict(zip(names, (*row, *move.output, move.state), strict=True))
-
-
-def _memory(machine: Machine, contract: Contract) -> Variable:
-    """A variable for the state of the machine, with a name that the contract does not have."""
-    name = "state"
-    while any(one.name == name for one in contract.variables):
-        name += "_"
-    return Variable(name, Owner.SYSTEM, IntegerDomain(0, machine.size - 1))
