@@ -1,4 +1,4 @@
-"""Functions of dataclasses; ``__init__`` alone is compiled, once for a number of fields."""
+"""Functions of dataclasses: compiled for a number of fields, then given the names of a class."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, Field, FrozenInstanceError
@@ -9,7 +9,18 @@ from types import CodeType, FunctionType
 from typing import Any, NoReturn
 
 _Fields = Mapping[str, "Field[Any]"]
-_Taking = Callable[[Any], tuple[object, ...]]
+_BODY = {
+    "__eq__": """\
+def __eq__(self, other):
+    if other.__class__ is self.__class__:
+        return ({own}) == ({others})
+    return NotImplemented
+""",
+    "__hash__": """\
+def __hash__(self):
+    return hash(({own}))
+""",
+}
 
 
 def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
@@ -23,8 +34,8 @@ def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
     if eq:
         compared = tuple(name for name, one in fields.items() if one.compare)
         hashed = tuple(name for name, one in fields.items() if _is_hashed(one))
-        made["__eq__"] = _equality(_taking(compared))
-        made["__hash__"] = _hashing(_taking(hashed)) if frozen else None
+        made["__eq__"] = _when_called("__eq__", compared)
+        made["__hash__"] = _when_called("__hash__", hashed) if frozen else None
     return made
 
 
@@ -78,28 +89,31 @@ def _init_code(number: int, made: frozenset[int], frozen: bool, post: bool) -> C
     return _compiled("\n".join(lines), "__init__")
 
 
-def _taking(names: Sequence[str]) -> _Taking:
-    """What takes the values of some fields, as a tuple."""
-    if not names:
-        return lambda _: ()
-    take = attrgetter(*names)
-    return take if len(names) > 1 else lambda value: (take(value),)
+def _when_called(function: str, names: Sequence[str]) -> Callable[..., object]:
+    """A function that makes the right one in its own place: most values are never compared."""
+
+    def first(self: object, *others: object) -> object:
+        made = _named(function, names)
+        for cls in type(self).__mro__:
+            if cls.__dict__.get(function) is first:
+                setattr(cls, function, made)
+        return made(self, *others)
+
+    return first
 
 
-def _equality(take: _Taking) -> Callable[[object, object], bool]:
-    def __eq__(self: object, other: object) -> bool:  # noqa: N807
-        if other.__class__ is self.__class__:
-            return take(self) == take(other)
-        return NotImplemented
-
-    return __eq__
+def _named(function: str, names: Sequence[str]) -> FunctionType:
+    code = _renamed(_code(function, len(names)), names)
+    return FunctionType(code, {"hash": hash, "NotImplemented": NotImplemented})
 
 
-def _hashing(take: _Taking) -> Callable[[object], int]:
-    def __hash__(self: object) -> int:  # noqa: N807
-        return hash(take(self))
-
-    return __hash__
+@cache
+def _code(function: str, number: int) -> CodeType:
+    texts = {
+        word: "".join(f"{who}._{at}, " for at in range(number))
+        for word, who in (("own", "self"), ("others", "other"))
+    }
+    return _compiled(_BODY[function].format(**texts), function)
 
 
 def _compiled(source: str, function: str) -> CodeType:
@@ -125,11 +139,11 @@ def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
 
 def _replacement(names: Sequence[str]) -> Callable[..., object]:
     """What Python has from 3.13 on, for ``copy.replace``."""
-    take = _taking(names)
+    get = attrgetter(*names) if len(names) > 1 else None
     places = {name: at for at, name in enumerate(names)}
 
     def __replace__(self: object, /, **changes: object) -> object:  # noqa: N807
-        values = [*take(self)]
+        values = [*get(self)] if get else [getattr(self, name) for name in names]
         for name, value in changes.items():
             if name not in places:
                 raise TypeError(f"{type(self).__qualname__} has no field {name!r}")
