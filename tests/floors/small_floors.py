@@ -1,4 +1,4 @@
-"""Floors for the tests: squares of cells with robots, and the corpus's names for their contracts."""
+"""Floors for the tests: squares of cells with robots; the corpus's names for their contracts."""
 
 import os
 import re

@@ -21,6 +21,7 @@ COMMANDS = (
     "show",
     "diff",
     "format",
+    "robots",
     "simulate",
     "synth",
     "watch",

@@ -8,6 +8,7 @@ from sysmlc.floors.study import WAYS, Grid, Robot
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.mealy import Machine
+from sysmlc.synthesis.table import Table
 
 
 class Memory(NamedTuple):
@@ -35,11 +36,12 @@ class Answer(NamedTuple):
 class Answers:
     """The machine of a robot, each answer looked up once."""
 
-    def __init__(self, machine: Machine, robot: Robot, grid: Grid) -> None:
+    def __init__(self, machine: Machine | Table, robot: Robot, grid: Grid) -> None:
         """Nothing is asked yet. The machine is one of the robot's contract without counters."""
         self._machine, self._robot, self._grid = machine, robot, grid
-        self._registers = tuple(one.name for one in machine.registers)
-        self._outputs = tuple(one.name for one in machine.outputs)
+        known = (*machine.inputs, *machine.outputs)
+        kept = machine.registers if isinstance(machine, Machine) else known
+        self._registers = tuple(one.name for one in kept)
         self._known: dict[tuple[Memory, int, str], Answer | None] = {}
 
     def get(self, memory: Memory, goal: int, way: str = "") -> Answer | None:
@@ -58,13 +60,24 @@ class Answers:
         now: dict[str, Literal] = {words.position(robot): cell, words.target(robot): goal}
         now |= {words.sensor(robot, way): way in ways for way in WAYS}
         try:
-            move = self._machine.taken(memory.state, last, now)
+            outputs, state = _stepped(self._machine, memory.state, last, now)
         except LookupError:
             return None
-        outputs = (value_of(one, last) for one in move.output)
-        now |= dict(zip(self._outputs, outputs, strict=True))
+        now |= outputs
         kept = tuple(now[name] for name in self._registers)
         command = str(now[words.command(robot)])
         there = self._grid.after(cell, command)
         after = cell if there is None else there
-        return Answer(command, Memory(after, goal, cell == goal, move.state, kept))
+        return Answer(command, Memory(after, goal, cell == goal, state, kept))
+
+
+def _stepped(
+    machine: Machine | Table, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
+) -> tuple[Mapping[str, Literal], int]:
+    """The outputs and the next state. Raises LookupError where the machine has no move."""
+    if isinstance(machine, Table):
+        return machine.step(state, last, now)
+    move = machine.taken(state, last, now)
+    names = (one.name for one in machine.outputs)
+    values = (value_of(one, last) for one in move.output)
+    return dict(zip(names, values, strict=True)), move.state

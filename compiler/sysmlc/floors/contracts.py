@@ -20,7 +20,6 @@ def contracts_of(study: Study, travel: Travel | None = None) -> Iterator[Contrac
     yield environment_contract(study)
     for robot in study.robots:
         yield robot_contract(study, robot)
-        if len(study.robots) > 1:
-            yield robot_contract(study, robot, is_alone=False)
+        yield robot_contract(study, robot, is_alone=False)
     if study.targets:
         yield mission_contract(study, travel or shortest(study))

@@ -134,7 +134,10 @@ class _Reading:
         self.fail(rules.NO_NUMBER, place, attribute=attribute, name=block.name, problem=problem)
 
     def _placed(self, grid: Grid, part: Element, is_needed: bool = True) -> _Placed:
+        was_good = self.is_good
         row, column = (self._number(self._type(part), name) for name in ("row", "column"))
+        if self.is_good != was_good:
+            return _Placed(part, None)
         if row is None or column is None:
             if is_needed or (row, column) != (None, None):
                 missing = "row" if row is None else "column"

@@ -56,9 +56,9 @@ class World(Generic[P]):
         ]
         self.done: list[P] = [none] * len(study.targets)
         self.wrong = none
-        """In which runs two robots met, or a machine had no answer."""
-        for number in range(len(self.bodies)):
-            self._answer(number, self._at_goal(number))
+        """In which runs two robots met, one was offered a cell that is taken or offered to another
+        one, or a machine had no answer."""
+        self._answer_all()
 
     # -- one step ------------------------------------------------------------------------------
 
@@ -73,6 +73,11 @@ class World(Generic[P]):
         self._note_reached()
         self._dispatch(idle)
         self._note_reached()
+        self._answer_all()
+
+    def _answer_all(self) -> None:
+        taken = self.taken()
+        self._offered: list[P] = list(taken)
         for number in range(len(self.bodies)):
             self._answer(number, self._resting(number))
 
@@ -190,6 +195,8 @@ class World(Generic[P]):
             return
         body = self.bodies[number]
         step = hop(self.study.grid, known.cell, goal)
+        if step is not None:
+            self._offer(step[1], given)
         answer = self.answers[number].get(known, goal, step[0] if step else "")
         if answer is None:
             self.wrong = self.wrong | given
@@ -197,3 +204,8 @@ class World(Generic[P]):
         body.memory[answer.memory] = body.memory.get(answer.memory, none) | given
         if answer.command in WAYS:
             body.commands[answer.command] = body.commands.get(answer.command, none) | given
+
+    def _offer(self, cell: int, given: P) -> None:
+        """Offer a cell to a robot: one that is free, and offered to no other (C_E)."""
+        self.wrong = self.wrong | (given & self._offered[cell])
+        self._offered[cell] = self._offered[cell] | given

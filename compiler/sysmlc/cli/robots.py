@@ -1,0 +1,140 @@
+"""``sysmlc robots``: robots on a floor, from a model to a mission that is validated."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sysmlc.driver import Compilation
+    from sysmlc.floors.outcome import Outcome
+    from sysmlc.synthesis.decide import Options
+
+
+@click.command(
+    "robots",
+    short_help="Plan missions of robots on a floor, and validate them.",
+    epilog="""\b
+Examples:
+  sysmlc robots hall.sysml
+  sysmlc robots hall.uml -o out
+  sysmlc robots hall.sysml --no-relations
+
+Exit codes: 0 the mission is done from every start, 1 it is not,
+2 the work could not be done.""",
+)
+@options.models(required=True)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Write report, controller, mission contract and a run there.",
+)
+@click.option(
+    "--relations/--no-relations",
+    "has_relations",
+    default=True,
+    help="Decide what the thesis claims of the contracts.  [default: relations]",
+)
+@click.option(
+    "--time-limit",
+    "seconds",
+    type=float,
+    default=10.0,
+    show_default=True,
+    metavar="S",
+    help="CPU seconds for each question about contracts; 0 is no limit.",
+)
+@options.reporting
+@options.reading
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    models: tuple[Path, ...],
+    output: Path | None,
+    has_relations: bool,
+    seconds: float,
+    **given: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Plan the mission of robots on a floor that specialises Floors::Floor in MODEL.
+
+    A controller of the robots is synthesised from their contract, travel times are measured,
+    targets are allocated, and robots and environment are simulated together from every admissible
+    start. Where that fails another allocation is tried; a run shows what happens.
+    """
+    from sysmlc.cli import session
+    from sysmlc.cli.progress import Progress
+    from sysmlc.synthesis import Limits
+    from sysmlc.synthesis.decide import Options
+
+    settings = session.Settings(**given)
+    config = session.load_config(models, settings.config)
+    made = session.compile_unit(models, config, settings)
+    progress = Progress(settings.verbose)
+    chosen = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
+    try:
+        ctx.exit(_studied(made, config.rules, settings, output, has_relations, chosen))
+    except ImportError as problem:
+        session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
+    finally:
+        progress.clear()
+
+
+def _studied(
+    made: "Compilation",
+    rules: Any,  # noqa: ANN401 - as the configuration has them
+    settings: Any,  # noqa: ANN401 - Settings
+    output: Path | None,
+    has_relations: bool,
+    chosen: "Options",
+) -> int:
+    from sysmlc.cli import session
+    from sysmlc.diagnostics import Severity, Sink, Subject
+    from sysmlc.diagnostics.render import make_report
+    from sysmlc.floors.outcome import studied
+    from sysmlc.floors.report import files, summary
+    from sysmlc.floors.study import Study
+
+    def place(origin: str) -> Subject:
+        element = made.graph.get(origin)
+        return Subject() if element is None else made.graph.subject(element)
+
+    sink, code = Sink(rules), made.exit_code()
+    known = made.graph.derived(Study) if code < 2 else ()
+    if not known and not code:
+        session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
+    outcomes = [studied(one, place, sink, chosen, has_relations) for one in known]
+    if output is not None:
+        _write([file for one in outcomes for file in files(one)], output)
+    of_model = session.findings(made, only_errors=not settings.verbose)
+    found = session.named(made.root, make_report(sink, made.sources).findings)
+    session.show([*of_model, *found], settings)
+    for one in outcomes:
+        click.echo(summary(one), err=not session.says_more(settings))
+    has_errors = any(one.severity is Severity.ERROR for one in sink)
+    return max(code, _code(outcomes, has_errors))
+
+
+def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:
+    """0 when every mission is done, 1 when one is not, 2 without a controller."""
+    if any(one.controller.verdict.is_realizable is None for one in outcomes):
+        return 2
+    return int(has_errors or not all(one.is_good for one in outcomes))
+
+
+def _write(files: "Sequence[tuple[str, str]]", out: Path) -> None:
+    """Write the files; ends the process when one cannot be written."""
+    from sysmlc.cli.session import fail
+    from sysmlc.output import write_if_changed
+
+    try:
+        for name, text in files:
+            write_if_changed(out / name, text)
+    except OSError as problem:
+        fail(f"cannot write to '{out}': {problem.strerror}")

@@ -1,0 +1,217 @@
+"""The whole flow of the thesis's figure 4.3: from a study to a mission that is validated."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.floors.allocate import greedy
+from sysmlc.floors.environment import Sharing, environment_contract
+from sysmlc.floors.optimal import Best, best, near
+from sysmlc.floors.relations import Relation, relations
+from sysmlc.floors.schedule import Schedule, in_time
+from sysmlc.floors.story import Moment, lines, story
+from sysmlc.floors.strategy import answers_of, simulated, synthesise
+from sysmlc.floors.study import Study
+from sysmlc.floors.travel import Travel
+from sysmlc.floors.validate import Validation, validate
+from sysmlc.synthesis.decide import Options, Place, decide
+from sysmlc.synthesis.synthesise import Synthesis
+from sysmlc.synthesis.witness import lines as run_lines
+from sysmlc.values import dataclass, replace
+
+MOST_TRIED = 12
+"""Allocations that are validated before it is given up."""
+
+SHARED_CELL = rule(
+    "SM570",
+    "environment-shares-cells",
+    Severity.INFO,
+    "no environment can keep C_E of '{floor}' as the thesis has it: '{one}' and '{other}' are both "
+    "told that a cell is free, and go there; it is offered to one of them",
+    why="Each sensor tells one robot what is free. Two robots next to one free cell may both go "
+    "there, which the environment has promised will not happen.",
+    wrong="sysmlc robots hall.sysml (a floor with two robots)",
+    right="sysmlc robots hall.sysml (a floor with one robot)",
+)
+NOT_VALIDATED = rule(
+    "SM571",
+    "mission-fails",
+    Severity.ERROR,
+    "the mission of '{floor}' fails: {reason}",
+    why="Robots are synthesised as if others were never long in their way, and targets are given "
+    "as if nobody waited. All of it together is simulated from every admissible start.",
+    help="give more time, move obstacles or starts, or order fewer targets; the run shows one that "
+    "fails, of the last allocation that was tried",
+    wrong="sysmlc robots corridor.sysml (two robots that cannot pass one another)",
+    right="sysmlc robots hall.sysml (a floor on which they can)",
+)
+NO_ALLOCATION = rule(
+    "SM572",
+    "no-allocation",
+    Severity.ERROR,
+    "no allocation of the targets of '{floor}' keeps the deadlines: {reason}",
+    why="Before anything is simulated together, the time that each robot travels alone must do.",
+    help="give more time, another robot, or fewer targets",
+    wrong="sysmlc robots hall.sysml (a deadline of 2 steps)",
+    right="sysmlc robots hall.sysml (a deadline of 60 steps)",
+)
+NO_RELATION = rule(
+    "SM573",
+    "claim-does-not-hold",
+    Severity.INFO,
+    "on '{floor}' it does not hold that {claim}: {reason}",
+    why="The thesis claims relations between its contracts so that what is composed of robots, "
+    "environment and mission keeps the contract of the whole. Where one does not hold, the "
+    "simulation of all starts stands in for it.",
+    wrong="sysmlc robots hall.sysml (C_R assumes that all ways are free)",
+    right="sysmlc robots hall.sysml --no-relations",
+)
+NOT_DECIDED = rule(
+    "SM574",
+    "study-not-decided",
+    Severity.INFO,
+    "on '{floor}' it is not decided whether {claim}: {reason}",
+    why="Contracts of all robots together grow with the number of cells to the power of robots.",
+    help="give more time (--time-limit), or study a smaller floor",
+    wrong="sysmlc robots large.sysml --time-limit 1",
+    right="sysmlc robots large.sysml --time-limit 600",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """An allocation and what its simulation came to."""
+
+    schedule: Schedule
+    validation: Validation
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a study."""
+
+    study: Study
+    controller: Synthesis
+    travel: Travel
+    relations: tuple[Relation, ...] = ()
+    greedy: Schedule | None = None
+    best: Best | None = None
+    tried: tuple[Tried, ...] = ()
+    run: tuple[Moment, ...] = ()
+    """The longest mission of the allocation that does, from one start; or a failing one."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether the mission is done from every admissible start."""
+        if self.controller.machine is None:
+            return False
+        return not self.study.targets or any(one.validation.is_good for one in self.tried)
+
+    @property
+    def chosen(self) -> Tried | None:
+        """The allocation that was validated, else the last one that was tried."""
+        good = (one for one in self.tried if one.validation.is_good)
+        return next(good, self.tried[-1] if self.tried else None)
+
+
+def studied(
+    study: Study, place: Place, sink: Sink, options: Options, has_relations: bool = True
+) -> Outcome:
+    """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported."""
+    controller = synthesise(study, place, sink, options)
+    answers = answers_of(study, controller)
+    made = Outcome(study, controller, simulated(study, answers))
+    if has_relations:
+        made = replace(made, relations=tuple(_related(made, place, sink, options)))
+    return allocated(made, place, sink)
+
+
+def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = None) -> Outcome:
+    """Allocate and validate; another study with new targets on the same floor does with this one's
+    robots: nothing is synthesised again (thesis 4.6.1)."""
+    study = study or made.study
+    answers = answers_of(study, made.controller)
+    if not answers or not study.targets:
+        return replace(made, study=study)
+    travel = simulated(study, answers)
+    first, found = greedy(study, travel), best(study, travel)
+    made = replace(made, study=study, travel=travel, greedy=first, best=found, tried=(), run=())
+    if found is None or not in_time(study, found.schedule):
+        _report_no_allocation(study, found, place, sink)
+        return made
+    tried: list[Tried] = []
+    for schedule in islice(_candidates(study, travel, found.schedule, first), MOST_TRIED):
+        tried.append(Tried(schedule, validate(study, schedule.allocation, answers)))
+        if tried[-1].validation.is_good:
+            break
+    last = tried[-1]
+    starts = last.validation.failed or _some_start(study)
+    told = story(study, last.schedule.allocation, answers, starts, last.validation.steps)
+    made = replace(made, tried=tuple(tried), run=told)
+    if not last.validation.is_good:
+        _report_failure(made, place, sink)
+    return made
+
+
+def _candidates(
+    study: Study, travel: Travel, found: Schedule, first: Schedule | None
+) -> Iterator[Schedule]:
+    """The best allocation, the thesis's, and those near the best one, the better ones first."""
+    known: set[object] = set()
+    others = sorted(near(study, travel, found), key=lambda one: (one.cost, one.allocation))
+    for one in (found, *(() if first is None else (first,)), *others):
+        if one.allocation not in known and in_time(study, one):
+            known.add(one.allocation)
+            yield one
+
+
+def _some_start(study: Study) -> tuple[int, ...]:
+    """One admissible start: where robots are drawn, the others in the first cells that are left."""
+    taken = {one.start for one in study.robots}
+    left = (cell for cell in study.grid.cells if cell not in taken)
+    return tuple(next(left) if one.start is None else one.start for one in study.robots)
+
+
+def _related(made: Outcome, place: Place, sink: Sink, options: Options) -> Iterator[Relation]:
+    study = made.study
+    _arbitrated(study, place, sink, options)
+    for one in relations(study, made.travel, options):
+        facts = {"floor": study.component, "claim": one.claim, "reason": one.reason}
+        subject = place(study.origin)
+        if one.holds is None:
+            sink.report(NOT_DECIDED, subject, notes=(), help="", **facts)
+        elif not one.holds:
+            notes = tuple(run_lines(one.trace, one.broken)) if one.trace else ()
+            sink.report(NO_RELATION, subject, notes=notes, help="", **facts)
+        yield one
+
+
+def _arbitrated(study: Study, place: Place, sink: Sink, options: Options) -> None:
+    """Decide C_E as the thesis has it, for two of the robots: with more it is no easier."""
+    if len(study.robots) < 2:
+        return
+    two = replace(study, robots=tuple(replace(one, start=None) for one in study.robots[:2]))
+    literal = environment_contract(two, Sharing.LITERAL)
+    verdict = decide(literal, place, Sink(), options)
+    if verdict.is_realizable is False:
+        one, other = (robot.name for robot in two.robots)
+        sink.report(SHARED_CELL, place(study.origin), floor=study.component, one=one, other=other)
+
+
+def _report_no_allocation(study: Study, found: Best | None, place: Place, sink: Sink) -> None:
+    reason = "some target is out of the reach of all robots, or waits for what is never done"
+    if found is not None:
+        reason = f"the best one that was found takes {found.schedule.duration} steps"
+    sink.report(NO_ALLOCATION, place(study.origin), floor=study.component, reason=reason)
+
+
+def _report_failure(made: Outcome, place: Place, sink: Sink) -> None:
+    study, last = made.study, made.tried[-1]
+    late = last.validation.late
+    reason = "robots meet, or one has no answer"
+    if late is not None:
+        name = study.targets[late].name
+        reason = f"'{name}' is not reached within {last.validation.steps} steps"
+    subject = place(study.targets[late].origin if late is not None else study.origin)
+    notes = tuple(lines(study, made.run))
+    sink.report(NOT_VALIDATED, subject, notes=notes, floor=study.component, reason=reason)

@@ -1,0 +1,81 @@
+"""The controller of the robots: one machine, synthesised from their contract, for all of them."""
+
+from collections.abc import Sequence
+
+from sysmlc.diagnostics import Sink
+from sysmlc.floors.answers import Answers
+from sysmlc.floors.planes import Runs
+from sysmlc.floors.robot import robot_contract
+from sysmlc.floors.study import Robot, Study
+from sysmlc.floors.travel import START, Travel, starts_of
+from sysmlc.floors.world import World
+from sysmlc.logic.contract import Contract
+from sysmlc.synthesis.decide import Options, Place
+from sysmlc.synthesis.synthesise import Synthesis, synthesised
+from sysmlc.values import replace
+
+ANY = Robot("robot", "robot")
+"""A robot that stands for all: they differ in names and starts, which no machine depends on."""
+
+
+def controller_contract(study: Study) -> Contract:
+    """What the machine keeps: the contract of a robot among others, from any start.
+
+    Step counters are left to the simulation: as states of the machine they would multiply them.
+    """
+    alone = replace(study, robots=(ANY,), counted=0)
+    made = robot_contract(alone, ANY, is_alone=False)
+    return replace(made, component=f"{study.component}.robot", origin=study.origin)
+
+
+def synthesise(study: Study, place: Place, sink: Sink, options: Options) -> Synthesis:
+    """Make the machine; what fails is reported."""
+    return synthesised(controller_contract(study), place, sink, options)
+
+
+def answers_of(study: Study, made: Synthesis) -> tuple[Answers, ...]:
+    """The answers of all robots; nothing without a machine."""
+    if made.machine is None:
+        return ()
+    return (Answers(made.machine, ANY, study.grid),) * len(study.robots)
+
+
+def simulated(study: Study, answers: Sequence[Answers]) -> Travel:
+    """The steps that robots travel, measured for each way with nobody else on the floor."""
+    found: dict[tuple[int, int, int], int] = {}
+    if not answers:
+        return Travel(found)
+    for goal, target in enumerate(study.targets):
+        known = _times(study, target.cell, answers[0])
+        for robot in range(len(study.robots)):
+            places = {START: starts_of(study, robot)}
+            places |= {at: (one.cell,) for at, one in enumerate(study.targets) if at != goal}
+            for place, cells in places.items():
+                times = [known[cell] for cell in cells if cell in known]
+                if times and len(times) == len(cells):
+                    found[robot, place, goal] = max(times)
+    return Travel(found, is_simulated=True)
+
+
+def _times(study: Study, cell: int, answers: Answers) -> dict[int, int]:
+    """The steps to a cell from each other one from which a robot gets there."""
+    target = replace(study.targets[0], cell=cell)
+    alone = replace(study, robots=(ANY,), targets=(target,), orders=(), deadline=None)
+    cells = study.grid.cells
+    starts = [0] * study.grid.size
+    for at, start in enumerate(cells):
+        starts[start] = 1 << at
+    runs = Runs((1 << len(cells)) - 1, 0, (tuple(starts),))
+    world = World(alone, ((0,),), (answers,), runs)
+    found: dict[int, int] = {}
+    for time in range(1, 4 * study.grid.size):
+        world.step()
+        arrived = world.done[0] & ~world.wrong
+        found |= {
+            start: time
+            for at, start in enumerate(cells)
+            if arrived >> at & 1 and start not in found
+        }
+        if len(found) == len(cells):
+            break
+    return found
