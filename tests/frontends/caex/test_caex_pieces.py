@@ -6,8 +6,8 @@ import re
 import pytest
 
 from sysmlc.frontends.caex import columns, pieces, wellformed
-from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.vocabulary import FOLDED
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import parse, parser
 

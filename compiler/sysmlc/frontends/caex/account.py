@@ -11,11 +11,10 @@ from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.frontends.caex import fitting, measures, repeats, rules, strange
-from sysmlc.frontends.caex.columns import FOLDED
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
-from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, STANDARD
+from sysmlc.frontends.caex.vocabulary import FOLDED, LIBRARIES, ROLE_REFERENCES, STANDARD
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.caex import ORDER

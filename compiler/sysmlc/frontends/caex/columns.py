@@ -3,34 +3,10 @@
 The handlers here are called for every element of a file: they do the least that they can.
 """
 
-from typing import TYPE_CHECKING
-
+from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.vocabulary import STRUCTURE
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser, too_deep
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.caex.document import Document
-
-FOLDED = ("Description", "Version", "DefaultValue", "Value")
-"""Elements that are kept as text of their parent: a third of the elements of a plant."""
-
-STRUCTURE = frozenset(
-    {
-        "Attribute",
-        "AttributeType",
-        "ExternalInterface",
-        "InterfaceClass",
-        "InternalElement",
-        "InternalLink",
-        "RefSemantic",
-        "RoleClass",
-        "RoleRequirements",
-        "SupportedRoleClass",
-        "SystemUnitClass",
-    }
-)
-"""Elements that hold no text of their own."""
-
 
 _Texts = dict[int, str]
 
@@ -49,7 +25,7 @@ class _Kinds(dict[str, _Texts | None]):
         return kind
 
 
-def fill(document: "Document", source: Source) -> None:
+def fill(document: Document, source: Source) -> None:
     """Fill the columns. Raises SourceError."""
     made = parser()
     try:
@@ -66,7 +42,7 @@ def fill(document: "Document", source: Source) -> None:
         made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
 
 
-def _handle(document: "Document", source: Source, made: Parser) -> set[str]:
+def _handle(document: Document, source: Source, made: Parser) -> set[str]:
     """Set the handlers; the set that they return will hold what stands where CAEX has no text.
 
     Text is kept only where CAEX has some: between the other elements stand line ends.

@@ -3,9 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Place, Verdict
-from sysmlc.frontends.caex import columns, pieces
-from sysmlc.frontends.caex.columns import FOLDED
-from sysmlc.sources import Source, SourceError
+from sysmlc.frontends.caex.vocabulary import FOLDED
 
 
 class Node:
@@ -195,16 +193,3 @@ class Document:
     def forget(self) -> None:
         """Let the nodes go: document and nodes know each other."""
         self._nodes.clear()
-
-
-def read(source: Source, is_built_in: bool = False) -> Document:
-    """The columns of the file. Raises SourceError."""
-    document = Document(source.name, is_built_in)
-    if not pieces.fill(document, source):
-        columns.fill(document, source)
-    if document.tags[0] != "CAEXFile":
-        raise SourceError("its root element is no CAEXFile", source.name, 0)
-    rows = len(document.tags)
-    document.verdicts = [None] * rows
-    document.elements = [""] * rows
-    return document

@@ -11,10 +11,9 @@ columns for every file.
 import re
 from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.caex import wellformed
-from sysmlc.frontends.caex.columns import FOLDED
+from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.tags import (
     NotPlainError,
     Reader,
@@ -23,11 +22,9 @@ from sysmlc.frontends.caex.tags import (
     text_in,
     without_references,
 )
+from sysmlc.frontends.caex.vocabulary import FOLDED
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.encoding import codec
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.caex.document import Document
 
 _CHUNK = 1 << 16
 """Bytes that are cut at once: what comes of them stays near the processor."""
@@ -43,7 +40,7 @@ _SILENT, _LISTENING, _FOLDED = range(3)
 """Whether text is listened to for the row's own; or it was taken for a column of its parent."""
 
 
-def fill(document: "Document", source: Source) -> bool:
+def fill(document: Document, source: Source) -> bool:
     """Fill the columns of a document without rows; False when the file is not plain."""
     start = _start_of(source.data)
     if start is None:
@@ -92,7 +89,7 @@ def _begins_too_deep(data: bytes, start: int) -> bool:
     return data.count(b"<", start, min(ends, default=len(data))) > DEFAULT_LIMITS.depth
 
 
-def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
+def _start(document: Document, piece: str, values: dict[str, str]) -> None:
     """Fill the row of the root."""
     found = _ROOT.fullmatch(piece)
     if found is None:
@@ -108,7 +105,7 @@ def _start(document: "Document", piece: str, values: dict[str, str]) -> None:
         document.texts[""][0] = without_references(found[1])
 
 
-def _cut(document: "Document", chunks: Iterator[list[str]], root: dict[str, str]) -> bool:
+def _cut(document: Document, chunks: Iterator[list[str]], root: dict[str, str]) -> bool:
     """Fill the columns with the rows of a text; False when it has to be checked by a parser."""
     reader, ends = Reader(), wellformed.Ends()
     pieces = chain.from_iterable(chunks)
@@ -122,9 +119,7 @@ def _cut(document: "Document", chunks: Iterator[list[str]], root: dict[str, str]
     return reader.is_sound and ends.is_sound and wellformed.is_end(last)
 
 
-def _fill(
-    document: "Document", pieces: Iterator[str], reader: Reader, ended: wellformed.Ends
-) -> str:
+def _fill(document: Document, pieces: Iterator[str], reader: Reader, ended: wellformed.Ends) -> str:
     """Fill the columns with the rows behind the root; the last piece.
 
     Text is listened to as in ``columns``: from a start tag that may have some to the next tag.

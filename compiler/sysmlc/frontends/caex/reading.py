@@ -15,8 +15,9 @@ from sysmlc.frontends.caex import (
     rules,
 )
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Document, read
+from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.links import Links
+from sysmlc.frontends.caex.opening import read
 from sysmlc.frontends.caex.plain import Plain
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.standard import Standard

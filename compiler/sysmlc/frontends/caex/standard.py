@@ -5,7 +5,7 @@ from functools import cache
 from sysmlc import resources
 from sysmlc.frontends.caex import features, libraries
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import read
+from sysmlc.frontends.caex.opening import read
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
 from sysmlc.sources import Source
 

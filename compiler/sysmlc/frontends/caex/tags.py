@@ -4,7 +4,7 @@ import re
 from sys import intern
 from typing import TypeVar
 
-from sysmlc.frontends.caex.columns import STRUCTURE
+from sysmlc.frontends.caex.vocabulary import STRUCTURE
 
 Tag = tuple[str, dict[str, str], bool, bool, int]
 """Local name; attributes; whether it has an end tag of its own; whether text of the element is

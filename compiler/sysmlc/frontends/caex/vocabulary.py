@@ -59,3 +59,23 @@ BASE_ATTRIBUTE = ("AutomationMLBaseAttributeTypeLib",)
 
 DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
 """Values of the attribute Direction of an interface (any case)."""
+
+FOLDED = ("Description", "Version", "DefaultValue", "Value")
+"""Elements that are kept as text of their parent: a third of the elements of a plant."""
+
+STRUCTURE = frozenset(
+    {
+        "Attribute",
+        "AttributeType",
+        "ExternalInterface",
+        "InterfaceClass",
+        "InternalElement",
+        "InternalLink",
+        "RefSemantic",
+        "RoleClass",
+        "RoleRequirements",
+        "SupportedRoleClass",
+        "SystemUnitClass",
+    }
+)
+"""Elements that hold no text of their own."""
