@@ -1,10 +1,15 @@
-"""Rules about contracts that are decided (SM530 to SM549; lints have codes of theirs)."""
+"""Rules about contracts that are decided (SM530 to SM549, SM575 to SM579; lints have others)."""
 
 from sysmlc.diagnostics import Severity, rule
 
 _LAMP = (
     '{"variables": {"go": {"owner": "env", "type": "bool"},'
     ' "lamp": {"owner": "sys", "type": "bool"}},\n '
+)
+_TIMER = (
+    '{"variables": {"due": {"owner": "env", "type": "bool"},'
+    ' "late": {"owner": "sys", "type": [0, 3]}},\n '
+    '"guarantees": {"safety": ["due & late!=3 -> late\'=late+1", "due & late=3 -> late\'=3"'
 )
 
 OUTSIDE_GR1 = rule(
@@ -51,4 +56,26 @@ NO_MACHINE = rule(
     help="give more (--time-limit, --memory, --nodes), make ranges smaller, or synthesise parts",
     wrong="sysmlc synth wide.contract.json -o out --nodes 1000",
     right="sysmlc synth wide.contract.json -o out",
+)
+NO_TIMER = rule(
+    "SM575",
+    "deadline-of-no-number",
+    Severity.ERROR,
+    "the contract of '{component}' has no number '{name}' whose bound could be looked for",
+    why="A deadline is the smallest bound that can be promised of a number with a range, a timer "
+    "that counts the steps since something was asked for.",
+    help="name one of its numbers: {numbers}",
+    wrong=_TIMER + "]}}",
+    right=_TIMER + ', "!due -> late\'=0"]}, "assumptions": {"safety": ["due -> !due\'"]}}',
+)
+NO_DEADLINE = rule(
+    "SM576",
+    "no-deadline",
+    Severity.ERROR,
+    "'{component}' can promise no bound of {timers}: {most} is too little, too",
+    why="Whatever the system does, the environment can make the timer run to the end of its range. "
+    "That a timer stops there promises nothing.",
+    help="give the timer a wider range, or assume more of the environment",
+    wrong=_TIMER + "]}}",
+    right=_TIMER + ', "!due -> late\'=0"]}, "assumptions": {"safety": ["due -> !due\'"]}}',
 )
