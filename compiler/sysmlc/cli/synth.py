@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
+    from sysmlc.synthesis.deadline import Deadline
     from sysmlc.synthesis.decide import Options, Verdict
     from sysmlc.synthesis.synthesise import Synthesis
 
@@ -27,6 +28,7 @@ Examples:
   sysmlc synth gate.contract.json -o out
   sysmlc synth plant.uml -c Plant::Gate --realizable
   sysmlc synth plant.uml -c Plant::Gate --play
+  sysmlc synth cart.gr1.json --deadline timer
   sysmlc synth amba.tlsf --realizable --time-limit 60
 
 Exit codes: 0 realizable, 1 unrealizable, 2 outside GR(1), beyond a limit,
@@ -51,6 +53,13 @@ no machine, or the work could not be done.""",
     help="Form of the machines that are written.",
 )
 @click.option("--play", "is_played", is_flag=True, help="Play against what defeats the contract.")
+@click.option(
+    "--deadline",
+    "timers",
+    multiple=True,
+    metavar="VAR",
+    help="Find the smallest bound of this number that can be promised (of several, one for all).",
+)
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
 @click.option(
     "--engine",
@@ -72,6 +81,7 @@ def command(
     output: Path | None,
     machine_form: str,
     is_played: bool,
+    timers: tuple[str, ...],
     language: str,
     engine: str | None,
     seconds: float,
@@ -93,8 +103,9 @@ def command(
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decide import Options
 
-    if is_decided_only and output is not None:
-        session.fail("--realizable decides only: nothing can be written to a folder")
+    if (is_decided_only or timers) and output is not None:
+        word = "--deadline" if timers else "--realizable"
+        session.fail(f"{word} decides only: nothing can be written to a folder")
     settings = session.Settings(**given)
     config = session.load_config((file,), settings.config)
     progress = Progress(settings.verbose)
@@ -104,6 +115,8 @@ def command(
     try:
         if is_played:
             ctx.exit(_played(read, component, options))
+        if timers:
+            ctx.exit(_bounded(read, component, timers, settings, options))
         if is_decided_only:
             ctx.exit(_decided(read, component, settings, options))
         ctx.exit(_synthesised(read, component, settings, options, output, machine_form))
@@ -119,6 +132,21 @@ def _decided(read: "ContractFile", component: str, settings: "Settings", options
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
     return _told(read, settings, [decide(one, read.place, read.sink, options) for one in contracts])
+
+
+def _bounded(
+    read: "ContractFile",
+    component: str,
+    timers: tuple[str, ...],
+    settings: "Settings",
+    options: "Options",
+) -> int:
+    from sysmlc.cli.contract_files import chosen
+    from sysmlc.synthesis.deadline import deadline
+
+    contracts = chosen(read.contracts, component) if read.contracts else ()
+    made = [deadline(one, timers, read.place, read.sink, options) for one in contracts]
+    return _told(read, settings, made)
 
 
 def _synthesised(
@@ -178,7 +206,7 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
 
 
 def _told(
-    read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis]"
+    read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis | Deadline]"
 ) -> int:
     """Show findings and verdicts; the exit code."""
     from sysmlc.cli.contract_files import show

@@ -1,0 +1,32 @@
+"""``sysmlc synth --deadline``: the smallest bound that a contract can promise."""
+
+from sysmlc.synthesis import rules
+
+
+def test_the_bound_is_found(here):
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late")
+    assert [made.exit_code, made.stdout] == [0, "lamp: late <= 1 can be promised, no less\n"]
+
+
+def test_that_there_is_none_is_an_error_and_exit_code_1(here):
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late")
+    assert made.exit_code == 1
+    assert made.stdout == "lamp: late: no bound below the end of the range can be promised\n"
+    assert "error[SM576 no-deadline]: 'lamp' can promise no bound of late: 2 is" in made.stderr
+
+
+def test_an_unknown_timer_is_an_error_and_exit_code_2(here):
+    here.write("lamp.gr1.json", rules.NO_TIMER.wrong)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "due")
+    assert [made.exit_code, made.stdout] == [2, "lamp: due: not decided\n"]
+    assert "error[SM575 deadline-of-no-number]" in made.stderr
+    assert "help: name one of its numbers: late" in made.stderr
+
+
+def test_nothing_is_written_with_a_deadline(here):
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late", "-o", "out")
+    assert made.exit_code == 2
+    assert "--deadline decides only" in made.stderr
