@@ -30,6 +30,8 @@ def _payload(book: Book, scope: Entry, element: Element) -> str:
 def _typed(book: Book, scope: Entry, element: Element) -> str:
     target = book.graph.target(element, Edge.TYPED_BY)
     other = book.plan.entry(target)
+    if element.subkind == "call" and (target is None or other is None):
+        return f"call : {book.ours(scope, 'Call')}"
     if target is None or other is None:
         return f"any : {book.library(scope, 'Base::Anything')}"
     if other.shape.is_definition:

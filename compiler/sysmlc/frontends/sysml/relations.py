@@ -56,7 +56,15 @@ def dependency(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.refer(Edge.CLIENT, made, client)
     for supplier in suppliers:
         low.refer(Edge.SUPPLIER, made, supplier)
-    low.lower_all(nodes.body_of(node), made)
+    low.lower_all((one for one in nodes.body_of(node) if not _is_refinement(one)), made)
+
+
+def _is_refinement(node: Node) -> bool:
+    """Whether it is the keyword of the standard library that the role of a dependency says."""
+    target = nodes.target(node, "FeatureTyping") if _is_prefix(node) else None
+    if target is None or target.owner is None:
+        return False
+    return (target.owner.name, target.name) == ("ModelingMetadata", _REFINEMENT)
 
 
 def keywords(node: Node) -> list[str]:
