@@ -9,6 +9,9 @@ from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
+from sysmlc.synthesis import Limits
+from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.together import check_together
 
 pipeline.load("contracts")
 PANEL = """
@@ -215,3 +218,68 @@ def test_a_block_is_a_composite_only_when_there_is_something_to_compare():
         )[0]
         == {}
     )
+
+
+LOADER = """
+package Cells {
+    private import DIN8580::*;
+    part def Loader :> Picking, Placing, Moving {
+        action pick : Pick;
+        action place : Place { out attribute :>> grip := false; }
+        action move : CoordinatedMove {
+            constant attribute :>> columns = 3;
+            constant attribute :>> rows = 3;
+        }
+        bind pick.command = command;
+        bind place.command = command;
+        bind move.command = command;
+        bind pick.executed = pick_executed;
+        bind place.executed = place_executed;
+        bind move.moved = move_executed;
+        bind place.executed = pick.placed;
+        bind pick.executed = place.picked;
+        bind move.grip = grip;
+    }
+}
+"""
+
+
+def test_a_machine_is_its_actions_and_its_coordinator():
+    found, codes = composites(LOADER)
+    loader = found["Cells::Loader"]
+    assert codes == []
+    assert [one.name for one in loader.parts] == ["pick", "place", "move", "Loader"]
+    assert loader.whole is None
+    pick, place, move, coordinator = (variables(one.contract) for one in loader.parts)
+    assert pick[:4] == ["env command", "sys pick_executed", "env pick.pos", "env place_executed"]
+    assert "env pick_executed" in place
+    assert "env grip" in move
+    assert "sys move_executed" in move
+    assert {"sys command", "sys grip", "env move_executed"} <= set(coordinator)
+    assert "!place.grip" in formulas(loader.parts[1].contract.guarantees)
+
+
+def opened(text):
+    """What the parts assume that nothing around them promises."""
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink)
+    graph, sink = reading.graph, Sink()
+    made = list(compose(graph, graph.derived(Contract), sink))
+    list(check_together(made, lambda it: graph.subject(graph[it]), sink, Options("", Limits())))
+    return [one.message for one in sink if one.rule.code == "SM595"]
+
+
+def test_every_assumption_of_the_actions_and_the_coordinator_is_promised():
+    assert opened(LOADER) == []
+
+
+@pytest.mark.parametrize(
+    ("missing", "assumed"),
+    [
+        (" { out attribute :>> grip := false; }", "what is picked was free"),
+        (" bind move.grip = grip", "a piece is held"),
+    ],
+)
+def test_what_is_missing_in_a_machine_is_told(missing, assumed):
+    found = opened(LOADER.replace(missing, ";" if "{" in missing else " "))
+    assert any(assumed in message for message in found)

@@ -131,6 +131,9 @@ def _owners(graph: Graph, one: Element) -> Iterator[Element]:
     """What has it as a part or an action, what specialises it, whose behaviour it is."""
     yield from graph.sources(one, Edge.SPECIALIZES)
     yield from graph.sources(one, Edge.CLASSIFIER_BEHAVIOR)
+    owner = graph.owner(one) if one.kind is Kind.ACTIVITY else None
+    if owner is not None:
+        yield owner
     usages = [one] if one.kind is Kind.OPERATION else graph.sources(one, Edge.TYPED_BY)
     for usage in usages:
         if usage.kind in (Kind.PROPERTY, Kind.PORT, Kind.OPERATION):

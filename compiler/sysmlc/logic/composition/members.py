@@ -12,6 +12,7 @@ from sysmlc.logic.machines.reader import context_classifier
 from sysmlc.logic.requirements.statements import definition_of
 from sysmlc.values import dataclass
 
+_ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 Slot = tuple[str, str]
 """A feature (dotted name) of a usage (path)."""
 
@@ -72,7 +73,7 @@ def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
         contract = contract_of(block, usage)
         if contract is not None:
             block.members.append(_member(block, usage.path, usage.element, contract, variables))
-        elif usage.type_.id not in around and usage.element.kind is not Kind.OPERATION:
+        elif usage.type_.id not in around and usage.element.kind not in _ACTIONS:
             _open(block, usage.type_, usage.path, around | {usage.type_.id})
     for side, other in links(block.graph, element, path):
         for one in side:
@@ -82,7 +83,7 @@ def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
 
 def contract_of(block: Block, usage: Usage) -> Contract | None:
     """What a usage promises: what requirements demand of its type, else what its behaviour is."""
-    if usage.element.kind is Kind.OPERATION:
+    if usage.element.kind in _ACTIONS:
         return block.contracts.get(usage.element.id)
     return required(block, usage.type_) or behaviour(block, usage.type_)
 
@@ -109,7 +110,7 @@ def _member(
     block: Block, path: str, element: Element, contract: Contract, variables: Mapping[str, str]
 ) -> Member:
     origin = block.graph[contract.origin]
-    if origin.kind in query.BEHAVIORS:
+    if origin.kind in query.BEHAVIORS and origin is not element:
         around = context_classifier(block.graph, origin)
         variables = variables_of(block.graph, around, origin)
     elif origin.kind is Kind.OPERATION:

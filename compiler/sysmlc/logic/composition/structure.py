@@ -8,6 +8,7 @@ from sysmlc.values import dataclass
 ITSELF = ""
 """Path of the block whose parts are looked at."""
 _MOST_COPIES = 16
+_STEPS = (Kind.ACTION, Kind.CONTROL, Kind.CONTROL_FLOW, Kind.STRUCTURED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +30,12 @@ class End:
 
 def usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
     """The parts of a block and the actions that it performs, each copy of a part by itself."""
-    for one in query.features(graph, block):
-        type_ = _type(graph, one)
-        if type_ is not None and one.name:
+    seen: set[str] = set()
+    for one in (*query.features(graph, block), *graph.owned(block)):
+        is_action = one.kind is Kind.ACTIVITY
+        type_ = _type(graph, one) if is_action or one.kind in query.FEATURES else None
+        if type_ is not None and one.name and one.id not in seen:
+            seen.add(one.id)
             for name in _copies(one):
                 yield Usage(joined(path, name), one, type_)
 
@@ -39,8 +43,16 @@ def usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
 def _type(graph: Graph, feature: Element) -> Element | None:
     if feature.kind is Kind.OPERATION:
         return graph.target(feature, Edge.METHOD)
+    if feature.kind is Kind.ACTIVITY:
+        return feature if _is_usage(graph, feature) else None
     is_part = feature.role == "part" and feature.kind in (Kind.PROPERTY, Kind.PORT)
     return query.type_of(graph, feature) if is_part else None
+
+
+def _is_usage(graph: Graph, action: Element) -> bool:
+    """Whether an action says no more than what it specialises: it has no steps of its own."""
+    is_special = bool(graph.targets(action, Edge.SPECIALIZES))
+    return is_special and not any(one.kind in _STEPS for one in graph.owned(action))
 
 
 def _copies(part: Element) -> Iterator[str]:

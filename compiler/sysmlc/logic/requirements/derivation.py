@@ -16,6 +16,7 @@ from sysmlc.logic.requirements.statements import (
     Statement,
     component_of,
     definition_of,
+    redefining,
     statements,
 )
 
@@ -33,7 +34,8 @@ def derive(
     for subject, said in statements(graph):
         component = component_of(graph, subject)
         behaviour = known.get(component)
-        scope = scope_of(context_of(graph, definition_of(graph, subject), assumed), behaviour)
+        definition, within = definition_of(graph, subject), redefining(graph, subject)
+        scope = scope_of(context_of(graph, definition, assumed, within), behaviour)
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
         for statement in said:

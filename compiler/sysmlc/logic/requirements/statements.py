@@ -80,3 +80,11 @@ def component_of(graph: Graph, subject: Element) -> str:
     if owner is None:
         return query.component_name(graph, subject)
     return f"{query.component_name(graph, owner)}.{subject.name}"
+
+
+def redefining(graph: Graph, subject: Element) -> Element | None:
+    """An operation that gives parameters of its method other values; None when it does not."""
+    if subject.kind is not Kind.OPERATION:
+        return None
+    own = query.parameters(graph, subject)
+    return subject if any(graph.targets(one, Edge.REDEFINES) for one in own) else None
