@@ -53,9 +53,9 @@ def plant(data, name="plant.aml"):
     return graph
 
 
-def read_back(graph):
+def read_back(graph, sink=None):
     text, _ = document(graph, Sink())
-    again, sink = Graph(), Sink()
+    again, sink = Graph(), Sink() if sink is None else sink
     FRONT.read([Source("model.sysml", text.encode())], again, sink, Coverage())
     pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
     return again
@@ -69,6 +69,13 @@ def differences(graph):
 def test_data_types_units_versions_and_the_ends_of_links_come_back(unit):
     """``MTS`` is another spelling of m/s, which the text keeps; SI has no m³/h."""
     assert differences(plant(PLANT.replace("{unit}", unit).encode())) == []
+
+
+def test_ids_of_interfaces_that_are_read_are_not_told_as_lost():
+    sink = Sink()
+    again = read_back(plant(PLANT.replace("{unit}", "m/s").encode()), sink)
+    assert [one for one in again if one.attrs.get("interface_ids")]
+    assert [found.message for found in sink if found.rule.code == "SM481"] == []
 
 
 def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():

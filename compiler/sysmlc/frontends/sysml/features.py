@@ -147,6 +147,7 @@ def is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
     given = annotations.said(node, "AutomationML", "id")
     target = nodes.target(node, "Redefinition")
     low.repeated.add(id(node))
+    low.skipped.update(map(id, nodes.body_of(node)))
     low.later(lambda: _interface_id(low, made, target, given))
     return True
 
