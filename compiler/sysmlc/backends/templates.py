@@ -34,14 +34,18 @@ def environment(folder: str, templates: Path | None) -> "Environment":
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 
-    from sysmlc.backends.compiled_templates import CompiledTemplates
-
     ours = resources.path("templates", folder)
-    folders = [ours] if templates is None else [templates / folder, templates, ours]
+    if templates is not None:
+        loaders = [FileSystemLoader(one) for one in (templates / folder, templates, ours)]
+        return Environment(
+            loader=ChoiceLoader(loaders), undefined=StrictUndefined, **_OPTIONS, auto_reload=True
+        )
+    from sysmlc.backends.compiled_templates import CompiledTemplates, WholeTemplates
+
     return Environment(
-        loader=ChoiceLoader([FileSystemLoader(one) for one in folders]),
+        loader=WholeTemplates(ours),
         undefined=StrictUndefined,
         **_OPTIONS,
-        auto_reload=templates is not None,
-        bytecode_cache=CompiledTemplates(_OPTIONS) if templates is None else None,
+        auto_reload=False,
+        bytecode_cache=CompiledTemplates(_OPTIONS),
     )
