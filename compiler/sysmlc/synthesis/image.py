@@ -64,12 +64,12 @@ def _clustered(
     clusters = [
         _Cluster(node, support)
         for support, members in groups.items()
-        for node in _joined(manager, members, limit)
+        for node in joined(manager, members, limit)
     ]
     return _absorbed(clusters, limit)
 
 
-def _joined(manager: Manager, members: Sequence[Node], limit: int) -> list[Node]:
+def joined(manager: Manager, members: Sequence[Node], limit: int = CLUSTER) -> list[Node]:
     """The conjunction, in pieces when it is large; neighbours are joined first."""
     found: list[Node] = []
     for member in members:
@@ -79,7 +79,7 @@ def _joined(manager: Manager, members: Sequence[Node], limit: int) -> list[Node]
         else:
             found.append(member)
     if 1 < len(found) < len(members):
-        return _joined(manager, found, limit)
+        return joined(manager, found, limit)
     return found
 
 

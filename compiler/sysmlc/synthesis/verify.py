@@ -12,7 +12,7 @@ from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem, Universe
 from sysmlc.synthesis.algebra.traces import lasso, one, shortest
 from sysmlc.synthesis.closed import Controller, memory, relation
-from sysmlc.synthesis.image import Product
+from sysmlc.synthesis.image import Product, joined
 from sysmlc.synthesis.manager import Manager, Node
 from sysmlc.values import dataclass, replace
 
@@ -60,10 +60,25 @@ class _Check:
     def faults(self) -> Iterator[Fault]:
         """All of them, one for each conjunct at most."""
         yield from self._unanswered()
-        for conjunct in self.contract.guarantees:
+        if self._keeps_each_step():
+            guarantees = [one for one in self.contract.guarantees if one.class_ is not Class.SAFETY]
+        else:
+            guarantees = list(self.contract.guarantees)
+        for conjunct in guarantees:
             broken = ~self.universe.node(conjunct)
             if broken != self.manager.false:
                 yield from _SEARCHES[conjunct.class_](self, conjunct, broken)
+
+    def _keeps_each_step(self) -> bool:
+        """Whether all guarantees for every step are kept; they are looked at together."""
+        safe = [one for one in self.contract.guarantees if one.class_ is Class.SAFETY]
+        steps = Product(self.manager, self.runs.system.parts, self.runs.next_bits)
+        groups = joined(self.manager, [self.universe.node(one) for one in safe])
+        return all(
+            steps(self.runs.reachable & ~kept) == self.manager.false
+            for kept in groups
+            if kept != self.manager.true
+        )
 
     def _unanswered(self) -> Iterator[Fault]:
         answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
@@ -96,8 +111,10 @@ class _Check:
 
     def for_ever(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
         """A fair run that from some step on breaks it for ever."""
-        fair = self.fair
-        found = fair.fair_within(self.runs.reachable & broken)
+        fair, within = self.fair, self.runs.reachable & broken
+        if not has_fair_run(fair, within):
+            return
+        found = fair.fair_within(within)
         if found != self.manager.false:
             trace = lasso(fair, shortest(fair, found), found)
             yield Fault(conjunct, tuple(map(self._shown, trace.steps)), trace.loop)
@@ -109,6 +126,33 @@ class _Check:
 
     def _shown(self, values: Mapping[str, Literal]) -> dict[str, Literal]:
         return {name: value for name, value in values.items() if name != self.memory.name}
+
+
+def has_fair_run(runs: Runs, within: Node) -> bool:
+    """Whether some fair run goes on for ever without leaving states.
+
+    Emerson and Lei's fixpoint, backwards: what is left has a past of its own without end, which in
+    a finite system is a cycle. What a controller does next is computed faster than what led there.
+    """
+    found = within
+    while found != runs.manager.false:
+        fewer = found
+        for goal in runs.goals:
+            fewer = fewer & runs.after(_led_to(runs, fewer, fewer & goal))
+        if fewer == found:
+            return True
+        found = fewer
+        runs.manager.check("looking for runs that never come to a goal")
+    return False
+
+
+def _led_to(runs: Runs, within: Node, start: Node) -> Node:
+    """The states that steps from the start lead to without leaving others."""
+    found = front = start
+    while front != runs.manager.false:
+        front = within & runs.after(front) & ~found
+        found = found | front
+    return found
 
 
 _SEARCHES = {
