@@ -16,7 +16,7 @@ class Statement:
     requirement: Element
     is_assumed: bool
     is_open: bool = False
-    """SysML v1 does not say which it is: what is about inputs alone is assumed."""
+    """Nothing says which it is, in SysML v1: what is about inputs alone is assumed."""
 
 
 def statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
@@ -37,12 +37,26 @@ def statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
 def _conditions(graph: Graph, requirement: Element) -> Iterator[Statement]:
     """Its own constraints and those of the requirements that it specialises."""
     family = (requirement, *query.generals(graph, requirement))
-    is_open = not any(graph.targets(one, Edge.SUBJECT) for one in family)
+    is_open = not any(_tells_apart(graph, one) for one in family)
     for one in family:
         assumed = {constraint.id for constraint in graph.targets(one, Edge.ASSUMES)}
         for constraint in graph.owned(one):
             if constraint.kind is Kind.CONSTRAINT and constraint.attrs.get("body"):
-                yield Statement(constraint, requirement, constraint.id in assumed, is_open)
+                is_assumed = constraint.id in assumed or _says_assume(constraint)
+                yield Statement(constraint, requirement, is_assumed, is_open)
+
+
+def _tells_apart(graph: Graph, requirement: Element) -> bool:
+    """Whether a requirement says what of it is assumed."""
+    has_subject = bool(graph.targets(requirement, Edge.SUBJECT))
+    return has_subject or any(
+        one.kind is Kind.CONSTRAINT and _says_assume(one) for one in graph.owned(requirement)
+    )
+
+
+def _says_assume(constraint: Element) -> bool:
+    """Whether a constraint of SysML v1, which has no assumptions, says it by its language."""
+    return "assume" in str(constraint.attrs.get("language", "")).lower()
 
 
 def _subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
