@@ -49,10 +49,10 @@ def test_the_plant_of_four_tasks_without_a_line_of_its_overlay(tmp_path, line, c
     assert {one.rule.code for one in found} == {"SM469", code}
 
 
-def test_there_are_five_examples():
+def test_there_are_six_examples():
     names = [path.parent.name for path in (PLANT, *EXAMPLES, TEXT)]
     assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe", "lego-recipe-v2"]
-    assert {path.name for path in (ROOT / "examples").iterdir()} == set(names)
+    assert {path.name for path in (ROOT / "examples").iterdir()} == {*names, "robots"}
 
 
 @pytest.mark.parametrize("model", [*EXAMPLES, PLANT, TEXT], ids=lambda path: path.parent.name)

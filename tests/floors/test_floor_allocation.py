@@ -76,7 +76,7 @@ def test_what_is_near_an_allocation_is_done_in_order_too():
 
 
 def test_costs_are_counted_once_and_robots_go_on_from_where_they_are():
-    """As Algorithm 1 is printed the second robot would get the second target: paths begin at starts."""
+    """As it is printed, paths begin at starts: the second robot would get the second target."""
     study = floor(4, 0, 15, targets=(1, 2, 3), rows=4)
     assert greedy(study, shortest(study)).allocation == ((0, 1), (2,))
     line = floor(9, 0, 8, targets=(2, 3), rows=1)

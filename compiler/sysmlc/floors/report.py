@@ -93,7 +93,7 @@ def _controller(outcome: Outcome) -> Iterator[str]:
     if machine is None:
         yield "There is none."
     elif isinstance(machine, Machine):
-        size = f"{_count(machine.size, 'state')} and {_count(machine.count, 'move')}"
+        size = _count(machine.size, "state")
         yield f"A machine of {size}, the same for all robots, checked against their contract."
     else:
         nodes = _count(len(machine.nodes), "decision node")

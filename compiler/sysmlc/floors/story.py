@@ -111,7 +111,8 @@ def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str
         for robot, goal in enumerate(moment.goals):
             if step and goal is not None and moments[step - 1].goals[robot] != goal:
                 arrow = "->" if goal in goals else "-[dashed]>"
-                found.append(f"m {arrow} r{robot} : {plain(cell_text(study, goal))}")
+                where = cell_text(study, goal).strip("'")
+                found.append(f"m {arrow} r{robot} : {plain(where)}")
         for robot, target in moment.reached:
             found.append(f"r{robot} --> m : {plain(study.targets[target].name)} reached")
         if found:

@@ -1,0 +1,124 @@
+"""Robots on floors of the thesis's sizes (tables 4.1 and 4.2): synthesis, validation, states.
+
+``python benchmarks/robots.py`` draws targets with a seed; robots may start anywhere, and every start
+is simulated. CPU seconds. Beside ours stand the thesis's, measured on another machine, for contracts
+with counters, and with the environment synthesised too; its code generation is not ours yet.
+``--slower N`` tells how much slower this machine is than the one for which the budget was set.
+"""
+
+import argparse
+import random
+import sys
+import time
+
+from measuring import Report
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.floors.outcome import Outcome, allocated
+from sysmlc.floors.robot import robot_contract
+from sysmlc.floors.strategy import ANY, answers_of, simulated, synthesise
+from sysmlc.floors.study import Grid, Robot, Study, Target
+from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.synthesise import Synthesis, synthesised
+from sysmlc.values import replace
+
+ROWS = {
+    (3, 2, 2): ("20.36", "6.85", "0.01"),
+    (4, 1, 2): ("31.48", "20.54", "0.03"),
+    (4, 2, 2): ("3924.18", "33.13", "0.02"),
+    (4, 2, 4): ("3924.22", "33.17", "0.04"),
+    (4, 2, 6): ("3924.60", "33.17", "0.07"),
+    (4, 3, 6): ("6 h", "71.59", "0.04"),
+    (4, 4, 6): ("6 h", "184.35", "0.05"),
+    (4, 4, 8): ("6 h", "184.35", "0.06"),
+    (5, 2, 4): ("6 h", "55.54", "0.08"),
+    (5, 2, 6): ("6 h", "55.54", "0.09"),
+    (5, 3, 9): ("6 h", "142.79", "0.12"),
+    (5, 4, 12): ("6 h", "238.83", "0.17"),
+    (5, 5, 15): ("6 h", "312.64", "0.21"),
+}
+"""Side, robots, targets: the thesis's seconds for the whole, the parts, and the validation."""
+STATES = {3: "2,664", 4: "8,432"}
+BUDGET = 30.0
+MOST_STATES = 4
+SLOWER = 1.37
+SEED = 1
+
+
+def main() -> int:
+    """Print a line for each floor; 1 when a budget is missed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--slower", type=float, default=SLOWER)
+    parser.add_argument("--rows", type=int, default=len(ROWS), metavar="N", help="the first N only")
+    given = parser.parse_args()
+    report = Report()
+    report.calibration()
+    for side in sorted({side for side, _, _ in ROWS}):
+        _states(report, side)
+    for size in list(ROWS)[: given.rows]:
+        _measured(report, size, given.slower)
+    return 0 if report.is_good else 1
+
+
+def floor(side: int, robots: int, targets: int) -> Study:
+    """A square floor with robots that start anywhere and targets that are drawn."""
+    cells = random.Random(SEED).sample(range(side * side), targets)
+    return Study(
+        f"floor_{side * side}x{robots}x{targets}",
+        "",
+        Grid(side, side),
+        tuple(Robot(f"r{at}", f"r{at}") for at in range(robots)),
+        tuple(Target(f"t{at}", f"t{at}", cell) for at, cell in enumerate(cells)),
+    )
+
+
+def _states(report: Report, side: int) -> None:
+    """Table 4.2: the machine of C_R, alone on the floor."""
+    study = replace(floor(side, 1, 1), robots=(ANY,))
+    made = synthesised(robot_contract(study, ANY), _nowhere, Sink(), Options())
+    text = f"{made.machine.size if made.machine else 'no'} states (thesis {STATES.get(side, '-')})"
+    name = f"robot on {side * side} cells"
+    if side == 3 and made.machine is not None:
+        report.budget(name, text, made.machine.size, MOST_STATES, "states")
+    else:
+        report.line(name, text)
+
+
+def _measured(report: Report, size: tuple[int, int, int], slower: float) -> None:
+    """Table 4.1: a floor from its contract to a validated mission."""
+    study = floor(*size)
+    start = time.process_time()
+    controller = synthesise(study, _nowhere, Sink(), Options())
+    synthesis = time.process_time() - start
+    made, seconds = _validated(study, controller)
+    whole, parts, validation = ROWS[size]
+    tried = made.chosen
+    starts = f"{tried.validation.starts:,} starts" if tried else "no allocation"
+    steps = f"{tried.validation.steps} steps" if tried and made.is_good else "FAILS"
+    name = f"{size[0] ** 2} cells x {size[1]} x {size[2]}"
+    text = (
+        f"synthesis {synthesis:6.2f} s (thesis {parts}, whole {whole}), "
+        f"validation {seconds:6.2f} s ({validation}): {starts}, {steps}"
+    )
+    report.is_good &= made.is_good
+    if size == (5, 5, 15):
+        report.line(name, text)
+        total = synthesis + seconds
+        report.scaled("the largest, in all", f"{total:.2f} s", total, BUDGET, slower, "s")
+    else:
+        report.line(name, text)
+
+
+def _validated(study: Study, controller: Synthesis) -> tuple[Outcome, float]:
+    start = time.process_time()
+    travel = simulated(study, answers_of(study, controller))
+    made = allocated(Outcome(study, controller, travel), _nowhere, Sink())
+    return made, time.process_time() - start
+
+
+def _nowhere(origin: str) -> Subject:
+    return Subject()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

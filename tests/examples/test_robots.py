@@ -1,0 +1,64 @@
+"""The hall of robots in both notations: its mission is validated, its outputs were read."""
+
+from examples.compiling import ROOT, compile_example, findings, outputs
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.floors.outcome import studied
+from sysmlc.floors.report import files
+from sysmlc.floors.study import Study
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis.decide import Options, decide
+
+MODELS = [ROOT / "examples" / "robots" / name for name in ("hall.sysml", "hall.uml")]
+
+
+def study_of(model):
+    (study,) = compile_example(model, "ir").graph.derived(Study)
+    return study
+
+
+def test_the_mission_is_done_as_the_report_says(golden):
+    study = study_of(MODELS[0])
+    sink = Sink()
+    outcome = studied(study, lambda origin: Subject(), sink, Options(), has_relations=False)
+    assert outcome.is_good
+    assert list(sink) == []
+    made = dict(files(outcome))
+    kept = {path: text for path, text in made.items() if path.endswith((".md", ".seq.puml"))}
+    golden.check("examples/robots", kept | {"files.txt": "".join(f"{one}\n" for one in made)})
+
+
+def test_all_its_contracts_can_be_kept():
+    contracts = compile_example(MODELS[0], "ir").graph.derived(Contract)
+    verdicts = {
+        one.component.removeprefix("Warehouse::"): decide(
+            one, lambda origin: Subject(), Sink(), Options()
+        ).is_realizable
+        for one in contracts
+    }
+    assert sorted(verdicts) == [
+        "Hall",
+        "Hall.environment",
+        "Hall.mission",
+        "Hall.r1",
+        "Hall.r1.shared",
+        "Hall.r2",
+        "Hall.r2.shared",
+    ]
+    assert set(verdicts.values()) == {True}
+
+
+def test_both_notations_have_the_same_contracts_and_no_findings():
+    said = []
+    for model in MODELS:
+        made = compile_example(model)
+        assert findings(made) == ""
+        assert "contracts/Warehouse.Hall.md" in outputs(made)
+        said.append(
+            [
+                (one.component, [print_formula(part.formula) for part in side])
+                for one in made.graph.derived(Contract)
+                for side in (one.assumptions, one.guarantees)
+            ]
+        )
+    assert said[0] == said[1]
