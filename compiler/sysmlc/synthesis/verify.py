@@ -72,13 +72,27 @@ class _Check:
     def _keeps_each_step(self) -> bool:
         """Whether all guarantees for every step are kept; they are looked at together."""
         safe = [one for one in self.contract.guarantees if one.class_ is Class.SAFETY]
-        steps = Product(self.manager, self.runs.system.parts, self.runs.next_bits)
-        groups = joined(self.manager, [self.universe.node(one) for one in safe])
-        return all(
-            steps(self.runs.reachable & ~kept) == self.manager.false
-            for kept in groups
-            if kept != self.manager.true
-        )
+        later = self.runs.after(self.runs.reachable)
+        about_two: list[Node] = []
+        for node in map(self.universe.node, safe):
+            is_now, is_later = (
+                self.manager.support(node).isdisjoint(bits)
+                for bits in (self.runs.next_bits, self.runs.bits)
+            )
+            if is_later and self.manager.support(node):
+                if not later <= self.symbols.unprime(node):
+                    return False
+            elif not (is_now and self.runs.reachable <= node):
+                about_two.append(node)
+        groups = joined(self.manager, about_two)
+        return not any(self._is_possible(~kept, self.runs.system.parts) for kept in groups)
+
+    def _is_possible(self, step: Node, parts: Iterable[Node]) -> bool:
+        """Whether a step by all parts from what is reached is one of these."""
+        if step == self.manager.false:
+            return False
+        found = Product(self.manager, [*parts, step], self.runs.bits)
+        return found(self.runs.reachable) != self.manager.false
 
     def _unanswered(self) -> Iterator[Fault]:
         answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
@@ -105,6 +119,9 @@ class _Check:
     def _stepping(
         self, conjunct: Conjunct | None, broken: Node, parts: Iterable[Node]
     ) -> Iterator[Fault]:
+        parts = tuple(parts)
+        if not self._is_possible(broken, parts):
+            return
         found = Product(self.manager, parts, self.runs.next_bits)(self.runs.reachable & broken)
         if found != self.manager.false:
             yield self._fault(conjunct, shortest(self.runs, found))
