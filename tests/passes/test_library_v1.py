@@ -6,9 +6,12 @@ from xml.etree import ElementTree
 import pytest
 from library_v1 import FOLDER, LIBRARIES
 
+from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis.check import check
+from sysmlc.synthesis.decide import Options
 
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
 ACTIONS = {
@@ -105,3 +108,39 @@ def test_the_library_alone_is_clean_and_has_no_contracts_but_of_its_operations(l
     made = compile_model(Request((FOLDER / f"{library}.uml",)))
     assert [one for one in made.diagnostics if one.severity in ("error", "warning")] == []
     assert not [one for one in made.graph.derived(Contract) if "ing" not in one.component]
+
+
+OPERATIONS = ("Clamping", "Dismantling", "Embedding", "Emptying", "Screwing", "Shifting")
+"""What the thesis makes of elementary actions (5.2.1)."""
+
+
+def checked(file):
+    """Verdicts of a model's contracts, and what is suspicious in them."""
+    made, sink = compile_model(Request((file,))), Sink()
+    graph = made.graph
+    found = graph.derived(Contract)
+    results = check(found, found, lambda origin: graph.subject(graph[origin]), sink, Options())
+    verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
+    return verdicts, [f"{one.rule.code} {one.message}" for one in sink]
+
+
+def test_operations_made_of_actions_can_be_kept_and_nothing_in_them_is_suspicious():
+    verdicts, findings = checked(FOLDER / "DIN8580.uml")
+    assert verdicts == {f"DIN8580::{name}": True for name in OPERATIONS}
+    assert findings == []
+
+
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_actions_and_machines_can_be_kept_and_nothing_in_them_is_suspicious(library, tmp_path):
+    path = tmp_path / "cell.sysml"
+    text = model_v2(library).replace("action move : Move;", SMALL)
+    path.write_text(text, encoding="utf-8")
+    verdicts, findings = checked(path)
+    assert len(verdicts) == len(ACTIONS[library]) + bool(MACHINES[library])
+    assert set(verdicts.values()) == {True}
+    assert findings == []
+
+
+SMALL = (
+    "action move : Move { constant attribute :>> columns = 3; constant attribute :>> rows = 3; }"
+)
