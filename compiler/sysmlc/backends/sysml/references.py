@@ -61,6 +61,11 @@ def meant(plan: Plan, space: Entry, name: str) -> Entry | None:
             for member in sorted(one.members, key=_is_behaviour):
                 if member.element is not None and member.element.name:
                     found.setdefault(member.element.name, member)
+        # What a model in SysML v2 says has the names of its text, which metadata takes back.
+        for one in (space, *_generals(plan, space)):
+            for member in one.members:
+                if member.element is not None and member.name:
+                    found.setdefault(member.name, member)
         space.meant = found
     return space.meant.get(name)
 
