@@ -77,7 +77,12 @@ def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) 
         return None
     from sysmlc.driver.restoring import restored
 
-    return restored(cache, on, opened, request)
+    found = restored(cache, on, opened, request)
+    if found is None:
+        return None
+    outcome, recorded = found
+    keep(cache, on, opened, outcome, STILL, recorded)
+    return outcome
 
 
 def _adapted(

@@ -29,16 +29,19 @@ class Move:
 
     def byte(self, at: int) -> int:
         """Where a byte went; -1 stays -1. Raises LostError."""
-        return self._new.byte(self._character(self._old.character(at))) if at >= 0 else at
+        return self._new.byte(self.character(self._old.character(at))) if at >= 0 else at
 
     def line(self, line: int, column: int) -> tuple[int, int]:
         """Line and column, in characters from 1, to which a character went. Raises LostError."""
-        at = self._character(self._old.lines[line - 1] + column - 1)
+        at = self.character(self._old.lines[line - 1] + column - 1)
         moved = bisect_right(self._new.lines, at)
         return moved, at - self._new.lines[moved - 1] + 1
 
-    def _character(self, at: int) -> int:
-        """The start of a text stands for all of it, unless a word begins there."""
+    def character(self, at: int) -> int:
+        """Where a character went. Raises LostError.
+
+        The start of a text stands for all of it, unless a word begins there.
+        """
         first = self._old.words[0][0], self._new.words[0][0]
         if at == 0 and first != (0, 0):
             if first[0] == 0:

@@ -1,6 +1,6 @@
 """Parts of a compilation done again, on the graph of that time with other values."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from sysmlc.backends.base import EmitOptions, InputFile
@@ -10,12 +10,12 @@ from sysmlc.driver import registry
 from sysmlc.driver.compilation import Request
 from sysmlc.driver.recording import Recorded, digest_of_findings, made
 from sysmlc.ir import AttrValue, Graph
-from sysmlc.ir.reads import Value
-from sysmlc.ir.rows import graph_of
+from sysmlc.ir.reads import Reads, Value
+from sysmlc.ir.rows import Row, graph_of
 from sysmlc.output import Output
 from sysmlc.passes.base import InParts, Pass
 from sysmlc.passes.pipeline import DERIVING, NAMES
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _T = TypeVar("_T")
 _PASS, _EMIT = "pass", "emit"
@@ -53,11 +53,12 @@ def restated(
     changed: Mapping[Value, AttrValue],
     request: Request,
     inputs: tuple[InputFile, ...],
-) -> dict[str, str]:
+) -> tuple[dict[str, str], Recorded]:
     """The texts of files, by path, that may be others when attributes have other values.
 
-    ``inputs`` are what files of that time name. Raises LostError, also when findings, the paths
-    of files or their traces would be others.
+    ``inputs`` are what files of that time name. With them comes what would be recorded now: who
+    did not run again has the same questions. Raises LostError, also when findings, the paths of
+    files or their traces would be others.
     """
     readers = {_reader(who) for value in changed for who in known.readers[value]}
     if any(who.what not in (_PASS, _EMIT) for who in readers):
@@ -70,7 +71,8 @@ def restated(
     again.give(changed)
     after = [again.derived(one) for one in parts]
     differ = {one.whole for one, old, new in zip(parts, before, after, strict=True) if old != new}
-    return dict(again.files(readers.difference(parts) | differ))
+    texts = dict(again.files(readers.difference(parts) | differ))
+    return texts, again.recorded(changed)
 
 
 class _Partial(Graph):
@@ -101,6 +103,9 @@ class _Again:
         self._options = EmitOptions(request.templates, inputs, _nowhere, request.diagrams)
         self._graph = _Partial()
         graph_of(known.graph, self._graph)
+        self._reads = self._graph.reads = Reads()
+        for literal in known.literals:
+            self._reads.watch(self._graph[literal.id], literal)
         self._stored = {module: {*map(_reader, by)} for module, by in known.stored.items()}
         self._used = {module: {*map(_reader, by)} for module, by in known.used.items()}
         self._done: set[Reader] = set()
@@ -109,6 +114,20 @@ class _Again:
         """Set the attributes."""
         for (id, key), value in changed.items():
             self._graph.set(self._graph[id], **{key: value})
+        self._reads.rewritten.clear()
+
+    def recorded(self, changed: Mapping[Value, AttrValue]) -> Recorded:
+        """What is known of the graph with these values: who asked before, and who did now."""
+        known, now = self._known, self._reads
+        if now.rewritten:
+            raise LostError
+        return replace(
+            known,
+            graph=(_with(known.graph[0], changed), known.graph[1]),
+            readers=_joined(known.readers, now.readers),
+            stored=_joined(known.stored, now.stored),
+            used=_joined(known.used, now.used),
+        )
 
     def derived(self, who: Reader) -> tuple[object, str]:
         """What a pass derives for one element, and a digest of what it reports."""
@@ -116,6 +135,7 @@ class _Again:
         if not isinstance(step, InParts) or element is None:
             raise LostError
         self._expect(who)
+        self._reads.reader = f"{who.what} {who.name} {who.part}"
         sink, heard = _listening()
         found = step.part(self._graph, element, sink)
         return found, digest_of_findings(heard)
@@ -147,6 +167,7 @@ class _Again:
         self._done.add(who)
         step = self._pass(who)
         self._prepare(who)
+        self._reads.reader = f"{who.what} {who.name}"
         sink, heard = _listening()
         step.run(self._graph, sink)
         self._compare(who, heard)
@@ -184,6 +205,7 @@ class _Again:
     def _emitted(self, who: Reader) -> Iterator[tuple[str, str]]:
         """All that a back end writes: the same files with the same traces."""
         self._prepare(who)
+        self._reads.reader = f"{who.what} {who.name}"
         output = Output()
         sink, heard = _listening()
         registry.load_backends([who.name])[0].emit(self._graph, output, sink, self._options)
@@ -200,6 +222,8 @@ class _Again:
         if not isinstance(backend, FilesInParts):
             raise LostError
         self._expect(who)
+        # It says itself at which part it is.
+        self._reads.reader = f"{who.what} {who.name}"
         found = list(backend.part(self._graph, who.part, self._options))
         form, _, id = who.part.partition(" ")
         ours = [made(one) for one in found]
@@ -212,6 +236,23 @@ class _Again:
         if sorted(one.trace for one in ours) != sorted(paths) or len(paths) != len(known):
             raise LostError
         yield from ((paths[one.trace], of.text) for one, of in zip(ours, found, strict=True))
+
+
+def _with(rows: Sequence[Row], changed: Mapping[Value, AttrValue]) -> list[Row]:
+    """Elements with other values."""
+    of: dict[str, dict[str, AttrValue]] = {}
+    for (id, key), value in changed.items():
+        of.setdefault(id, {})[key] = value
+    return [(*one[:-1], one[-1] | of[one[0]]) if one[0] in of else one for one in rows]
+
+
+def _joined(
+    before: Mapping[_T, Iterable[str]], now: Mapping[_T, Iterable[str]]
+) -> dict[_T, tuple[str, ...]]:
+    return {
+        one: tuple(dict.fromkeys([*before.get(one, ()), *now.get(one, ())]))
+        for one in (*before, *(one for one in now if one not in before))
+    }
 
 
 def _listening() -> tuple[Sink, list[Diagnostic]]:

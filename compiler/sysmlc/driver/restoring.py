@@ -40,8 +40,13 @@ def keep_shape(cache: Cache, on: Dependencies, opened: Opened, recorded: Recorde
         cache.put(on.key(shapes), marshal.dumps(entry))  # type: ignore[arg-type]
 
 
-def restored(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
-    """The outcome of an earlier run with what other literals change in it; None if it is lost."""
+def restored(
+    cache: Cache, on: Dependencies, opened: Opened, request: Request
+) -> tuple[Outcome, Recorded] | None:
+    """The outcome of an earlier run with what other literals change in it; None if it is lost.
+
+    With it comes what a compilation would have recorded.
+    """
     shapes = dict(_shapes(opened))
     found = cache.get(on.key(shapes)) if shapes else None
     known = _entry(found) if found else None
@@ -54,7 +59,9 @@ def restored(cache: Cache, on: Dependencies, opened: Opened, request: Request) -
         return None
 
 
-def _restored(known: _Entry, before: Outcome, opened: Opened, request: Request) -> Outcome:
+def _restored(
+    known: _Entry, before: Outcome, opened: Opened, request: Request
+) -> tuple[Outcome, Recorded]:
     changed: dict[Value, AttrValue] = {}
     moves: dict[str, moving.Move] = {}
     sources: list[Source] = []
@@ -62,8 +69,30 @@ def _restored(known: _Entry, before: Outcome, opened: Opened, request: Request) 
         moves[new.name] = moving.Move(frontend, old, new)
         sources.append(new)
         changed |= _values(frontend, old, new, known.recorded)
-    texts = restated(known.recorded, changed, request, before.inputs)
-    return moving.moved(_with(before, texts), moves, sources, known.digests)
+    texts, recorded = restated(known.recorded, changed, request, before.inputs)
+    after = moving.moved(_with(before, texts), moves, sources, known.digests)
+    return after, _moved(recorded, moves)
+
+
+def _moved(recorded: Recorded, moves: Mapping[str, moving.Move]) -> Recorded:
+    """Literals where they are now; elements stay where findings of that time have them."""
+    return replace(
+        recorded,
+        literals=tuple(
+            replace(one, form=_form(one.form, moves[one.file])) if one.file in moves else one
+            for one in recorded.literals
+        ),
+        asked=tuple(
+            (file, moves[file].character(at)) if file in moves else (file, at)
+            for file, at in recorded.asked
+        ),
+    )
+
+
+def _form(form: AttrValue, move: moving.Move) -> AttrValue:
+    if isinstance(form, tuple):
+        return tuple(_form(one, move) for one in form)
+    return move.character(form) if isinstance(form, int) else form
 
 
 def _edited(known: _Entry, opened: Opened) -> Iterator[tuple[Valued, Source, Source]]:

@@ -1,6 +1,6 @@
 """Who asks for which values: recorded for those that are words of a text."""
 
-from collections.abc import ItemsView, Iterator, KeysView, ValuesView
+from collections.abc import ItemsView, Iterator, ValuesView
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Never
 
@@ -18,7 +18,8 @@ Value = tuple[str, str]
 class Literal:
     """An attribute that a file says word for word.
 
-    ``form`` says, for the front end, where in the file and how it becomes the value.
+    ``form`` says, for the front end, how it becomes the value; each number in it is the character
+    of the file at which a literal starts.
     """
 
     file: str
@@ -74,7 +75,10 @@ class Reads:
 
 
 class Watched(dict[str, AttrValue]):
-    """Attributes of an element some of which are watched. Who asks for all asks for each."""
+    """Attributes of an element some of which are watched. Who asks for all asks for each.
+
+    Which attributes there are is no secret: literals are values, not keys.
+    """
 
     __slots__ = ("_id", "_keys", "_reads")
 
@@ -110,20 +114,12 @@ class Watched(dict[str, AttrValue]):
         return super().get(key, default)
 
     def __iter__(self) -> Iterator[str]:
-        self._note(*self._keys)
+        # With this method of its own, ``dict(attrs)`` asks for the values one by one.
         return super().__iter__()
-
-    def keys(self) -> KeysView[str]:  # type: ignore[override]
-        self._note(*self._keys)
-        return super().keys()
 
     def values(self) -> ValuesView[AttrValue]:  # type: ignore[override]
         self._note(*self._keys)
         return super().values()
-
-    def __reversed__(self) -> Iterator[str]:
-        self._note(*self._keys)
-        return super().__reversed__()
 
     def items(self) -> ItemsView[str, AttrValue]:  # type: ignore[override]
         self._note(*self._keys)

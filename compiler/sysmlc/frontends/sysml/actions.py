@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes, statements, values
+from sysmlc.frontends.sysml import annotations, forms, nodes, statements, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.events import trigger
@@ -180,14 +180,21 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
 
 def assign(low: "Lowering", node: Node, owner: Element) -> Element:
     """An assignment: an opaque action with the text of it."""
-    found = statements.statement(node)
+    with low.literals.unnoted():
+        said = _assigned(node)
     made = _start(low, node, owner, "opaque")
-    if found is not None:
-        low.set(made, body=print_statement(found))
+    if said:
+        low.set(made, body=said)
+        low.literals.give(low, made, "body", node, lambda one: forms.text(one, _assigned))
     elif (document := low.document(node)) is not None and node.end > node.start >= 0:
         low.set(made, body=nodes.quoted(node, document.text))
     _inside(low, node, made)
     return made
+
+
+def _assigned(node: Node) -> str:
+    found = statements.statement(node)
+    return "" if found is None else print_statement(found)
 
 
 # -- control -----------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml import forms, nodes, values
 from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -141,16 +141,17 @@ def _instance_of(low: "Lowering", made: Element, definition: Node) -> None:
 
 
 def _tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
-    found = values.constant(value)
-    if isinstance(found, tuple):
-        low.graph.set(made, **{f"tag.{key}": tuple(_tagged(low, one) for one in found)})
-    elif found is not None:
-        low.graph.set(made, **{f"tag.{key}": _tagged(low, found)})
-    else:
-        target = nodes.target(value, "Membership")
-        known = low.element(target)
-        said = known.id if known is not None else values.texts(value, low)
-        low.graph.set(made, **{f"tag.{key}": said})
+    name = f"tag.{key}"
+    with low.literals.unnoted():
+        found = values.constant(value)
+    if found is not None:
+        each = found if isinstance(found, tuple) else (found,)
+        said = tuple(_tagged(low, one) for one in each)
+        low.graph.set(made, **{name: said if isinstance(found, tuple) else said[0]})
+        low.literals.give(low, made, name, value, forms.tag)
+        return
+    known = low.element(nodes.target(value, "Membership"))
+    low.graph.set(made, **{name: known.id if known is not None else values.texts(value, low)})
 
 
 def _tagged(low: "Lowering", value: AttrValue) -> str:

@@ -40,14 +40,16 @@ def constraint(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _body(low: "Lowering", node: Node, made: Element, result: Node) -> None:
-    text = values.texts(result, low)
-    low.set(made, body=f"not ({text})" if node.facts.get("isNegated") else text)
+    if node.facts.get("isNegated"):
+        low.set(made, body=f"not ({values.texts(result, low)})")
+    else:
+        values.say(low, made, "body", result)
 
 
 def result(low: "Lowering", node: Node, owner: Element) -> None:
     """The condition of a constraint definition: a constraint without a name."""
     made = low.add(node, Kind.CONSTRAINT, "", owner)
-    low.later(lambda: low.set(made, body=values.texts(node, low)))
+    low.later(lambda: values.say(low, made, "body", node))
 
 
 def _usage(low: "Lowering", node: Node, owner: Element) -> None:

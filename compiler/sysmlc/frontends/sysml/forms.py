@@ -1,12 +1,16 @@
 """How the literals of an expression become the value of an attribute, without the expression."""
 
+import re
 from collections.abc import Callable, Iterator
 
 from sysmlc.frontends.sysml.nodes import arguments
 from sysmlc.ir import AttrValue
 from sysmlc.language.tree import Node
 
-_NEGATED, _SEQUENCE = "-", ","
+KINDS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
+"""Metaclasses of literals that have a value."""
+_NEGATED, _SEQUENCE, _TAG, _TEXT = "-", ",", "tag", "text"
+_GAP = re.compile('"\ue000(\\d+)\ue001"')
 
 
 def form(node: Node) -> AttrValue:
@@ -38,6 +42,27 @@ def _members(args: list[Node]) -> Iterator[Node]:
     yield from args
 
 
+def tag(node: Node) -> AttrValue:
+    """The same for a tagged value, which is a text: ``("tag", form)``."""
+    return (_TAG, form(node))
+
+
+def text(node: Node, printed: Callable[[Node], str]) -> AttrValue:
+    """The same for the text of an expression: ``("text", piece, place, piece, ...)``."""
+    literals = [one for one in node.walk() if one.kind in KINDS]
+    facts = [one.facts for one in literals]
+    for one in literals:
+        one.facts = {"value": f"\ue000{one.start}\ue001"}
+    try:
+        pieces = _GAP.split(printed(node))
+    finally:
+        for one, own in zip(literals, facts, strict=True):
+            one.facts = own
+    if len(pieces) != 2 * len(literals) + 1:
+        return None
+    return (_TEXT, *(int(one) if at % 2 else one for at, one in enumerate(pieces)))
+
+
 def places(found: AttrValue) -> Iterator[int]:
     """Where the literals of a form start."""
     if isinstance(found, int):
@@ -53,9 +78,13 @@ def value(found: AttrValue, literal: Callable[[int], AttrValue]) -> AttrValue:
         return literal(found)
     if not isinstance(found, tuple):
         return None
+    if found[0] == _TEXT:
+        return _filled(found[1:], literal)
     values = [value(one, literal) for one in found[1:]]
     if found[0] == _SEQUENCE:
         return _sequence(values)
+    if found[0] == _TAG:
+        return _tagged(values[0])
     number = values[0]
     is_number = isinstance(number, int | float) and not isinstance(number, bool)
     return -number if is_number and isinstance(number, int | float) else None
@@ -65,3 +94,28 @@ def _sequence(values: list[AttrValue]) -> AttrValue:
     if None in values:
         return None
     return tuple(one for each in values for one in (each if isinstance(each, tuple) else (each,)))
+
+
+def _filled(pieces: tuple[AttrValue, ...], literal: Callable[[int], AttrValue]) -> str | None:
+    from sysmlc.logic.expressions.expression import print_literal
+
+    said = []
+    for one in pieces:
+        found = literal(one) if isinstance(one, int) else None
+        if isinstance(found, str | int | float):
+            said.append(print_literal(found))
+        elif isinstance(one, str):
+            said.append(one)
+        else:
+            return None
+    return "".join(said)
+
+
+def _tagged(found: AttrValue) -> AttrValue:
+    """As ``annotations`` has it; what may be a qualified name may mean an element."""
+    if isinstance(found, tuple):
+        each = tuple(map(_tagged, found))
+        return None if None in each else each
+    if found is None or "::" in str(found):
+        return None
+    return str(found).lower() if isinstance(found, bool) else str(found)

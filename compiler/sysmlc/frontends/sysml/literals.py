@@ -1,10 +1,10 @@
 """Attributes that are literals of the text, word for word, and literals that mean more."""
 
-from collections.abc import ItemsView, Iterator, KeysView, Sequence, ValuesView
+from collections.abc import Callable, ItemsView, Iterator, KeysView, Sequence, ValuesView
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml.forms import form, value
+from sysmlc.frontends.sysml.forms import KINDS, form, value
 from sysmlc.ir import AttrValue, Element, Graph
 from sysmlc.ir.reads import Literal, Watched
 from sysmlc.language.tree import Document, Fact, Node
@@ -12,7 +12,6 @@ from sysmlc.language.tree import Document, Fact, Node
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-_KINDS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
 Place = tuple[str, int]
 """A file, and the character at which a literal starts."""
 
@@ -31,7 +30,7 @@ class Literals:
         self._files = {id(one.root) for one in documents}
         for document in documents:
             for node in document.root.walk():
-                if node.kind in _KINDS:
+                if node.kind in KINDS:
                     self._watch(node, (document.path, node.start))
 
     def _watch(self, node: Node, place: Place) -> None:
@@ -54,13 +53,25 @@ class Literals:
         finally:
             self._is_noted = True
 
-    def give(self, low: "Lowering", element: Element, key: str, node: Node) -> None:
-        """An attribute was set to the literal that an expression is."""
+    def give(
+        self,
+        low: "Lowering",
+        element: Element,
+        key: str,
+        node: Node,
+        how: Callable[[Node], AttrValue] = form,
+    ) -> None:
+        """An attribute was set to what an expression is, which literals of it decide.
+
+        ``how`` gives the form in which they do.
+        """
         document, reads = low.document(node), low.graph.reads
         if reads is None or document is None or id(document.root) not in self._files:
             return
+        if not any(one.kind in KINDS for one in node.walk()):
+            return
         with self.unnoted():
-            found = form(node)
+            found = how(node)
         known = value(found, lambda at: self._values.get((document.path, at)))
         attrs = element.attrs.plain() if isinstance(element.attrs, Watched) else element.attrs
         if known is not None and repr(known) == repr(attrs.get(key)):
@@ -69,7 +80,7 @@ class Literals:
             list(map(self.note, self._within(document.path, node)))
 
     def _within(self, path: str, node: Node) -> Iterator[Place]:
-        return ((path, one.start) for one in node.walk() if one.kind in _KINDS)
+        return ((path, one.start) for one in node.walk() if one.kind in KINDS)
 
     def finish(self, graph: Graph) -> None:
         """Leave what was given to attributes and asked for by nobody else."""

@@ -30,7 +30,7 @@ def _flow(
     if isinstance(guard, str):
         low.set(made, guard=guard)
     elif guard is not None:
-        low.later(lambda: low.set(made, guard=values.texts(guard, low)))
+        low.later(lambda: values.say(low, made, "guard", guard))
 
 
 def _parts(node: Node) -> tuple[list[Node], list[Node]]:
@@ -181,7 +181,7 @@ def _range_over(low: "Lowering", node: Node, region: Element) -> None:
     held = nodes.held(node, "ParameterMembership")
     collection = next((value for one in held if (value := nodes.value_of(one))), None)
     if collection is not None:
-        low.later(lambda: low.set(region, collection=values.texts(collection, low)))
+        low.later(lambda: values.say(low, region, "collection", collection))
     variable = next((one for one in node.members if one.kind == "ReferenceUsage"), None)
     if variable is None:
         return

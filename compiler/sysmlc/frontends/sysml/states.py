@@ -253,7 +253,7 @@ def transition(
     made = low.add(node, Kind.TRANSITION, name, region, subkind=subkind, **visibility(node))
     guard = guard_of(node)
     if guard is not None:
-        low.later(lambda: low.set(made, guard=values.texts(guard, low)))
+        low.later(lambda: values.say(low, made, "guard", guard))
     target: Node | Reference | None = None
     for one in node.members:
         if one.role == "trigger":

@@ -116,7 +116,7 @@ def _flow(
     if guard is node:
         low.set(made, guard="else")
     elif guard is not None:
-        low.later(lambda: low.set(made, guard=values.texts(guard, low)))
+        low.later(lambda: values.say(low, made, "guard", guard))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.last(lambda: _join(low, made, source, target))
     if is_objects:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import expressions, nodes
+from sysmlc.frontends.sysml import expressions, forms, nodes
 from sysmlc.ir import AttrValue, Edge, Element
 from sysmlc.language.tree import Node
 
@@ -31,9 +31,28 @@ def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
     if target is not None and target.kind == "EnumerationUsage" and known is not None:
         _literal(low, element, key, known)
         return
-    document = low.document(node)
-    written = expressions.text(node, "" if document is None else document.text)
+    with low.literals.unnoted():
+        written = _written(node, low)
     low.graph.set(element, **{key: written, f"{key}_language": ""})
+    low.literals.give(low, element, key, node, _form)
+
+
+def say(low: "Lowering", element: Element, key: str, node: Node) -> None:
+    """Set the attribute ``key`` to a condition, or another expression, as text."""
+    with low.literals.unnoted():
+        said = texts(node, low)
+    low.set(element, **{key: said})
+    low.literals.give(low, element, key, node, _form)
+
+
+def _form(node: Node) -> AttrValue:
+    """How literals become the text of an expression; what is quoted has no form."""
+    return forms.text(node, lambda one: expressions.text(one, " "))
+
+
+def _written(node: Node, low: "Lowering") -> str:
+    document = low.document(node)
+    return expressions.text(node, "" if document is None else document.text)
 
 
 def _literal(low: "Lowering", element: Element, key: str, known: Element) -> None:
@@ -136,5 +155,4 @@ def texts(node: Node | None, low: "Lowering") -> str:
     target = _literal_of(node)
     if target is not None and target.name and not target.name.isidentifier():
         return target.name
-    document = low.document(node)
-    return expressions.text(node, "" if document is None else document.text)
+    return _written(node, low)

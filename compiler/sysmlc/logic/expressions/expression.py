@@ -248,7 +248,7 @@ def _print(expression: Expression, strength: int) -> str:
 def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
     match expression:
         case Literal(value):
-            return _print_literal(value), _POSTFIX
+            return print_literal(value), _POSTFIX
         case Name(path):
             return "::".join(map(_print_name, path)), _POSTFIX
         case Member(base, name):
@@ -283,7 +283,8 @@ def _print_name(name: str) -> str:
     return name if plain else _quoted(name, "'")
 
 
-def _print_literal(value: bool | float | str) -> str:
+def print_literal(value: bool | float | str) -> str:
+    """A literal as expressions write it."""
     if isinstance(value, str):
         return _quoted(value, '"')
     return str(value).lower()
