@@ -1,8 +1,6 @@
 """Our templates, compiled once: their bytecode is kept where Python keeps that of our modules."""
 
-import re
 import sys
-from collections.abc import Callable
 from contextlib import suppress
 from hashlib import sha256
 from importlib.util import cache_from_source
@@ -10,27 +8,9 @@ from pathlib import Path
 from pickle import UnpicklingError
 
 import jinja2
-from jinja2 import Environment, FileSystemLoader
 from jinja2.bccache import Bucket, BytecodeCache
 
 from sysmlc.output import write
-
-_INCLUDE = re.compile(r'\{% include "([^"]+)" %\}\n?')
-"""What includes another template; the end of its line is no text."""
-
-
-class WholeTemplates(FileSystemLoader):
-    """Templates with what they include in its place: to include takes longer than to fill in."""
-
-    def get_source(
-        self, environment: Environment, template: str
-    ) -> tuple[str, str, Callable[[], bool]]:
-        """Text of the template and of all that it includes, and its file."""
-        text, path, is_fresh = super().get_source(environment, template)
-        return _INCLUDE.sub(lambda one: self._text(environment, one[1]), text), path, is_fresh
-
-    def _text(self, environment: Environment, name: str) -> str:
-        return self.get_source(environment, name)[0]
 
 
 class CompiledTemplates(BytecodeCache):

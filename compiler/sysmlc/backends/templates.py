@@ -1,6 +1,8 @@
 """Templates of back ends: the user's before ours, and no name left undefined in silence."""
 
+from collections.abc import Callable, Mapping
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
@@ -17,7 +19,7 @@ class _Options(TypedDict):
     autoescape: bool
 
 
-_OPTIONS: _Options = {
+OPTIONS: _Options = {
     "trim_blocks": True,
     "lstrip_blocks": True,
     "keep_trailing_newline": True,
@@ -34,18 +36,38 @@ def environment(folder: str, templates: Path | None) -> "Environment":
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 
-    ours = resources.path("templates", folder)
-    if templates is not None:
-        loaders = [FileSystemLoader(one) for one in (templates / folder, templates, ours)]
-        return Environment(
-            loader=ChoiceLoader(loaders), undefined=StrictUndefined, **_OPTIONS, auto_reload=True
-        )
-    from sysmlc.backends.compiled_templates import CompiledTemplates, WholeTemplates
+    from sysmlc.backends.compiled_templates import CompiledTemplates
 
+    ours = resources.path("templates", folder)
+    folders = [ours] if templates is None else [templates / folder, templates, ours]
     return Environment(
-        loader=WholeTemplates(ours),
+        loader=ChoiceLoader([FileSystemLoader(one) for one in folders]),
         undefined=StrictUndefined,
-        **_OPTIONS,
-        auto_reload=False,
-        bytecode_cache=CompiledTemplates(_OPTIONS),
+        **OPTIONS,
+        auto_reload=templates is not None,
+        bytecode_cache=CompiledTemplates(OPTIONS) if templates is None else None,
     )
+
+
+def filled(folder: str, name: str, templates: Path | None, **values: object) -> str:
+    """The text of a template: of ours by a function (``translate``), without importing jinja2.
+
+    Raises ``jinja2.TemplateError`` when a template of the user's is wrong (``faults``).
+    """
+    if templates is None:
+        return _functions(folder)[name](**values)
+    return environment(folder, templates).get_template(name).render(**values)
+
+
+@cache
+def _functions(folder: str) -> Mapping[str, Callable[..., str]]:
+    texts: Mapping[str, Callable[..., str]]
+    texts = import_module(f"sysmlc.backends.{folder}.written").TEXTS
+    return texts
+
+
+def faults() -> type[Exception]:
+    """What a wrong template raises; asked when something is raised, for jinja2 takes long."""
+    from jinja2 import TemplateError
+
+    return TemplateError

@@ -3,6 +3,7 @@
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.trace import trace as trace_of
+from sysmlc.backends.templates import faults
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract
@@ -79,10 +80,8 @@ def _add_page(
     sink: Sink,
     options: EmitOptions,
 ) -> None:
-    from jinja2 import TemplateError
-
     try:
         output.add(path, explain(graph, contract, options.templates), trace, "contracts")
-    except TemplateError as error:
+    except faults() as error:
         fault = f"{type(error).__name__}: {error}"
         sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)

@@ -19,6 +19,7 @@ from sysmlc.backends.plantuml import (
 )
 from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.views import Diagram
+from sysmlc.backends.templates import faults
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
@@ -95,8 +96,6 @@ def _write(
 ) -> None:
     if not found:
         return
-    from jinja2 import TemplateError
-
     renderer = Renderer(options.templates)
     found.sort(key=lambda diagram: diagram.kind)
     for kind, group in groupby(found, lambda diagram: diagram.kind):
@@ -106,7 +105,7 @@ def _write(
                 output.add(
                     f"diagrams/{folder}{file}.{kind}.puml", text, diagram.trace(), "plantuml"
                 )
-        except TemplateError as error:
+        except faults() as error:
             fault = f"{type(error).__name__}: {error}"
             sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 

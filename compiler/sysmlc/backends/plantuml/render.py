@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sysmlc.backends.plantuml.views import Diagram
-from sysmlc.backends.templates import environment
+from sysmlc.backends.templates import filled
 
 _FOLDER = "plantuml"
 
@@ -14,12 +14,13 @@ class Renderer:
     """Renders diagrams; ``templates`` is the user's folder, whose files replace ours by name."""
 
     def __init__(self, templates: Path | None = None) -> None:
-        self._environment = environment(_FOLDER, templates)
+        self._templates = templates
 
     def text(self, diagram: Diagram, header: tuple[str, ...]) -> str:
         """PlantUML text of the diagram.
 
         Raises ``jinja2.TemplateError`` when a template of the user's is wrong.
         """
-        template = self._environment.get_template(f"{diagram.kind}.puml.j2")
-        return template.render(diagram=diagram, view=diagram.view, header=header)
+        name = f"{diagram.kind}.puml.j2"
+        values = {"diagram": diagram, "view": diagram.view, "header": header}
+        return filled(_FOLDER, name, self._templates, **values)
