@@ -9,7 +9,7 @@ from json.encoder import encode_basestring
 from sysmlc.diagnostics import Diagnostic, Place
 from sysmlc.diagnostics.locate import line_starts
 from sysmlc.diagnostics.render import Finding, make_report
-from sysmlc.driver.outcome import Outcome, OutputFile, Withheld, digest_of
+from sysmlc.driver.outcome import Outcome, OutputFile, Packed, Withheld, digest_of
 from sysmlc.driver.tracing import TRACE
 from sysmlc.frontends.base import Worded
 from sysmlc.sources import Source
@@ -107,7 +107,7 @@ def moved(
     )
 
 
-class Texts(Mapping[str, str]):
+class Texts(Packed):
     """Texts of which some are new; the others are unpacked when they are asked for."""
 
     def __init__(self, old: Mapping[str, str], new: dict[str, str]) -> None:
@@ -116,6 +116,12 @@ class Texts(Mapping[str, str]):
 
     def __getitem__(self, path: str) -> str:
         return self.new[path] if path in self.new else self._old[path]
+
+    def packed(self, path: str) -> bytes | None:
+        """The text at the path compressed, if it is an old one that was kept so."""
+        if path in self.new or not isinstance(self._old, Packed):
+            return None
+        return self._old.packed(path)
 
     def __contains__(self, path: object) -> bool:
         return path in self.new or path in self._old

@@ -1,6 +1,7 @@
 """What a compilation means to its user: findings with places, files, exit code. No graph."""
 
 import hashlib
+from abc import abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -28,6 +29,14 @@ class Withheld:
 
     path: str
     because: tuple[Diagnostic, ...]
+
+
+class Packed(Mapping[str, str]):
+    """Texts by path, some of which are there as the cache keeps them."""
+
+    @abstractmethod
+    def packed(self, path: str) -> bytes | None:
+        """The text at the path compressed; None where it is not there so."""
 
 
 @dataclass(frozen=True, slots=True)

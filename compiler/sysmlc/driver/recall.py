@@ -13,7 +13,7 @@ from sysmlc.backends.base import InputFile
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Diagnostic, Place, Rule, Severity, Subject
 from sysmlc.diagnostics.render import Finding
-from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
+from sysmlc.driver.outcome import Outcome, OutputFile, Packed, Withheld
 from sysmlc.values import dataclass
 
 _LENGTH = 8
@@ -24,10 +24,18 @@ def remember(cache: Cache, key: str, outcome: Outcome) -> None:
     """Keep an outcome, unless a fault of ours or of the machine is part of it."""
     if outcome.exit_code() == 2:
         return
-    texts = {path: _compressed(text) for path, text in outcome.texts.items()}
+    texts = dict(_packed_texts(outcome.texts))
     parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
     lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
     cache.put(key, b"".join([*lengths, *parts, *texts.values()]))
+
+
+def _packed_texts(texts: Mapping[str, str]) -> Iterator[tuple[str, bytes]]:
+    """Each text compressed; what an earlier outcome holds is so already."""
+    known = texts if isinstance(texts, Packed) else None
+    for path in texts:
+        kept = known.packed(path) if known is not None else None
+        yield path, _compressed(texts[path]) if kept is None else kept
 
 
 def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
@@ -97,20 +105,25 @@ def _diagnostic(found: Diagnostic) -> dict[str, object]:
 
 
 @dataclass(frozen=True)
-class _Texts(Mapping[str, str]):
+class _Texts(Packed):
     """The texts of an outcome, each unpacked when it is asked for; most runs need none."""
 
-    packed: bytes
+    all: bytes
     lengths: Mapping[str, int]
-    """How many bytes of ``packed`` are which text, in order."""
+    """How many bytes of ``all`` are which text, in order."""
 
     @cached_property
     def _starts(self) -> dict[str, int]:
         return dict(zip(self.lengths, accumulate(self.lengths.values(), initial=0), strict=False))
 
+    def packed(self, path: str) -> bytes | None:
+        """The text at the path, compressed."""
+        start = self._starts[path]
+        return self.all[start : start + self.lengths[path]]
+
     def __getitem__(self, path: str) -> str:
         start = self._starts[path]
-        return _decompressed(self.packed[start : start + self.lengths[path]])
+        return _decompressed(self.all[start : start + self.lengths[path]])
 
     def __contains__(self, path: object) -> bool:
         return path in self.lengths
