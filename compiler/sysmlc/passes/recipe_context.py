@@ -50,6 +50,7 @@ class Context:
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
     _literals: dict[str, list[Element]] = field(default_factory=dict)
+    _stated: dict[str, str] = field(default_factory=dict)
     _ends: set[str] = field(default_factory=set)
     _subjects: set[str] = field(default_factory=set)
 
@@ -57,13 +58,18 @@ class Context:
 
     def own_level(self, element: Element) -> str:
         """Level that the options, ``classify`` or a stereotype give the element itself."""
+        if element.id not in self._stated:
+            self._stated[element.id] = self._stated_level(element)
+        return self._stated[element.id] or self.derived.get(element.id, "")
+
+    def _stated_level(self, element: Element) -> str:
         chosen = self._chosen(element) if self.levels else ""
         if chosen:
             return chosen
         found = str(element.attrs.get("level", ""))
         if found in LEVELS.values():
             return found
-        return self._applied_level(element) or self.derived.get(element.id, "")
+        return self._applied_level(element)
 
     def _chosen(self, element: Element) -> str:
         """What the options say, by id or by qualified name: few names end as they do there."""
