@@ -5,7 +5,7 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.at_once import read_at_once
+from sysmlc.synthesis.algebra.at_once import links
 from sysmlc.synthesis.algebra.composition import DriverError, composition
 from sysmlc.synthesis.algebra.systems import Universe
 
@@ -74,7 +74,26 @@ def test_liveness_is_never_taken_in_a_circle():
     other = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
     found = composed(one=one, other=other)
     assert open_ones(found) == ["one: b", "other: a"]
-    assert [one.trace for one in found.open] == [None, None]
+    first, _ = found.open
+    assert first.is_circular
+    assert all(not (step["a"] or step["b"]) for step in first.trace.steps)
+
+
+def test_what_recurs_may_be_waited_for_by_both_when_one_of_them_has_to_begin():
+    """Whoever has the token gives it; one of them always has it, and waits only for the other."""
+    one = """
+        env taken: bool
+        sys given: bool
+        assume recurs !given | taken
+        promise recurs given
+    """
+    other = """
+        env given: bool
+        sys taken: bool
+        assume recurs given
+        promise recurs !given | taken
+    """
+    assert open_ones(composed(one=one, other=other)) == []
 
 
 SAFE = """
@@ -98,17 +117,45 @@ def test_not_when_both_read_in_the_step_what_the_other_writes():
     assert open_ones(composed(**parts)) == ["1: !b", "1: !b'", "2: !a", "2: !a'"]
 
 
+def read_at_once(text):
+    """The inputs that have a say in the outputs of each step after the first one."""
+    made = contract(text)
+    found = links(made, Universe((made,), Manager()))
+    return [(sorted(one.outputs), sorted(one.inputs)) for one in found if not one.is_first]
+
+
 def test_what_ties_an_output_to_an_input_of_the_same_step_is_reading_at_once():
     """That ``me`` follows ``it`` in the same step is said without a prime, or by two promises."""
     twice = "promise always it=1 & me -> me'\npromise always it=1 & me -> !me'"
     for tie in ("promise always me <-> it=1", twice):
-        made = contract(f"env it: 0..2\nsys me: bool\n{tie}")
-        assert read_at_once(made, Universe((made,), Manager())) == {"it"}
+        assert read_at_once(f"env it: 0..2\nsys me: bool\n{tie}") == [(["me"], ["it"])]
 
 
 def test_what_is_answered_in_the_next_step_is_not_read_at_once():
-    made = contract("env it: 0..2\nsys me: 0..4\npromise always me=1 & it=2 -> me'=3")
-    assert read_at_once(made, Universe((made,), Manager())) == set()
+    text = "env it: 0..2\nsys me: 0..4\npromise always me=1 & it=2 -> me'=3"
+    assert read_at_once(text) == [(["me"], [])]
+
+
+def test_outputs_that_no_promise_joins_read_apart():
+    text = (
+        "env a: bool\nsys x: bool\nsys y: bool\npromise always x' <-> a'\npromise always y' <-> x"
+    )
+    assert read_at_once(text) == [(["x"], ["a"]), (["y"], [])]
+
+
+def test_parts_that_read_one_another_in_different_outputs_wait_for_nobody():
+    hand = """
+        env {other}_done: bool
+        sys {me}_done: bool
+        sys {me}_grip: bool
+        assume at first !{other}_done
+        promise at first !{me}_done
+        promise always {me}_grip' <-> {other}_done'
+        assume always !{other}_done'
+        promise always !{me}_done'
+    """
+    found = composed(pick=hand.format(me="p", other="q"), place=hand.format(me="q", other="p"))
+    assert open_ones(found) == []
 
 
 def test_a_chain_within_a_step_is_no_circle():
@@ -141,6 +188,14 @@ def test_what_is_outside_gr1_is_observed_on_both_sides():
     asking = "env done: bool\nsys ask: bool\nassume G (ask -> F done)\npromise recurs !ask"
     found = composed(server=answering, client=asking)
     assert open_ones(found) == []
+
+
+def test_parts_that_contradict_one_another_are_told_by_what_contradicts():
+    never = FEEDER.replace("promise recurs ready", "promise always !ready'")
+    found = composed(feeder=never, picker=PICKER)
+    assert [one.text for one in found.conflict] == ["!ready'", "taken' -> ready", "taken"]
+    assert (found.open, found.failures) == ((), ())
+    assert composed(**OTHERS).conflict == ()
 
 
 def test_a_variable_is_decided_by_one_part():

@@ -51,7 +51,7 @@ def told(parts):
     outside = composition(Composite("c", "", parts), Manager()).contract
     whole = Contract("c", "", outside.variables, outside.assumptions, every)
     found = composition(Composite("c", "", parts, (), whole), Manager())
-    failed = [one.conjunct for one in found.failures]
+    failed = every if found.conflict else [one.conjunct for one in found.failures]
     return outside, {one: one not in failed for one in every}
 
 

@@ -92,6 +92,19 @@ BREAK = rule(
     wrong=_cell("G F ready", whole="G (taken -> X !taken)"),
     right=_cell("G F ready", whole="G F taken"),
 )
+CONTRADICT = rule(
+    "SM548",
+    "parts-contradict",
+    Severity.ERROR,
+    "there is no run in which all parts of '{component}' keep what they promise",
+    why="Everything follows of what cannot be: nothing can be said of parts that contradict one "
+    "another.",
+    help="change one of the promises, or what joins the parts",
+    wrong=_cell("G F ready")
+    .replace("G F ready */ }", "G !ready */ }", 1)
+    .replace("G F taken */ }", "G (ready & F taken) */ }", 1),
+    right=_cell("G F ready"),
+)
 NOT_COMPOSED = rule(
     "SM598",
     "parts-not-composed",
@@ -136,7 +149,7 @@ def check_together(
     """Compose the parts of each block; what is open and what is broken is reported."""
     for one in composites:
         found = _composed(one, place, sink, options)
-        kept = None if found is None else not (found.open or found.failures)
+        kept = None if found is None else not (found.open or found.failures or found.conflict)
         witnesses = () if found is None else tuple(_witnesses(one, found))
         yield Together(one.component, len(one.parts), one.whole is not None, kept, witnesses)
 
@@ -150,6 +163,8 @@ def _composed(
         subject, reason = place(composite.origin), why_not(problem)
         sink.report(NOT_COMPOSED, subject, component=composite.component, reason=reason)
         return None
+    if found.conflict:
+        _report_conflict(composite, found, place, sink)
     for one in found.open:
         _report_open(composite, one, place, sink)
     for failure in found.failures:
@@ -157,9 +172,19 @@ def _composed(
     return found
 
 
+def _report_conflict(composite: Composite, found: Composition, place: Place, sink: Sink) -> None:
+    names = {one: part.name for part in composite.parts for one in part.contract.guarantees}
+    notes = (
+        f"{names.get(one, composite.component)}: '{print_formula(one.formula)}'{said(one)}"
+        for one in found.conflict
+    )
+    subject = place(composite.origin)
+    sink.report(CONTRADICT, subject, notes=tuple(notes), component=composite.component)
+
+
 def _report_open(composite: Composite, one: Open, place: Place, sink: Sink) -> None:
     sink.report(
-        CIRCLE if one.trace is None else OPEN,
+        CIRCLE if one.is_circular else OPEN,
         place(one.conjunct.origin or one.part.origin),
         notes=() if one.trace is None else tuple(lines(one.trace, one.conjunct)),
         part=one.part.name,

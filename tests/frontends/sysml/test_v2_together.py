@@ -11,7 +11,7 @@ from sysmlc.synthesis import Limits, together
 from sysmlc.synthesis.check import check
 from sysmlc.synthesis.decide import Options
 
-CODES = ("SM595", "SM596", "SM597", "SM598")
+CODES = ("SM548", "SM595", "SM596", "SM597", "SM598")
 
 
 def checked(text, limits=None):

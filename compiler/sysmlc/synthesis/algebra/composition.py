@@ -16,6 +16,7 @@ from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed
 from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import Universe
+from sysmlc.synthesis.explain import conflict
 from sysmlc.synthesis.manager import Manager
 from sysmlc.values import dataclass, replace
 
@@ -25,12 +26,14 @@ class Composition:
     """What became of a composition.
 
     ``contract`` is that of the parts together; ``open`` are the assumptions of parts that nothing
-    discharges, ``failures`` what the whole promises and the parts do not keep.
+    discharges, ``failures`` what the whole promises and the parts do not keep. Where there is no
+    run in which all parts keep what they promise, ``conflict`` says what cannot be had together.
     """
 
     contract: Contract
-    open: tuple[Open, ...]
-    failures: tuple[Failure, ...]
+    open: tuple[Open, ...] = ()
+    failures: tuple[Failure, ...] = ()
+    conflict: tuple[Conjunct, ...] = ()
 
 
 class DriverError(Exception):
@@ -56,10 +59,30 @@ def composition(composite: Composite, manager: Manager) -> Composition:
     parts = tuple(_with(p, c) for p, c in zip(composite.parts, contracts, strict=True))
     universe = Universe(made.contracts, manager)
     inside = replace(composite, parts=parts, wiring=joined.assumptions)
+    contract = _together(composite, whole)
+    contradiction = _contradiction(inside, seen.assumptions, made.definitions, universe)
+    if contradiction:
+        return Composition(contract, conflict=contradiction)
     found = discharge(inside, (*seen.assumptions, *made.definitions), universe)
     runs = Entailment(universe, universe.system(found.facts))
     failures = tuple(_broken(seen.guarantees, runs))
-    return Composition(_together(composite, whole), found.open, failures)
+    return Composition(contract, found.open, failures)
+
+
+def _contradiction(
+    composite: Composite,
+    assumed: Sequence[Conjunct],
+    definitions: Sequence[Conjunct],
+    universe: Universe,
+) -> tuple[Conjunct, ...]:
+    """What of promises, wiring and assumptions no run keeps; nothing when some run keeps all."""
+    promised = (one for part in composite.parts for one in part.contract.guarantees)
+    every = tuple(dict.fromkeys((*assumed, *composite.wiring, *promised)))
+
+    def is_impossible(some: Sequence[Conjunct]) -> bool:
+        return not Entailment(universe, universe.system((*some, *definitions))).is_possible
+
+    return conflict(every, is_impossible) if is_impossible(every) else ()
 
 
 def _open_to_outside(composite: Composite) -> Contract:

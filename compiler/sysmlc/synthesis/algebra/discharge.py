@@ -4,17 +4,19 @@ A part keeps its promises once its assumptions follow from what holds already. P
 one another are taken together, step by step: when no run of steps that all of them keep comes to
 one that breaks an assumption of theirs, none of them is the first to fail (Misra and Chandy 1981;
 Abadi and Lamport 1993). That is sound for initial conditions and safety, of parts that do not
-read in the same step what they write for one another; liveness is never taken in a circle.
+read in the same step what they write for one another. What recurs is looked for in the runs in
+which each part keeps its promise (``recurrence``): parts that only wait for one another wait for
+ever.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Class, Conjunct, Owner
 from sysmlc.logic.evaluate import has_primes
-from sysmlc.synthesis.algebra.at_once import read_at_once
+from sysmlc.synthesis.algebra.at_once import Readings, readings
 from sysmlc.synthesis.algebra.entail import Entailment
+from sysmlc.synthesis.algebra.recurrence import Recurrence
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.manager import Node
@@ -25,13 +27,15 @@ from sysmlc.values import dataclass
 class Open:
     """An assumption of a part that does not follow from what holds around it.
 
-    ``trace`` is a run in which the others keep their promises and it is broken all the same; None
-    when it follows from them, but they wait for this part in turn.
+    With ``is_circular`` it does follow from what the others promise, but they wait for this part
+    in turn. ``trace`` is a run in which it is broken, and all others keep their contracts; None
+    where there is no such run, but no proof that it cannot be broken either.
     """
 
     part: Part
     conjunct: Conjunct
     trace: Trace | None
+    is_circular: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +70,10 @@ class _Known:
         wanted = [one for one in conjuncts if one not in self.facts]
         return all(self.runs.violation(one) is None for one in wanted)
 
+    def recurrence(self, parts: Sequence[Part]) -> Recurrence:
+        """What recurs when these parts keep what they promise to recur, too."""
+        return Recurrence(self.runs.runs, parts, self._universe)
+
     def can_break(self, conjunct: Conjunct) -> bool:
         """Whether steps that keep all facts come to one that breaks an initial condition or a
         condition of every step, however it may go on from there."""
@@ -91,30 +99,55 @@ def discharge(composite: Composite, given: Iterable[Conjunct], universe: Univers
 
     The contracts are in GR(1). Raises OutsideGr1Error, LimitError.
     """
-    parts = composite.parts
-    reading = {one: _read_at_once(one, composite, universe) for one in parts}
-    known, waiting, stepwise = (
-        _Known(universe, (*given, *composite.wiring)),
-        list(parts),
-        list(parts),
-    )
+    reading = readings(composite, universe)
+    known = _Known(universe, (*given, *composite.wiring))
+    waiting = stepwise = composite.parts
     while True:
-        ready = [part for part in waiting if known.gives(part.contract.assumptions)]
-        together = [] if ready else _together(stepwise, reading, known)
-        if not ready and not together:
-            return Discharge(known.facts, tuple(_open(waiting, known)))
-        known = known.adding(one for part in ready for one in part.contract.guarantees)
-        known = known.adding(one for part in together for one in _stepwise(part, is_assumed=False))
-        waiting = [part for part in waiting if part not in ready]
-        stepwise = [part for part in stepwise if part not in (*ready, *together)]
+        found = _established(waiting, stepwise, known, reading)
+        if not found:
+            return Discharge(known.facts, tuple(_open(waiting, stepwise, known)))
+        done, steady = found
+        known = known.adding(one for part in done for one in part.contract.guarantees)
+        known = known.adding(one for part in steady for one in _stepwise(part, is_assumed=False))
+        waiting = tuple(part for part in waiting if part not in done)
+        stepwise = tuple(part for part in stepwise if part not in (*done, *steady))
 
 
-def _read_at_once(part: Part, composite: Composite, universe: Universe) -> list[Part]:
-    """The parts on whose outputs of a step depends what this one does in the same step."""
-    read = read_at_once(part.contract, universe)
-    wired = [{v.name for v in f.variables(one.formula)} for one in composite.wiring]
-    heard = read.union(*(names for names in wired if names & read))
-    return [one for one in composite.parts if one != part and heard & outputs(one)]
+_Parts = Sequence[Part]
+
+
+def _established(
+    waiting: _Parts, stepwise: _Parts, known: "_Known", reading: Readings
+) -> tuple[_Parts, _Parts] | None:
+    """The next parts that keep all they promise, or what they promise of each step.
+
+    First one by one, then steps of several, then what recurs when all wait for something.
+    """
+    done = [part for part in waiting if known.gives(part.contract.assumptions)]
+    if done:
+        return done, ()
+    steady = [part for part in stepwise if known.gives(_stepwise(part, is_assumed=True))]
+    steady = steady or _together(stepwise, reading, known)
+    if steady:
+        return (), steady
+    done = _recurring([part for part in waiting if part not in stepwise], known)
+    return (done, ()) if done else None
+
+
+def _recurring(parts: _Parts, known: "_Known") -> list[Part]:
+    """Those whose assumptions recur in all runs in which all of them keep their promises."""
+    recurrence = known.recurrence(parts)
+    if not recurrence.is_decided:
+        return []
+    return [
+        part
+        for part in parts
+        if not any(recurrence.violation(one) for one in _liveness(part.contract.assumptions))
+    ]
+
+
+def _liveness(conjuncts: Iterable[Conjunct]) -> list[Conjunct]:
+    return [one for one in conjuncts if one.class_ is Class.LIVENESS]
 
 
 def _stepwise(part: Part, is_assumed: bool) -> list[Conjunct]:
@@ -124,12 +157,10 @@ def _stepwise(part: Part, is_assumed: bool) -> list[Conjunct]:
     return [one for one in every if one.class_ in (Class.INIT, Class.SAFETY)]
 
 
-def _together(
-    parts: Sequence[Part], reading: Mapping[Part, Sequence[Part]], known: _Known
-) -> list[Part]:
+def _together(parts: Sequence[Part], reading: Readings, known: _Known) -> list[Part]:
     """The most parts whose safety holds step by step when all of them keep theirs."""
-    among = {part: [one for one in reading[part] if one in parts] for part in parts}
-    chosen = [part for part in parts if not _waits_for_itself(part, among)]
+    circular = reading.circular(parts)
+    chosen = [part for part in parts if part not in circular]
     while chosen:
         steps = known.adding(one for part in chosen for one in _stepwise(part, is_assumed=False))
         kept = [
@@ -143,30 +174,21 @@ def _together(
     return chosen
 
 
-def _waits_for_itself(part: Part, reading: Mapping[Part, Sequence[Part]]) -> bool:
-    """Whether what a part does in a step depends in the same step on what it does."""
-    seen: list[Part] = []
-    found = list(reading.get(part, ()))
-    while found:
-        one = found.pop()
-        if one == part:
-            return True
-        if one not in seen:
-            seen.append(one)
-            found += reading.get(one, ())
-    return False
-
-
 def outputs(part: Part) -> set[str]:
     """The variables that the part decides."""
     return {one.name for one in part.contract.variables if one.owner is Owner.SYSTEM}
 
 
-def _open(waiting: Sequence[Part], known: _Known) -> Iterable[Open]:
+def _open(waiting: _Parts, stepwise: _Parts, known: _Known) -> Iterator[Open]:
     """What is missing for the parts that are not established."""
+    recurrence = known.recurrence([part for part in waiting if part not in stepwise])
     for part in waiting:
         others = (one for other in waiting if other != part for one in other.contract.guarantees)
         around = known.adding((*others, *_stepwise(part, is_assumed=False)))
         for one in part.contract.assumptions:
             if not known.gives([one]):
-                yield Open(part, one, around.runs.violation(one))
+                trace = around.runs.violation(one)
+                is_circular = trace is None
+                if is_circular and one.class_ is Class.LIVENESS and recurrence.is_decided:
+                    trace = recurrence.violation(one)
+                yield Open(part, one, trace, is_circular)
