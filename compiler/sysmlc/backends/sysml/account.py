@@ -108,6 +108,7 @@ _ATTRIBUTES = """
 """
 _SAID = frozenset(_ATTRIBUTES.split())
 """Attributes that the text says, or that say nothing more than what it says."""
+_OF_LOOPS = ("mode", "collection")
 _WHOLE = (Kind.DOCUMENT, Kind.METADATA, Kind.ALIAS, Kind.IMPORT)
 """Kinds whose attributes are all listed in a comment."""
 
@@ -118,6 +119,8 @@ def _attributes(book: Book, element: Element) -> None:
     for key, value in element.attrs.items():
         is_tag = key.startswith(("tag.", "value."))
         if key in _SAID or value in (None, "", ()) or (is_tag and _is_told(element, key)):
+            continue
+        if element.id in book.loops and key.startswith(_OF_LOOPS):
             continue
         book.losses.note(UNSAID_ATTRIBUTE, element, attribute=key, kind=str(element.kind))
 

@@ -8,6 +8,7 @@ from sysmlc.backends.sysml.declarations import visibility
 from sysmlc.backends.sysml.effects import statements
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.events import trigger
+from sysmlc.backends.sysml.loops import over
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.successions import first, leaving
@@ -105,10 +106,15 @@ def _other(book: Book, entry: Entry, element: Element) -> Line:
 
 
 def structured(book: Book, entry: Entry) -> list[Line]:
-    """A structured node: an action that holds its nodes."""
+    """A structured node: an action that holds its nodes, or a loop over a collection."""
     element = entry.element
     assert element is not None
-    return [Line(_start(book, entry, element), contents(book, entry)), *leaving(book, entry)]
+    head, loop = _start(book, entry, element), over(book, entry, element)
+    body = contents(book, entry)
+    if loop:
+        kind = f"@{book.ours(entry, 'Kind')}"
+        head, body = f"{head} {loop}", [one for one in body if one.head != kind]
+    return [Line(head, body), *leaving(book, entry)]
 
 
 def control(book: Book, entry: Entry) -> list[Line]:

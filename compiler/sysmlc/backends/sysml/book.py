@@ -38,6 +38,8 @@ class Book:
     """Identities of attributes that the text needs and that are written after the members."""
     dropped: dict[str, str] = field(default_factory=dict)
     """What elements refer to without a name, so that they cannot be written; by their ids."""
+    loops: set[str] = field(default_factory=set)
+    """Ids of regions that are written as loops over a collection."""
     public: frozenset[str] = frozenset()
     """Ids of elements that are written as public because the text refers to them."""
     caex: frozenset[str] = frozenset()

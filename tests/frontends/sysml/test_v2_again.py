@@ -1,0 +1,114 @@
+"""Text of SysML v2 that is written from what was read of it is the same model."""
+
+import pytest
+from reading_v2 import Reading
+from test_v2_roundtrip import PASSES, differences
+
+from sysmlc.backends.sysml.document import document
+from sysmlc.diagnostics import Sink
+
+
+def written(text):
+    """The lines of the text that the back end writes of a text, without indentation."""
+    made, _ = document(Reading(text, passes=PASSES).graph, Sink())
+    return [line.strip() for line in made.splitlines() if line.strip()]
+
+
+MEMBERS = """
+package P {
+    part def Robot { attribute speed; part arm : Arm; port p : Plug; }
+    part def Arm;
+    item def Box;
+    port def Plug { out item x : Box; }
+    part def Cell {
+        part robot : Robot {
+            attribute extra : ScalarValues::Integer;
+            part :>> arm { attribute more : ScalarValues::Boolean; }
+        }
+        part plain { part inner { attribute deep : ScalarValues::Integer; } }
+        port own { in item y : Box; }
+        port wide : Plug { attribute width : ScalarValues::Real; }
+        attribute pair { attribute a : ScalarValues::Integer; }
+        ref part other : Robot { attribute mark : ScalarValues::Integer; }
+        variation part choice : Robot { variant part fast : Robot; }
+        interface robot.p to wide;
+        assert constraint { plain.inner.deep > 2 and pair.a < 3 }
+    }
+    part def Sub :> Cell { part :>> robot { attribute even : ScalarValues::Integer; } }
+}
+"""
+
+
+def test_members_of_usages_stay_in_them():
+    lines = written(MEMBERS)
+    assert lines.count("part :>> robot {") == lines.count("part robot : Robot {") == 1
+    assert not any(line.startswith("part def R") for line in lines[8:])
+    assert differences(Reading(MEMBERS, passes=PASSES).graph) == []
+
+
+LOOP = """
+package P {
+    part def Pallet { attribute n : ScalarValues::Integer; }
+    part def Belt { part pallets : Pallet[10]; }
+    action def Find {
+        in ref item belt : Belt;
+        out attribute found : ScalarValues::Integer;
+        first start then each;
+        action each for p in belt.pallets {
+            action look { in attribute n : ScalarValues::Integer = p.n; }
+            then take;
+            action take assign found := p.n;
+        }
+        then done;
+    }
+}
+"""
+
+
+def test_a_loop_over_a_collection_is_one_again():
+    assert "action each for p in belt.pallets {" in written(LOOP)
+    assert differences(Reading(LOOP, passes=PASSES).graph) == []
+
+
+def test_a_loop_over_what_no_expression_says_is_told():
+    reading = Reading(LOOP, passes=PASSES)
+    (region,) = [one for one in reading.graph if one.subkind == "expansion"]
+    reading.graph.set(region, collection="the pallets of the belt")
+    sink = Sink()
+    made, _ = document(reading.graph, sink)
+    assert "for p in" not in made
+    assert [one.rule.code for one in sink].count("SM732") == 2
+
+
+JOINED = """
+package P {
+    part def Pilot;
+    use case def Fly { actor pilot : Pilot; }
+    part def Gate;
+    part def Road { part Gate : P::Gate[*]; }
+    connection def Way { end Gate : P::Gate; end road : Road; }
+    action def Sort {
+        attribute big : ScalarValues::Boolean;
+        first start then choose;
+        decide choose;
+            if big then store;
+            else look;
+        action look; then store;
+        action store; then done;
+    }
+}
+"""
+
+
+def test_actors_ends_and_steps_that_several_lead_to_are_as_they_were():
+    lines = written(JOINED)
+    assert "actor pilot : Pilot;" in lines
+    assert not any(line.startswith("merge") for line in lines)
+    assert differences(Reading(JOINED, passes=PASSES).graph) == []
+
+
+@pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED])
+def test_no_error_is_told_of_what_is_written(text):
+    made, _ = document(Reading(text, passes=PASSES).graph, Sink())
+    again = Reading(made, passes=PASSES)
+    assert [one.message for one in again.sink if one.is_error] == []
