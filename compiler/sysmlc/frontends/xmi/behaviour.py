@@ -7,8 +7,9 @@ from sysmlc.frontends.xmi import metaclasses, naming
 from sysmlc.frontends.xmi.context import Context, Event
 from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.structure import keep_alternatives, lone_value_in, tell_lost, value_in
+from sysmlc.frontends.xmi.structure import tell_lost
 from sysmlc.frontends.xmi.unit import Lowered, Unit
+from sysmlc.frontends.xmi.value_rows import keep_alternatives, lone_value_in, value_in
 from sysmlc.frontends.xmi.values import ValueText, opaque, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element
 

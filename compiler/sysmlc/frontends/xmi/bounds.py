@@ -1,16 +1,12 @@
 """Multiplicities: two bounds, each written in a place of its own, as one text in UML notation."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.xmi import rules
+from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.values import is_natural
 from sysmlc.ir import AttrValue, Element
 
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.context import Context
 
-
-def write(context: "Context") -> None:
+def write(context: Context) -> None:
     """Give the elements of the document their multiplicities; report bounds that are none."""
     graph = context.graph
     for gid, (lower, upper) in context.bounds.items():
@@ -28,7 +24,7 @@ def multiplicity(lower: AttrValue, upper: AttrValue) -> str:
     return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
 
 
-def _check(context: "Context", element: Element, text: str) -> None:
+def _check(context: Context, element: Element, text: str) -> None:
     """A bound may be an expression, as ``size``, but no text and no negative number."""
     if text != "*" and element.id not in context.computed:
         name = context.graph.qualified_name(element)

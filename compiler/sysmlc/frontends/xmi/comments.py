@@ -7,6 +7,7 @@ from itertools import compress
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.making import make
 from sysmlc.frontends.xmi.structure import reference
 from sysmlc.ir import Kind
 
@@ -22,7 +23,7 @@ def restore(context: Context) -> None:
     for row in compress(range(len(numbers)), map(wanted.__contains__, numbers)):
         is_swallowed = context.verdicts[row] is Verdict.MAPPED and not context.lowered.own[row]
         if is_swallowed and not _is_reference(context, row):
-            context.make(row, Kind.COMMENT, "", "Comment", _FEATURE)
+            make(context, row, Kind.COMMENT, "", "Comment", _FEATURE)
             _content(context, row)
 
 

@@ -1,15 +1,14 @@
 """What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
 
 from collections.abc import Callable
-from itertools import islice
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Sink, Subject, Verdict
-from sysmlc.frontends.xmi import bounds, dangling, details, metaclasses, naming, rules
+from sysmlc.frontends.xmi import metaclasses, naming, rules
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.dangling import Loose, Names
+from sysmlc.frontends.xmi.keys import KEYS, PASSED_OVER
+from sysmlc.frontends.xmi.loose import Loose, Names
 from sysmlc.frontends.xmi.rows import Rows
-from sysmlc.frontends.xmi.shapes import KEYS, PASSED_OVER
 from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -63,40 +62,8 @@ class Context(Rows):
         self.computed: set[str] = set()
         """Elements with a bound that is an expression."""
         self.bounds: dict[str, list[AttrValue]] = {}
-        self._conditions: list[tuple[str, str]] = []
-        self._late: list[tuple[Element, str, list[str], bool]] = []
-
-    # -- elements ------------------------------------------------------------------------------
-
-    def make(self, row: int, kind: Kind, subkind: str, type_name: str, feature: str) -> bool:
-        """Add the row's element with its attributes; False where it cannot stand."""
-        document = self.document
-        owner = self.gids[row]
-        if kind in metaclasses.OWNERS and not self.may_own(owner, kind):
-            return False
-        values = document.attributes[row]
-        id = self.new_id(row, owner, feature)
-        element = Element(
-            id, kind, values.get("name", ""), owner or None, document.ordinals[row], document.name
-        )
-        said = details.attributes(kind, subkind, type_name, feature)
-        if said:
-            element.attrs = said
-        self.graph.add(element)
-        self.gids[row] = id
-        self.lowered.own[row] = element
-        self.verdicts[row] = Verdict.MAPPED
-        detail = details.of(kind, feature)
-        if detail is not None:
-            detail(self, element, row, type_name, feature)
-        if len(values) > DEFAULT_LIMITS.attributes:
-            values = self._first_attributes(row, values)
-        for name, value in values.items():
-            if name not in PASSED_OVER and "}" not in name:
-                self.attribute(element, row, name, value)
-            elif name in v.REDUNDANT:
-                self.look(row, name, value)
-        return True
+        self.late_conditions: list[tuple[str, str]] = []
+        self.late: list[tuple[Element, str, list[str], bool]] = []
 
     def may_own(self, owner: str, kind: Kind) -> bool:
         """Whether elements of the kind can stand below the owner."""
@@ -119,14 +86,6 @@ class Context(Rows):
                 self.odd_values.append((row, name, value))
         else:
             self._other(element, row, name, value)
-
-    def _first_attributes(self, row: int, values: dict[str, str]) -> dict[str, str]:
-        """As many attributes as an element may have."""
-        most = DEFAULT_LIMITS.attributes
-        name = self.qualified_name(row)
-        subject = Subject(name, "", self.place(row))
-        self.sink.report(rules.MANY_ATTRIBUTES, subject, element=name, count=len(values), most=most)
-        return dict(islice(values.items(), most))
 
     def _targets(self, row: int, name: str, value: str) -> list[str]:
         """The ids in a list, as far as a list may be long."""
@@ -177,7 +136,7 @@ class Context(Rows):
         """Keep what no table names: ids of elements, a truth value, or text."""
         tokens = value.split()
         if tokens and all(token in self.document.ids for token in tokens):
-            self._late.append((element, key, tokens, False))
+            self.late.append((element, key, tokens, False))
         elif value in ("true", "false"):
             element.attrs[key] = value == "true"
         elif value:
@@ -186,7 +145,7 @@ class Context(Rows):
     def keep_ids(self, element: Element, key: str, ids: list[str], is_href: bool = False) -> None:
         """Keep ids (or hrefs) as ids of the graph, when all elements are there."""
         if ids:
-            self._late.append((element, key, ids, is_href))
+            self.late.append((element, key, ids, is_href))
 
     def text(self, row: int, feature: str) -> None:
         """A child that is only text stands for an attribute of the same name."""
@@ -282,29 +241,13 @@ class Context(Rows):
 
     def conditions(self, targets: list[str], feature: str) -> None:
         """The constraints with these ids are pre- or postconditions."""
-        self._conditions.extend((target, v.CONDITIONS[feature]) for target in targets)
+        self.late_conditions.extend((target, v.CONDITIONS[feature]) for target in targets)
 
     def bound(self, row: int, index: int, value: AttrValue) -> None:
         """Lower (0) or upper (1) bound of the element above the row."""
         gid = self.gids[row]
         if gid:
             self.bounds.setdefault(gid, [1, 1])[index] = value
-
-    # -- at the end ----------------------------------------------------------------------------
-
-    def finish(self) -> None:
-        """What could only be said when every row of every document was read."""
-        bounds.write(self)
-        for target, subkind in self._conditions:
-            row = self.document.ids.get(target, -1)
-            if row >= 0 and self.lowered.own[row]:
-                self.graph[self.gids[row]].attrs["subkind"] = subkind
-        for element, key, targets, is_href in self._late:
-            there = targets if is_href else dangling.existing(self, element, key, targets)
-            found = [self.unit.target_id(self.lowered, t, is_href) for t in there]
-            ids = tuple(id for id in found if id is not None)
-            if ids:
-                element.attrs[key] = ids if len(ids) > 1 or key in v.LISTS else ids[0]
 
 
 _BOUNDS = ("lower", "upper")

@@ -5,35 +5,17 @@ what they name must exist all the same. Readers note what they do not follow whi
 what no file of the unit has is told once for each element and feature.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
-
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.frontends.xmi import naming, rules
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.loose import Loose, Names
 from sysmlc.frontends.xmi.vocabulary import snake
 from sysmlc.ir import Element
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.context import Context
-
 
 _SAID_ELSEWHERE = frozenset(map(snake, naming.SAID_ELSEWHERE))
 
 
-Names = tuple[str, ...] | frozenset[str]
-
-
-class Loose(NamedTuple):
-    """Ids that a feature names and that its own file does not have."""
-
-    holder: str
-    """Id of the element that has the feature, or the nearest one around it."""
-    ordinal: int
-    feature: str
-    targets: list[str]
-    is_said_elsewhere: bool
-
-
-def look_inside(context: "Context", row: int, lost: Names = ()) -> None:
+def look_inside(context: Context, row: int, lost: Names = ()) -> None:
     """Note the dangling references of a row, and of all inside, that become no elements.
 
     Those that ``lost`` names are said nowhere else.
@@ -52,7 +34,7 @@ def look_inside(context: "Context", row: int, lost: Names = ()) -> None:
             context.look(document.parents[at], feature, idref, feature not in lost)
 
 
-def _naming_shapes(context: "Context", lost: Names) -> list[bool]:
+def _naming_shapes(context: Context, lost: Names) -> list[bool]:
     """For each shape whether its rows can name an element; the last is for rows without one."""
     names = {*naming.NAMING, *lost, context.document.idref_key}
     found = [not names.isdisjoint(written) for _, _, written in context.document.shapes]
@@ -60,7 +42,7 @@ def _naming_shapes(context: "Context", lost: Names) -> list[bool]:
     return context.naming[lost]
 
 
-def existing(context: "Context", element: Element, key: str, targets: list[str]) -> list[str]:
+def existing(context: Context, element: Element, key: str, targets: list[str]) -> list[str]:
     """The ids kept under ``key`` that lead somewhere; the others are noted."""
     if key in naming.ASKED_LATER or all(target in context.document.ids for target in targets):
         return targets
@@ -71,7 +53,7 @@ def existing(context: "Context", element: Element, key: str, targets: list[str])
     return [target for target in targets if target not in missing]
 
 
-def report(context: "Context") -> None:
+def report(context: Context) -> None:
     """Report what no file of the unit has; all documents must have been read."""
     found: dict[tuple[int, str, bool], list[Loose]] = {}
     for one in context.loose:
@@ -83,11 +65,11 @@ def report(context: "Context") -> None:
         _report(context, uses[0], [target for one in uses for target in one.targets])
 
 
-def _is_missing(context: "Context", target: str) -> bool:
+def _is_missing(context: Context, target: str) -> bool:
     return context.unit.find(context.lowered, target, False) is None
 
 
-def _report(context: "Context", first: Loose, targets: list[str]) -> None:
+def _report(context: Context, first: Loose, targets: list[str]) -> None:
     holder = context.graph.get(first.holder)
     place = Place(context.document.name, first.ordinal)
     name = context.graph.qualified_name(holder) if holder is not None else context.document.name

@@ -1,16 +1,13 @@
 """What is special about the elements of single kinds when they are made."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.context import Context
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
-if TYPE_CHECKING:
-    from sysmlc.frontends.xmi.context import Context
-
-Detail = Callable[["Context", Element, int, str, str], None]
+Detail = Callable[[Context, Element, int, str, str], None]
 """Completes an element; takes its row, the name of its metaclass and its feature."""
 
 
@@ -45,7 +42,7 @@ def of(kind: Kind, feature: str) -> Detail | None:
 # -- what depends on the element ---------------------------------------------------------------
 
 
-def _pin(context: "Context", element: Element, row: int, _type_name: str, _feature: str) -> None:
+def _pin(context: Context, element: Element, row: int, _type_name: str, _feature: str) -> None:
     owner = context.owner(row)
     if owner is not None and owner.subkind == "reply":
         # Where no type is written the default is that of an accepted call, an output pin.
@@ -53,7 +50,7 @@ def _pin(context: "Context", element: Element, row: int, _type_name: str, _featu
 
 
 def _constraint(
-    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
     owner = context.owner(row)
     if owner is not None:
@@ -61,21 +58,19 @@ def _constraint(
 
 
 def _transition(
-    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
     for target in context.document.targets(row, "guard"):
         context.guards.append((element, target, row))
 
 
-def _behaviour(
-    context: "Context", element: Element, row: int, _type_name: str, feature: str
-) -> None:
+def _behaviour(context: Context, element: Element, row: int, _type_name: str, feature: str) -> None:
     owner = context.owner(row)
     if owner is not None:
         context.graph.connect(v.STATE_BEHAVIOURS[feature], owner, element)
 
 
-def _trigger(context: "Context", element: Element, row: int, _type_name: str, feature: str) -> None:
+def _trigger(context: Context, element: Element, row: int, _type_name: str, feature: str) -> None:
     owner = context.owner(row)
     context.triggers.append((element, row))
     if feature == "deferrableTrigger":
@@ -85,7 +80,7 @@ def _trigger(context: "Context", element: Element, row: int, _type_name: str, fe
 
 
 def _connector_end(
-    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
     owner = context.owner(row)
     if owner is not None:
@@ -94,7 +89,7 @@ def _connector_end(
 
 
 def _activity_parameter(
-    context: "Context", element: Element, row: int, _type_name: str, _feature: str
+    context: Context, element: Element, row: int, _type_name: str, _feature: str
 ) -> None:
     context.parameters.append((element, row))
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Completion, Context
+from sysmlc.frontends.xmi.making import make
 
 Reader = Callable[[Context, int], None]
 
@@ -15,7 +16,7 @@ def reading(type_name: str, complete: Completion) -> Reader:
 
     def read(context: Context, row: int) -> None:
         feature = context.document.features[row]
-        if context.make(row, kind, subkind, type_name, feature):
+        if make(context, row, kind, subkind, type_name, feature):
             complete(context, context.graph[context.gids[row]], row)
         else:
             context.subtree(row, Verdict.UNSUPPORTED)

@@ -4,7 +4,8 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.elements import Reader
-from sysmlc.frontends.xmi.structure import value_in
+from sysmlc.frontends.xmi.making import make
+from sysmlc.frontends.xmi.value_rows import value_in
 from sysmlc.ir import Kind
 
 
@@ -15,7 +16,7 @@ def _packaged_value(type_name: str) -> Reader:
             context.subtree(row, Verdict.UNSUPPORTED)
             return
         subkind = metaclasses.hyphenated(type_name)
-        context.make(row, Kind.EXPRESSION, subkind, type_name, "packagedElement")
+        make(context, row, Kind.EXPRESSION, subkind, type_name, "packagedElement")
         element = context.graph[context.gids[row]]
         value = value_in(context, row)
         element.attrs["value"] = value.value

@@ -12,16 +12,18 @@ from sysmlc.frontends.xmi import (
     structure,
     templates,
     usecases,
+    value_rows,
     vocabulary,
 )
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.making import make
 from sysmlc.frontends.xmi.swift import Swift
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 
 _Reader = Callable[[Context, int], None]
 
 _FEATURES: dict[str, _Reader] = (
-    structure.FEATURES | behaviour.FEATURES | interactions.FEATURES | templates.FEATURES
+    value_rows.FEATURES | behaviour.FEATURES | interactions.FEATURES | templates.FEATURES
 )
 _TYPES: dict[str, _Reader] = (
     expressions.TYPES
@@ -119,6 +121,6 @@ def _element(context: Context, row: int, type_name: str, feature: str) -> int:
         reader(context, row)
         return context.next_row(row)
     kind = metaclasses.kind_of(type_name)
-    if kind is None or not context.make(row, kind[0], kind[1], type_name, feature):
+    if kind is None or not make(context, row, kind[0], kind[1], type_name, feature):
         return context.subtree(row, Verdict.UNSUPPORTED)
     return row + 1

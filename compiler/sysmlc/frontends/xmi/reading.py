@@ -22,6 +22,7 @@ from sysmlc.frontends.xmi import (
 )
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.finishing import finish
 from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
@@ -80,7 +81,7 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         applications.note_namespaces(context)
         enterprise_architect_profiles.localise(context)
         comments.restore(context)
-        context.finish()
+        finish(context)
     for context in contexts:
         applications.lower(context)
         if context.extensions:
