@@ -49,7 +49,7 @@ def agrees(graph):
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path):
-    assert agrees(compile_example(path, "ir").graph) > 20
+    assert agrees(compile_example(path, "ir").graph) > 15
 
 
 @pytest.mark.parametrize("seed", range(0, 50, 10))
