@@ -1,8 +1,8 @@
 """Robots on floors of the thesis's sizes (tables 4.1 and 4.2): synthesis, validation, states.
 
-``python benchmarks/robots.py`` draws targets with a seed; robots may start anywhere, and every start
-is simulated. CPU seconds. Beside ours stand the thesis's, measured on another machine, for contracts
-with counters, and with the environment synthesised too; its code generation is not ours yet.
+``python benchmarks/robots.py`` draws targets with a seed; robots may start anywhere, and every
+start is simulated. CPU seconds. Beside ours stand the thesis's, measured on another machine, for
+contracts with counters, and with the environment synthesised too; we generate no code yet.
 ``--slower N`` tells how much slower this machine is than the one for which the budget was set.
 """
 
@@ -111,8 +111,9 @@ def _measured(report: Report, size: tuple[int, int, int], slower: float) -> None
 
 def _validated(study: Study, controller: Synthesis) -> tuple[Outcome, float]:
     start = time.process_time()
-    travel = simulated(study, answers_of(study, controller))
-    made = allocated(Outcome(study, controller, travel), _nowhere, Sink())
+    answers = answers_of(study, controller)
+    made = Outcome(study, controller, simulated(study, answers), answers)
+    made = allocated(made, _nowhere, Sink())
     return made, time.process_time() - start
 
 

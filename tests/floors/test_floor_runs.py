@@ -72,7 +72,7 @@ def test_decision_diagrams_come_to_the_same(seed):
 
 
 def test_starts_are_all_placements_of_robots_in_different_cells():
-    starts = patterns(2, 3)
+    starts = patterns((3, 3))
     assert [f"{one:09b}" for one in starts[0]] == ["001001001", "010010010", "100100100"]
     assert [f"{one:09b}" for one in starts[1]] == ["000000111", "000111000", "111000000"]
     assert apart(starts, (1 << 9) - 1).bit_count() == 6

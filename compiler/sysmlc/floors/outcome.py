@@ -5,6 +5,7 @@ from itertools import islice
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.floors.allocate import greedy
+from sysmlc.floors.answers import Answers
 from sysmlc.floors.environment import Sharing, environment_contract
 from sysmlc.floors.optimal import Best, best, near
 from sysmlc.floors.relations import Relation, relations
@@ -93,6 +94,8 @@ class Outcome:
     study: Study
     controller: Synthesis
     travel: Travel
+    answers: tuple[Answers, ...] = ()
+    """Of the controller, for each robot: what was asked once is known."""
     relations: tuple[Relation, ...] = ()
     greedy: Schedule | None = None
     best: Best | None = None
@@ -120,7 +123,7 @@ def studied(
     """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported."""
     controller = synthesise(study, place, sink, options)
     answers = answers_of(study, controller)
-    made = Outcome(study, controller, simulated(study, answers))
+    made = Outcome(study, controller, simulated(study, answers), answers)
     if has_relations:
         made = replace(made, relations=tuple(_related(made, place, sink, options)))
     return allocated(made, place, sink)
@@ -130,7 +133,7 @@ def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = Non
     """Allocate and validate; another study with new targets on the same floor does with this one's
     robots: nothing is synthesised again (thesis 4.6.1)."""
     study = study or made.study
-    answers = answers_of(study, made.controller)
+    answers = made.answers[:1] * len(study.robots)
     if not answers or not study.targets:
         return replace(made, study=study)
     travel = simulated(study, answers)

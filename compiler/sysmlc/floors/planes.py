@@ -6,6 +6,9 @@ not become negative.
 """
 
 from collections.abc import Sequence
+from itertools import accumulate
+from math import prod
+from operator import mul
 from typing import Generic, Protocol, TypeVar
 
 from sysmlc.values import dataclass
@@ -32,13 +35,14 @@ class Runs(Generic[P]):
     """By robot and cell."""
 
 
-def patterns(count: int, choices: int) -> list[list[int]]:
+def patterns(choices: Sequence[int]) -> list[list[int]]:
     """For each of some digits with so many values the numbers of which it has a value, as bits.
 
     The bit at place n belongs to the number n, written with the digits, the first one lowest.
     """
-    whole = choices**count
-    return [_digit(choices**place, choices, whole) for place in range(count)]
+    whole = prod(choices)
+    strides = accumulate(choices, mul, initial=1)
+    return [_digit(stride, one, whole) for stride, one in zip(strides, choices, strict=False)]
 
 
 def _digit(stride: int, choices: int, whole: int) -> list[int]:

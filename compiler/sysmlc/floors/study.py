@@ -36,10 +36,7 @@ class Grid:
 
     def neighbours(self, cell: int) -> Iterator[tuple[str, int]]:
         """Commands that lead somewhere, and where."""
-        for command in WAYS:
-            there = self.after(cell, command)
-            if there is not None:
-                yield command, there
+        return iter(_near(self)[cell])
 
     def distances(self, target: int) -> dict[int, int]:
         """Steps to the target from every cell from which a way leads there."""
@@ -60,6 +57,15 @@ def _after(grid: Grid, cell: int, command: str) -> int | None:
     there = row * grid.columns + column
     is_inside = 0 <= row < grid.rows and 0 <= column < grid.columns
     return there if is_inside and there not in grid.blocked else None
+
+
+@lru_cache(64)
+def _near(grid: Grid) -> tuple[tuple[tuple[str, int], ...], ...]:
+    """By cell the commands that lead somewhere, and where."""
+    return tuple(
+        tuple((way, there) for way in WAYS if (there := grid.after(cell, way)) is not None)
+        for cell in range(grid.size)
+    )
 
 
 @lru_cache(1 << 12)

@@ -121,6 +121,8 @@ class _Aside(Generic[P]):
         self.traffic, self.held, self.leads, self.open = traffic, held, leads, open_
         self.robots = range(len(traffic.places))
         none, size = traffic.none, traffic.grid.size
+        pairs = zip(traffic.taken, traffic.reserved, strict=True)
+        self.barred = [one | other for one, other in pairs]
         self.chosen = [none] * size
         self.gone = [none for _ in self.robots]
         self.found = [[none] * size for _ in self.robots]
@@ -131,18 +133,16 @@ class _Aside(Generic[P]):
         if all(one == none for one in self.held):
             return self.found
         wanted = [self._standing(robot, self.held) for robot in self.robots]
-        for _ in self.robots:
+        asked = list(wanted)
+        while any(one != none for one in wanted):
             for robot in self.robots:
                 if wanted[robot] != none:
                     self._move(robot, wanted[robot])
+            # Cells do not become free within a step: who could not go is not asked again.
             stuck = [one & ~gone for one, gone in zip(wanted, self.gone, strict=True)]
-            if all(one == none for one in stuck):
-                break
             beside = self._beside(stuck)
-            wanted = [
-                one | self._standing(robot, beside)
-                for robot, one in zip(self.robots, wanted, strict=True)
-            ]
+            wanted = [self._standing(robot, beside) & ~asked[robot] for robot in self.robots]
+            asked = [one | more for one, more in zip(asked, wanted, strict=True)]
         return self.found
 
     def _standing(self, robot: int, cells: list[P]) -> P:
@@ -156,8 +156,9 @@ class _Aside(Generic[P]):
     def _beside(self, stuck: list[P]) -> list[P]:
         """By cell: it is next to a robot that has to make way and cannot."""
         grid, none = self.traffic.grid, self.traffic.none
+        them = [robot for robot in self.robots if stuck[robot] != none]
         here = [
-            any_of([stuck[robot] & self.traffic.places[robot][cell] for robot in self.robots], none)
+            any_of([stuck[robot] & self.traffic.places[robot][cell] for robot in them], none)
             for cell in range(grid.size)
         ]
         return [
@@ -174,9 +175,8 @@ class _Aside(Generic[P]):
                 traffic.taken, traffic.reserved, self.chosen, strict=True
             )
         ]
-        asked = wanted & ~self.gone[robot]
         for cell in traffic.grid.cells:
-            left = asked & traffic.places[robot][cell]
+            left = wanted & traffic.places[robot][cell]
             if left == none:
                 continue
             near = [there for _, there in traffic.grid.neighbours(cell)]

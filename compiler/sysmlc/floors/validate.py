@@ -4,7 +4,7 @@ All starts are simulated, thousands in one operation (``planes``); where there a
 them, the same steps are computed on decision diagrams over the starts (MOOD4I thesis, 4.4.3).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import prod
 from typing import Generic
 
@@ -15,7 +15,7 @@ from sysmlc.floors.travel import starts_of
 from sysmlc.floors.world import Allocation, World
 from sysmlc.values import dataclass
 
-CHUNK = 1 << 20
+CHUNK = 1 << 17
 """Runs in one operation: more do not fit into fast memory."""
 MOST_LISTED = 50_000_000
 """Starts up to which each has a bit of its own."""
@@ -88,18 +88,23 @@ def _count(study: Study) -> int:
 
 
 def chunks(study: Study) -> Iterator[Chunk[int]]:
-    """All starts, some robots' cells fixed in each chunk so that it is not too large."""
-    cells = len(study.grid.cells)
-    open_ = [at for at, robot in enumerate(study.robots) if robot.start is None]
-    listed = 0
-    while listed < len(open_) and cells ** (listed + 1) <= CHUNK:
-        listed += 1
+    """All starts in chunks that are not too large: the last robots' cells are fixed in each, and
+    those of the one before them are a few."""
+    cells = study.grid.cells
     fixed = {at: one.start for at, one in enumerate(study.robots) if one.start is not None}
-    for chosen in _choices(study, open_[listed:], tuple(fixed.values())):
-        here = fixed | dict(zip(open_[listed:], chosen, strict=True))
-        chunk = _chunk(study, here, open_[:listed])
-        if chunk.count:
-            yield chunk
+    open_ = [at for at in range(len(study.robots)) if at not in fixed]
+    listed = 0
+    while listed < len(open_) and len(cells) ** (listed + 1) <= CHUNK:
+        listed += 1
+    some = max(1, CHUNK // len(cells) ** listed)
+    groups = [cells[at : at + some] for at in range(0, len(cells), some)]
+    for chosen in _choices(study, open_[listed + 1 :], tuple(fixed.values())):
+        here = fixed | dict(zip(open_[listed + 1 :], chosen, strict=True))
+        for group in groups if listed < len(open_) else ((),):
+            split = dict.fromkeys(open_[listed : listed + 1], group)
+            chunk = _chunk(study, here, dict.fromkeys(open_[:listed], cells) | split)
+            if chunk.count:
+                yield chunk
 
 
 def _choices(
@@ -115,15 +120,17 @@ def _choices(
                 yield (cell, *rest)
 
 
-def _chunk(study: Study, fixed: dict[int, int], open_: Sequence[int]) -> Chunk[int]:
-    grid = study.grid
-    whole = (1 << len(grid.cells) ** len(open_)) - 1
-    digits = dict(zip(open_, patterns(len(open_), len(grid.cells)), strict=True))
-    starts = [[0] * grid.size for _ in study.robots]
+def _chunk(
+    study: Study, fixed: Mapping[int, int], open_: Mapping[int, Sequence[int]]
+) -> Chunk[int]:
+    """The starts with some robots in their cells, and others in any of theirs."""
+    sizes = [len(cells) for cells in open_.values()]
+    whole = (1 << prod(sizes)) - 1
+    starts = [[0] * study.grid.size for _ in study.robots]
     for robot, cell in fixed.items():
         starts[robot][cell] = whole
-    for robot, digit in digits.items():
-        for cell, bits in zip(grid.cells, digit, strict=True):
+    for (robot, cells), digit in zip(open_.items(), patterns(sizes), strict=True):
+        for cell, bits in zip(cells, digit, strict=True):
             starts[robot][cell] = bits
     valid = apart(starts, whole)
     placed = tuple(tuple(one & valid for one in robot) for robot in starts)

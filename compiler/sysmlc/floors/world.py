@@ -55,6 +55,8 @@ class World(Generic[P]):
             for at in range(len(study.robots))
         ]
         self.done: list[P] = [none] * len(study.targets)
+        self.near = [tuple(study.grid.neighbours(cell)) for cell in range(size)]
+        self.hops: dict[tuple[int, int], tuple[str, int] | None] = {}
         self.wrong = none
         """In which runs two robots met, one was offered a cell that is taken or offered to another
         one, or a machine had no answer."""
@@ -102,7 +104,7 @@ class World(Generic[P]):
             here = body.places[cell] & goes
             if here == none:
                 continue
-            for way, there in grid.neighbours(cell):
+            for way, there in self.near[cell]:
                 moves = here & body.commands.get(way, none)
                 self.wrong = self.wrong | (moves & taken[there])
                 found[there] = found[there] | moves
@@ -186,7 +188,7 @@ class World(Generic[P]):
         yield cell, resting
         for place, target in enumerate(self.allocation[number]):
             yield self.study.targets[target].cell, body.sent[place]
-        for _, there in self.study.grid.neighbours(cell):
+        for _, there in self.near[cell]:
             yield there, body.aside[there]
 
     def _row(self, number: int, known: Memory, goal: int, given: P) -> None:
@@ -194,7 +196,7 @@ class World(Generic[P]):
         if given == none:
             return
         body = self.bodies[number]
-        step = hop(self.study.grid, known.cell, goal)
+        step = self._hop(known.cell, goal)
         if step is not None:
             self._offer(step[1], given)
         answer = self.answers[number].get(known, goal, step[0] if step else "")
@@ -204,6 +206,12 @@ class World(Generic[P]):
         body.memory[answer.memory] = body.memory.get(answer.memory, none) | given
         if answer.command in WAYS:
             body.commands[answer.command] = body.commands.get(answer.command, none) | given
+
+    def _hop(self, cell: int, goal: int) -> tuple[str, int] | None:
+        key = cell, goal
+        if key not in self.hops:
+            self.hops[key] = hop(self.study.grid, cell, goal)
+        return self.hops[key]
 
     def _offer(self, cell: int, given: P) -> None:
         """Offer a cell to a robot: one that is free, and offered to no other (C_E)."""
