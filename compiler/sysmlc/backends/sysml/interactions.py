@@ -21,12 +21,16 @@ def lifeline(book: Book, entry: Entry) -> list[Line]:
     for one in book.graph.targets(element, Edge.REPRESENTS):
         type_ = type_of(book.graph, one)
         shape = book.plan.entry(type_)
-        is_part = shape is not None and shape.shape.keyword in ("part def", "item def")
+        word = "" if shape is None else _LIFELINES.get(shape.shape.keyword, "")
         name = None if type_ is None else type_name(book, entry.parent, element, type_)
         if name is not None:
-            head = f"{head if is_part else head.replace('part ', '')} : {name}"
+            head = f"ref {word}{quoted(entry.name)} : {name}"
         book.approximated(element, "what a lifeline represents", "a part of the same type")
     return [Line(head, contents(book, entry))]
+
+
+_LIFELINES = {"part def": "part ", "item def": "part ", "port def": "port "}
+"""What a lifeline is by the definition that types it; messages go between occurrences."""
 
 
 def message(book: Book, entry: Entry) -> list[Line]:
