@@ -108,7 +108,8 @@ def _performed(graph: Graph, owner: Element) -> Iterator[Element]:
     family = [owner] if owner.kind in edges else []
     for one in family:
         above = graph.sources(one, edges[one.kind])
-        family += (special for special in above if special not in family)
+        # In KerML a structure may specialise a behaviour: it is no service.
+        family += (one for one in above if one.kind in edges and one not in family)
         yield from _services_of(graph, one)
 
 
