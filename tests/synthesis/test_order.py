@@ -2,7 +2,8 @@
 
 from contracts_in_lines import contract
 
-from sysmlc.synthesis import Manager, Symbols
+from sysmlc.synthesis import Manager, Symbols, make_game
+from sysmlc.synthesis.order import laid
 
 
 def order(text: str) -> list[str]:
@@ -22,3 +23,22 @@ def test_many_numbers_of_one_range_are_interleaved():
 def test_few_numbers_and_other_variables_stay_as_declared():
     text = "env a: 0..3\nenv go: bool\nsys b: 0..3\nsys c: 0..4"
     assert order(text) == ["a.0", "a.1", "b.0", "b.1", "go.0", "c.0", "c.1", "c.2"]
+
+
+def test_in_a_crowd_what_is_spoken_of_together_is_close():
+    names = [f"{kind}{number}" for kind in ("run", "done") for number in range(30)]
+    pairs = [(f"run{number}", f"done{number}") for number in range(30)]
+    found = laid(names, pairs)
+    assert all(abs(found.index(one) - found.index(other)) == 1 for one, other in pairs)
+
+
+def test_what_nothing_is_said_of_stays_where_it_is():
+    assert laid(["a", "b", "c"], []) == ("a", "b", "c")
+
+
+def test_the_order_of_a_crowd_is_that_of_its_conjuncts():
+    text = "\n".join(f"env {kind}{number}: bool" for kind in "ab" for number in range(25))
+    rules = "\n".join(f"assume always a{number} -> b{number}'" for number in range(25))
+    bits = make_game(contract(f"{text}\n{rules}"), Manager()).manager.bits
+    places = {bit: place for place, bit in enumerate(bits)}
+    assert all(abs(places[f"a{n}.0"] - places[f"b{n}.0"]) == 2 for n in range(25))

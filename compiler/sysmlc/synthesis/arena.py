@@ -83,6 +83,8 @@ class Steps:
     """What can be forced in one step of an arena."""
 
     arena: Arena
+    within: Node | None = None
+    """States that turns do not lead out of, and outside of which nothing matters."""
     count: int = 0
     """Predecessors computed so far."""
     _products: tuple[tuple[Owner, Product], ...] = field(init=False)
@@ -96,6 +98,8 @@ class Steps:
         Where the environment has no next input, that is so.
         """
         self.count += 1
+        if self.within is not None:
+            target = self.arena.manager.restrict(target, self.within)
         return played(self._products, self.arena.symbols.prime(target))
 
     def nearer(self, reached: Node, winning: Node) -> Node:

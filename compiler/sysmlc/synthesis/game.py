@@ -94,7 +94,13 @@ def make_game(contract: Contract, manager: Manager) -> Game:
     for conjunct in (*contract.assumptions, *contract.guarantees):
         _check(conjunct, contract, conjunct in contract.assumptions)
     with manager.guard():
-        return _translated(contract, Symbols(manager, contract.variables))
+        return _translated(contract, Symbols(manager, contract.variables, _together(contract)))
+
+
+def _together(contract: Contract) -> Iterator[tuple[str, ...]]:
+    """The variables of each conjunct."""
+    for conjunct in (*contract.assumptions, *contract.guarantees):
+        yield tuple(dict.fromkeys(one.name for one in variables(conjunct.formula)))
 
 
 def _translated(contract: Contract, symbols: Symbols) -> Game:

@@ -34,7 +34,12 @@ class Routes:
 
 
 def routes(arena: Arena) -> Routes | None:
-    """The ways to move one component of a system that has some."""
+    """The ways to move one component of a system that has some.
+
+    Where the system may have to wait for the environment, joint steps cost less than many.
+    """
+    if arena.fairness:
+        return None
     for place, turn in enumerate(arena.turns):
         components = _components(arena, turn) if turn.owner is Owner.SYSTEM else ()
         if len(components) >= FEWEST:
@@ -126,6 +131,7 @@ class SingleSteps:
 
     arena: Arena
     routes: Routes
+    within: Node | None = None
     count: int = 0
     """Predecessors computed so far."""
     _before: tuple[tuple[Owner, Product], ...] = field(init=False)

@@ -15,6 +15,7 @@ from sysmlc.synthesis.game import Game
 from sysmlc.synthesis.layers import Layer, Way
 from sysmlc.synthesis.manager import Node
 from sysmlc.synthesis.narrow import invariant, without_ranges
+from sysmlc.synthesis.reach import reachable
 from sysmlc.synthesis.routes import SingleSteps, routes
 from sysmlc.synthesis.symmetry import Exchange, image, orbits
 from sysmlc.values import dataclass
@@ -53,8 +54,15 @@ def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
     Raises LimitError when a limit of the manager is reached.
     """
     with arena.manager.guard():
-        found = None if is_complete else by_single_moves(arena)
-        return found or _Solver(arena, Steps(arena), is_complete).run()
+        if is_complete:
+            return _Solver(arena, Steps(arena), is_complete).run()
+        return by_single_moves(arena) or _Solver(arena, _few(arena), is_complete).run()
+
+
+def _few(arena: Arena) -> Steps:
+    """The steps of a game, among the states that plays come to if these are few."""
+    with arena.manager.calm():
+        return Steps(arena, reachable(arena))
 
 
 def by_single_moves(arena: Arena) -> Solution | None:
@@ -110,7 +118,10 @@ class _Solver:
 
     def _candidates(self) -> Node:
         """The states that may be winning: those in which a rule for the present step holds."""
-        return self.arena.states if self.is_complete else self.arena.states & invariant(self.arena)
+        if self.is_complete:
+            return self.arena.states
+        found = self.arena.states & invariant(self.arena)
+        return found if self._steps.within is None else found & self._steps.within
 
     def _again(self, goal: int, winning: Node) -> Node:
         """Those of the winning states from which the goal can be reached, again and again."""

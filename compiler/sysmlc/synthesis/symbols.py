@@ -24,14 +24,22 @@ class SymbolError(ValueError):
 class Symbols:
     """Bits of the variables in one manager."""
 
-    def __init__(self, manager: Manager, variables: Iterable[Variable]) -> None:
-        """Declare the bits of the variables, each beside its next value (``order``)."""
+    def __init__(
+        self,
+        manager: Manager,
+        variables: Iterable[Variable],
+        together: Iterable[Collection[str]] = (),
+    ) -> None:
+        """Declare the bits of the variables, each beside its next value (``order``).
+
+        ``together`` are names of variables that something is said of.
+        """
         self.manager = manager
         self.variables = {one.name: one for one in variables}
         self._bits = {name: _bits(one) for name, one in self.variables.items()}
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
-        order = ordered(self.variables.values(), self._bits)
+        order = ordered(self.variables.values(), self._bits, together)
         self._to_next = {bit: next_bit(bit) for bit in order}
         self._to_present = {after: bit for bit, after in self._to_next.items()}
         manager.declare([bit for pair in self._to_next.items() for bit in pair])
