@@ -5,7 +5,11 @@
 
 With SYSMLC_CORPUS set the official files are measured too. The tools beside ours are measured
 where they are installed (``pip install sysml tree-sitter-sysml``); another notation of the same
-numbers is MB/s, 1000 / (ms/MB). Exit code 1 when a budget is missed.
+numbers is MB/s, 1000 / (ms/MB).
+
+The budgets were set on a machine where expat alone, the floor, took 9.0 ms/MB (``xmi.py``): here
+they count times as much longer as expat takes in this run. Whether they hold as they stand is
+told beside. Exit code 1 when a budget is missed.
 """
 
 import argparse
@@ -17,6 +21,7 @@ from pathlib import Path
 
 import measuring
 import sysml_processes
+import xmi
 from measuring import Report
 
 _WORK = Path(__file__).with_name("sysml_work.py")
@@ -44,7 +49,10 @@ OFFICIAL = 2.0
 """Seconds to check the 195 training and example files in one process."""
 
 EDITED = 0.3
-"""Seconds to compile the ICE laboratory again after an edit of one line: a note, or a number."""
+"""Seconds to compile the ICE laboratory again after an edit of one line."""
+
+_EDITS = ("a note", "a number", "a guard", "a step more")
+"""What is edited there (``sysml_processes``)."""
 
 _CELL = """\
     part def Cell{n} :> Machine {{
@@ -87,30 +95,35 @@ def generate(folder: Path, megabytes: float) -> None:
     (folder / "line.sysml").write_text(f"{_HEAD}{cells}}}\n", "utf-8")
 
 
-def processes(report: Report, folder: Path, rounds: int) -> None:
+def processes(report: Report, folder: Path, rounds: int, slower: float) -> None:
     """The lines of whole processes; what is edited is compiled with a cache that is warm."""
+
+    def budget(name: str, seconds: float, limit: float) -> None:
+        report.scaled(name, f"{seconds:6.3f} s", seconds, limit, slower, "s")
+
     _, seconds = sysml_processes.text(folder, sysml_processes.ALONE, rounds)
-    _budget(report, "a file with no import", seconds, SMALL)
+    budget("a file with no import", seconds, SMALL)
     first, seconds = sysml_processes.text(folder, sysml_processes.WITH_LIBRARY, rounds)
-    _budget(report, "with the library, first", first, FIRST)
-    _budget(report, "with the library, indexed", seconds, LIBRARY)
+    budget("with the library, first", first, FIRST)
+    budget("with the library, indexed", seconds, LIBRARY)
     corpus = os.environ.get("SYSMLC_CORPUS", "")
     if corpus:
-        first, noted, seconds = sysml_processes.official(Path(corpus), folder, rounds)
-        report.line("all official files, first", f"{first:6.3f} s")
-        report.line("all official files, a note edited", f"{noted:6.3f} s")
-        _budget(report, "all official files, a line edited", seconds, OFFICIAL)
-        first, noted, seconds = sysml_processes.laboratory(Path(corpus), folder, rounds)
+        unit = sysml_processes.gather(Path(corpus), folder)
+        whole = measuring.measure(_WORK, "resolve", unit, rounds)
+        budget("all 195 parsed and resolved", whole.total * whole.megabytes / 1000, OFFICIAL)
+        first, noted, seconds = sysml_processes.official(unit, folder, rounds)
+        report.line("all 195 checked, first", f"{first:6.3f} s")
+        report.line("all 195 checked, a note edited", f"{noted:6.3f} s")
+        budget("all 195 checked, a package more", seconds, OFFICIAL)
+        first, *found = sysml_processes.laboratory(Path(corpus), folder, rounds)
         report.line("ICE laboratory, first", f"{first:6.3f} s")
-        _budget(report, "ICE laboratory, a note edited", noted, EDITED)
-        _budget(report, "ICE laboratory, a number edited", seconds, EDITED)
+        for what, seconds in zip(_EDITS, found, strict=True):
+            budget(f"ICE laboratory, {what}", seconds, EDITED)
 
 
-def _budget(report: Report, name: str, seconds: float, limit: float) -> None:
-    report.budget(name, f"{seconds:6.3f} s", seconds, limit, "s")
-
-
-def measure(report: Report, name: str, folder: Path, rounds: int, *, linked: bool) -> None:
+def measure(
+    report: Report, name: str, folder: Path, rounds: int, slower: float, *, linked: bool
+) -> None:
     """The lines of one folder; ``linked`` where all its names can be found."""
     rows = {
         work: measuring.measure(_WORK, work, folder, rounds)
@@ -120,7 +133,7 @@ def measure(report: Report, name: str, folder: Path, rounds: int, *, linked: boo
     for work, limit in (("parse", PARSE), ("resolve", RESOLVE)):
         if work in rows:
             text, total = rows[work].text, rows[work].total
-            report.budget(f"{name}: {work}", text, total, limit, "ms/MB")
+            report.scaled(f"{name}: {work}", text, total, limit, slower, "ms/MB")
     for peer in _PEERS:
         try:
             report.line(f"{name}: {peer}", measuring.measure(_WORK, peer, folder, rounds).text)
@@ -138,11 +151,12 @@ def main() -> int:
     report.calibration()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        slower = xmi.slowness(report, argparse.Namespace(rounds=given.rounds, seed=1), folder)
         generate(folder, 1.0)
-        measure(report, "generated", folder, given.rounds, linked=True)
-        processes(report, folder, given.rounds)
+        measure(report, "generated", folder, given.rounds, slower, linked=True)
+        processes(report, folder, given.rounds, slower)
     for path in (*_official(), *given.folders):
-        measure(report, path.name, path, given.rounds, linked=path.name in _LINKED)
+        measure(report, path.name, path, given.rounds, slower, linked=path.name in _LINKED)
     return 0 if report.is_good else 1
 
 

@@ -1,7 +1,7 @@
 """CPU seconds of whole processes that compile SysML v2, start-up and reading of the cache included.
 
 The cache is one of its own. Before each round one line of a file is edited: what is written is
-something else (a part more), a number, or a note only, which changes no words.
+something else (a package or a step more), a number, or a note only, which changes no words.
 """
 
 import os
@@ -37,6 +37,8 @@ package P {
 """
 _number = count()
 _VALUE = re.compile(r"(?<= := )\d+(?=;)")
+_COMPARED = re.compile(r"(?<=== )(?:true|false)\b")
+_TURNED = {"true": "false", "false": "true"}
 Edit = Callable[[str], str]
 
 
@@ -48,6 +50,18 @@ def note(text: str) -> str:
 def number(text: str) -> str:
     """Another number for the first one that something is set to."""
     return _VALUE.sub(str(1000 + next(_number)), text, count=1)
+
+
+def guard(text: str) -> str:
+    """A comparison with true or false, turned round: another one each time."""
+    found = list(_COMPARED.finditer(text))
+    one = found[next(_number) % len(found)]
+    return text[: one.start()] + _TURNED[one[0]] + text[one.end() :]
+
+
+def step(text: str) -> str:
+    """One more step before the end of the first action."""
+    return text.replace("then done;", f"then action more{next(_number)}; then done;", 1)
 
 
 def package(text: str) -> str:
@@ -94,18 +108,24 @@ def text(folder: Path, content: str, rounds: int) -> list[float]:
 
 
 def laboratory(corpus: Path, folder: Path, rounds: int) -> list[float]:
-    """``sysmlc`` of a copy of the ICE laboratory: the first time, a note, a number."""
+    """``sysmlc`` of a copy of the ICE laboratory: the first time, a note, number, guard, step."""
     unit = folder / "ice"
     shutil.copytree(corpus / "sysml2" / "ice-lab", unit)
     (unit / "sysmlc.toml").write_text(_LEVELS, "utf-8")
     file = unit / "services" / "conveyor.sysml"
-    return edited(file, [str(unit), "-o", str(folder / "out")], folder, rounds, note, number)
+    arguments = [str(unit), "-o", str(folder / "out")]
+    return edited(file, arguments, folder, rounds, note, number, guard, step)
 
 
-def official(corpus: Path, folder: Path, rounds: int) -> list[float]:
-    """``sysmlc check`` of all training and example files: the first time, a note, a package."""
+def gather(corpus: Path, folder: Path) -> Path:
+    """A copy of all training and example files."""
     unit = folder / "official"
     for name in ("training", "examples"):
         shutil.copytree(corpus / "sysml2" / "omg-release" / name, unit / name)
+    return unit
+
+
+def official(unit: Path, folder: Path, rounds: int) -> list[float]:
+    """``sysmlc check`` of these files as one unit: the first time, a note, a package."""
     file = min(unit.rglob("*.sysml"))
     return edited(file, ["check", str(unit)], folder, rounds, note, package)
