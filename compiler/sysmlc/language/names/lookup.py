@@ -6,7 +6,7 @@ from sysmlc.language.names import contexts, results
 from sysmlc.language.names.contents import NAMESPACES, TYPES
 from sysmlc.language.names.imports import Imports
 from sysmlc.language.names.members import Hits
-from sysmlc.language.tree import Node, Relation
+from sysmlc.language.tree import Node, Reference, Relation
 
 _MOST = 2_000
 """Circles that a name may be looked for in; behind those it is known as lost. Namesakes that each
@@ -31,6 +31,8 @@ class Lookup(Imports):
         super().__init__(implied, by_role)
         self._roots = roots
         self._text = text
+        self.given_up: set[Reference] = set()
+        """References that were looked for in more circles than may be followed."""
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """The element that a relation of ``node`` leads to; None when a name leads nowhere.
@@ -48,6 +50,8 @@ class Lookup(Imports):
         targets = self._follow(node, relation)
         self._active.discard(reference)
         is_whole = len(targets) == len(reference.chain)
+        if not is_whole and self.cuts - before > _MOST:
+            self.given_up.add(reference)
         if is_whole or not self._active or not 0 < self.cuts - before <= _MOST:
             reference.targets = targets
         return targets[-1] if len(targets) == len(reference.chain) else None

@@ -89,3 +89,23 @@ part def A8000;
 part gate : A7999;
 """,
 )
+TOO_CIRCULAR = rule(
+    "SM240",
+    "names-too-circular",
+    Severity.ERROR,
+    "'{name}' was looked for in 2,000 circles of names, and is given up",
+    why="A name may be inherited or imported from what is itself looked up by name. Where "
+    "namesakes specialise what lies in one another there are more ways to a name than can be "
+    "tried, so that it may be there and is not found.",
+    help="give the namesakes names of their own, or qualify what they specialise",
+    wrong="""\
+part def A :> A::B;
+part def A :> A::B;
+...
+part def A :> A::B;
+""",
+    right="""\
+part def A1 :> A::B;
+part def A { part def B; }
+""",
+)

@@ -9,7 +9,7 @@ from sysmlc.language.names.advice import advice
 from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.results import result
-from sysmlc.language.names.rules import UNRESOLVED
+from sysmlc.language.names.rules import TOO_CIRCULAR, UNRESOLVED
 from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
@@ -33,6 +33,11 @@ def report(model: "Model", document: Document, node: Node, relation: Relation, s
     if _is_incomplete(before or (start.scope if start.inherited else None), lookup):
         return
     name = "::".join(reference.chain[index])
+    if reference in lookup.given_up:
+        sink.report(
+            TOO_CIRCULAR, subject(document, node, _place(document, reference, index)), name=name
+        )
+        return
     inside = f" in '{before.name}'" if before is not None and before.name else ""
     sink.report(
         UNRESOLVED,
