@@ -162,3 +162,65 @@ def test_what_is_too_large_to_be_listed_is_told(here, monkeypatch):
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert "warning[SM549 counter-strategy-not-written]" in made.stderr
     assert not (here.folder / "out").exists()
+
+
+COUNTER = {
+    "variables": {
+        "go": {"owner": "env", "type": "bool"},
+        "n": {"owner": "sys", "type": [0, 200]},
+    },
+    "guarantees": {
+        "init": ["n = 0"],
+        "safety": ["go' & n < 200 -> n' = n + 1", "!(go' & n < 200) -> n' = n"],
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("form", "name", "start"),
+    [
+        ("own", "lamp.machine.json", '{\n  "format": "sysmlc-machine/2",'),
+        ("table", "lamp.controller.json", '{\n  "format": "sysmlc-controller/1",'),
+        ("gr1c", "lamp.gr1c.json", '{\n  "version": 1,'),
+    ],
+)
+def test_machines_have_the_form_that_is_asked_for(here, form, name, start):
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out", "--machine", form)
+    assert made.exit_code == 0
+    assert here.read(f"out/{name}").startswith(start)
+
+
+def test_what_gr1c_cannot_list_is_said_and_not_written(here):
+    wide = COUNTER["variables"] | {f"a{n}": {"owner": "env", "type": [0, 60]} for n in range(3)}
+    here.write("wide.gr1.json", json.dumps(COUNTER | {"variables": wide}))
+    made = here.sysmlc("synth", "wide.gr1.json", "-o", "out", "--machine", "gr1c")
+    assert made.exit_code == 2
+    assert "error[SM543 machine-not-written]" in made.stderr
+    assert "the limit of 50,000 steps of the strategy was reached" in made.stderr
+    assert here.files() == []
+
+
+def test_a_limit_in_the_making_of_a_machine_leaves_no_file(here, monkeypatch):
+    from sysmlc.synthesis import synthesise
+    from sysmlc.synthesis.manager import LimitError
+
+    def beyond(*given):
+        raise LimitError("of CPU time", "1 s")
+
+    for step in ("reached", "listed", "machine", "faults"):
+        with monkeypatch.context() as patch:
+            patch.setattr(synthesise, step, beyond)
+            here.write("counter.gr1.json", json.dumps(COUNTER))
+            made = here.sysmlc("synth", "counter.gr1.json", "-o", "out", "--time-limit", "1")
+        assert made.exit_code == 2
+        assert "no machine is written: the limit of 1 s of CPU time was reached" in made.stderr
+        assert here.files() == []
+
+
+def test_few_nodes_are_a_limit_for_machines_too(here):
+    here.write("counter.gr1.json", json.dumps(COUNTER))
+    made = here.sysmlc("synth", "counter.gr1.json", "-o", "out", "--nodes", "30")
+    assert made.exit_code == 2
+    assert "the limit of 30 nodes was reached" in made.stderr
+    assert here.files() == []
