@@ -90,3 +90,30 @@ def test_deep_models_are_written():
     text = text_of(deep)
     assert text.count("package") == 300
     assert text.startswith("package P0 {\n    package P1 {\n")
+
+
+STORED = """
+Package p "P"
+  Class t "Thing"
+  Activity a "A"
+    DataStore s "store"
+      -> typed-by t
+    Control d "choose" subkind="merge"
+    Action x "x" subkind="opaque"
+      Pin x.in "in1" direction="in"
+        -> typed-by t
+    ObjectFlow f1
+      -> flow-source s
+      -> flow-target {first}
+    ObjectFlow f2
+      -> flow-source {first}
+      -> flow-target x.in
+"""
+
+
+def test_a_flow_between_a_store_and_a_control_node_is_told_as_said_in_other_words():
+    def told(text):
+        return [one for one in written(refined(text))[1] if "a store and a control node" in one]
+
+    assert [one[:5] for one in told(STORED.format(first="d"))] == ["SM734"]
+    assert told(STORED.format(first="x.in").partition("    ObjectFlow f2")[0]) == []

@@ -9,9 +9,11 @@ from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.structure import contents
-from sysmlc.backends.sysml.successions import feature
+from sysmlc.backends.sysml.successions import STORES, feature
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
+
+PAST_CONTROL = "an object flow between a store and a control node"
 
 
 def object_flow(book: Book, entry: Entry) -> list[Line]:
@@ -23,12 +25,16 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     if source is None or target is None:
         return book.drop(entry, "flow ends")
     if source.kind is Kind.CONTROL:
+        if target.kind in STORES:
+            book.approximated(element, PAST_CONTROL, "bindings past it")
         return []
     is_direct = target.kind is not Kind.CONTROL
     if is_direct and "guard" in element.attrs:
         book.losses.note(UNSAID_ATTRIBUTE, element, attribute="guard", kind="ObjectFlow")
     reached = [target] if is_direct else list(_reached(book, target))
     is_said = not is_direct and _is_said(book, source, reached)
+    if not is_direct and not is_said:
+        book.approximated(element, PAST_CONTROL, "bindings past it")
     start, name = feature(book, entry.parent, source), "" if is_said else entry.name
     lines: list[Line] = []
     for one in reached:

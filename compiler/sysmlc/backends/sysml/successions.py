@@ -12,7 +12,7 @@ from sysmlc.backends.sysml.values import literal
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
-_STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
+STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 
 
 def leaving(book: Book, entry: Entry) -> list[Line]:
@@ -51,7 +51,7 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
     target = book.graph.target(flow, Edge.FLOW_TARGET)
     end = None if target is None else vertex(book, entry.parent, target)
     if end is None:
-        if target is None or target.kind not in _STORES:
+        if target is None or target.kind not in STORES:
             book.lost(flow, "flow-target")
         return None
     own = book.plan.entry(flow)
@@ -123,7 +123,7 @@ def vertex(book: Book, scope: Entry | None, element: Element) -> str | None:
     if step is not None:
         book.said.add(element.id)
         return vertex(book, scope, step)
-    return None if element.kind in _STORES else _vertex(book, scope, element)
+    return None if element.kind in STORES else _vertex(book, scope, element)
 
 
 def _vertex(book: Book, scope: Entry | None, element: Element) -> str | None:
