@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _FOLDER = "contracts"
 _TITLES = {
@@ -21,6 +21,21 @@ _TITLES = {
     Class.LIVENESS: "Again and again",
     Class.OTHER: "In temporal logic outside GR(1)",
 }
+_PREFIXES = {
+    "at_": "a token is on the flow",
+    "run_": "the action is running",
+    "done_": "the environment says that it is done",
+    "receive_": "the signal comes",
+    "send_": "the signal is sent",
+    "do_": "the behaviour of the state is being done",
+    "ticks_": "steps that the state has been active",
+    "taken_": "which of several possible transitions was taken",
+    "last_": "what the region was when it was last active",
+    "was_": "what the condition was in the step before",
+}
+"""What variables of diagrams begin with."""
+_UNSET = re.compile(r"!\w+$")
+_MANY = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +50,11 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """Conjuncts of one class."""
+    """Conjuncts of one class; ``unset`` are Booleans that are only false, when there are many."""
 
     title: str
     rows: tuple[Row, ...]
+    unset: tuple[Row, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +68,8 @@ class Page:
     outputs: tuple[Row, ...]
     assumptions: tuple[Section, ...]
     guarantees: tuple[Section, ...]
+    words: str = ""
+    """What variables mean whose names begin alike."""
 
 
 def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
@@ -73,7 +91,16 @@ def _page(graph: Graph, contract: Contract) -> Page:
         tuple(_variable(told, one) for one in owned["sys"]),
         _sections(told, contract.assumptions),
         _sections(told, contract.guarantees),
+        "; ".join(_words(contract)),
     )
+
+
+def _words(contract: Contract) -> Iterator[str]:
+    """What the names say that stand for something of the diagram, not for a feature."""
+    names = [one.name for one in contract.variables]
+    for prefix, said in _PREFIXES.items():
+        if any(name.startswith(prefix) for name in names):
+            yield f"`{prefix}...`: {said}"
 
 
 def _variable(told: _Told, variable: Variable) -> Row:
@@ -85,7 +112,16 @@ def _sections(told: _Told, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]
     for one in conjuncts:
         row = Row(print_formula(one.formula), one.text, *told(one.origin))
         rows[one.class_].append(row)
-    return tuple(Section(_TITLES[c], tuple(found)) for c, found in rows.items() if found)
+    return tuple(_section(c, found) for c, found in rows.items() if found)
+
+
+def _section(class_: Class, rows: list[Row]) -> Section:
+    unset = [one for one in rows if class_ is Class.INIT and _UNSET.match(one.formula)]
+    if len(unset) < _MANY:
+        return Section(_TITLES[class_], tuple(rows))
+    shown = tuple(one for one in rows if one not in unset)
+    names = tuple(replace(one, formula=one.formula[1:]) for one in unset)
+    return Section(_TITLES[class_], shown, names)
 
 
 def _name(graph: Graph, id: str) -> str:

@@ -26,6 +26,10 @@ def _contract_md(page: Any) -> str:
                     f"- {row.text} *({row.element})*\n"
                     f"  `{row.formula}`\n"
                 )
+            if section.unset:
+                add("- Nothing of this is so:\n")
+                for row in section.unset:
+                    add(f"  - `{row.formula}` *({row.element})*\n")
         if not found:
             add(
                 "\n"
@@ -61,6 +65,13 @@ def _contract_md(page: Any) -> str:
         "As long as the environment keeps the assumptions, the component keeps the guarantees.\n"
         "A prime (`x'`) is the value in the next step: the reaction to a step is seen in the next.\n"
         "\n"
+    )
+    if page.words:
+        add(
+            f"Names of variables: {page.words}.\n"
+            "\n"
+        )
+    add(
         "## What the environment decides\n"
         f"{variables(page.inputs, 'Nothing.')}\n"
         "## What the component decides\n"

@@ -14,6 +14,7 @@ from sysmlc.logic.activities.loops import endless_entries
 from sysmlc.logic.activities.tokens import (
     ACTIVITY_REGION,
     Duration,
+    Guard,
     TokenEdge,
     TokenGraph,
     TokenNode,
@@ -110,11 +111,15 @@ def _edge_text(game: Game, edge: TokenEdge) -> str:
     if edge.marked:
         around = [node.label for node in game.graph.regions_around(edge.region)]
         given = f"{next(iter(around), 'the activity')} starts"
-    when = f" and its guard {edge.guard.text} holds" if edge.guard else ""
+    when = "" if edge.guard is None else f" and {_open(edge.guard)}"
     return (
         f"{_capital(edge.label)} gets a token when {given}{when}, and keeps it "
         f"until {target.label} takes it."
     )
+
+
+def _open(guard: Guard) -> str:
+    return "no other guard holds" if guard.condition is None else f"its guard {guard.text} holds"
 
 
 def _choice(game: Game, node: TokenNode) -> Iterator[Conjunct]:
