@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 
 from sysmlc.diagnostics import Diagnostic, Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Graph, Kind
 from sysmlc.ir.reads import Literal, Reads, Value
 from sysmlc.ir.rows import Rows, rows
 from sysmlc.output import Artefact
@@ -64,11 +64,15 @@ class Recording:
         self._sink.listen(None)
         self._graph.reads = None
         reads, seen = self._reads, self._seen
-        if seen is None or len(self._graph.pending) or seen != rows(self._graph):
+        if seen is None or len(self._graph.pending) or not _is_as_kept(self._graph, seen):
             return None
         return Recorded(
             graph=seen,
-            literals=tuple(x for x in reads.literals if (x.id, x.key) not in reads.rewritten),
+            literals=tuple(
+                one
+                for one in reads.literals
+                if one.id in self._graph and (one.id, one.key) not in reads.rewritten
+            ),
             asked=tuple(sorted(reads.asked)),
             readers={value: tuple(readers) for value, readers in reads.readers.items()},
             stored={module: tuple(who) for module, who in reads.stored.items()},
@@ -76,6 +80,15 @@ class Recording:
             heard={reader: digest_of_findings(found) for reader, found in self._heard.items()},
             made=tuple(made(one) for one in artefacts),
         )
+
+
+def _is_as_kept(graph: Graph, kept: Rows) -> bool:
+    """Whether a graph of the rows is like the graph, also in the order of each kind."""
+    of_kind: dict[str, list[str]] = {}
+    for row in kept[0]:
+        of_kind.setdefault(row[1], []).append(row[0])
+    known = {kind.value: [one.id for one in graph.of_kind(kind)] for kind in Kind}
+    return kept == rows(graph) and {name: ids for name, ids in known.items() if ids} == of_kind
 
 
 def made(artefact: Artefact) -> Made:

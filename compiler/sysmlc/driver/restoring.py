@@ -55,7 +55,7 @@ def restored(
         return None
     try:
         return _restored(known, before, opened, request)
-    except (LostError, moving.LostError):
+    except Exception:
         return None
 
 

@@ -124,6 +124,24 @@ class Facts(dict[str, Fact]):
         self._literals.note(self._place)
         return super().keys()
 
+    def copy(self) -> dict[str, Fact]:
+        self._literals.note(self._place)
+        return super().copy()
+
+    def __or__(self, other: dict[str, Fact]) -> dict[str, Fact]:  # type: ignore[override]
+        return self.copy() | other
+
+    def __ror__(self, other: dict[str, Fact]) -> dict[str, Fact]:  # type: ignore[override]
+        return other | self.copy()
+
+    def __eq__(self, other: object) -> bool:
+        self._literals.note(self._place)
+        return super().__eq__(other)
+
+    def __ne__(self, other: object) -> bool:
+        self._literals.note(self._place)
+        return super().__ne__(other)
+
     def values(self) -> ValuesView[Fact]:  # type: ignore[override]
         self._literals.note(self._place)
         return super().values()
