@@ -31,13 +31,15 @@ class Traffic(Generic[P]):
         grid: Grid,
         none: P,
         places: list[list[P]],
+        taken: list[P],
         is_idle: list[P],
         goals: list[list[int]],
     ) -> None:
-        """``places`` by robot and cell; ``is_idle``: in its target; ``goals``: its list's cells."""
+        """``places`` by robot and cell, ``taken`` by cell, ``is_idle`` by robot: it is in its
+        target; ``goals``: the cells of its list."""
         self.grid, self.none, self.places, self.is_idle = grid, none, places, is_idle
         self.goals = goals
-        self.taken = [any_of([one[cell] for one in places], none) for cell in range(grid.size)]
+        self.taken = taken
         self.reserved = [none] * grid.size
 
     def ways(self, robot: int, wanted: list[P]) -> list[P]:

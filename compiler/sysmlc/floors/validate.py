@@ -96,15 +96,20 @@ def chunks(study: Study) -> Iterator[Chunk[int]]:
     listed = 0
     while listed < len(open_) and len(cells) ** (listed + 1) <= CHUNK:
         listed += 1
-    some = max(1, CHUNK // len(cells) ** listed)
-    groups = [cells[at : at + some] for at in range(0, len(cells), some)]
     for chosen in _choices(study, open_[listed + 1 :], tuple(fixed.values())):
         here = fixed | dict(zip(open_[listed + 1 :], chosen, strict=True))
-        for group in groups if listed < len(open_) else ((),):
+        left = tuple(cell for cell in cells if cell not in here.values())
+        for group in _groups(left, listed) if listed < len(open_) else ((),):
             split = dict.fromkeys(open_[listed : listed + 1], group)
-            chunk = _chunk(study, here, dict.fromkeys(open_[:listed], cells) | split)
+            chunk = _chunk(study, here, dict.fromkeys(open_[:listed], left) | split)
             if chunk.count:
                 yield chunk
+
+
+def _groups(cells: Sequence[int], listed: int) -> Iterator[Sequence[int]]:
+    """The cells in groups, as many as a chunk has room for beside the robots that are listed."""
+    some = max(1, CHUNK // len(cells) ** listed)
+    return (cells[at : at + some] for at in range(0, len(cells), some))
 
 
 def _choices(

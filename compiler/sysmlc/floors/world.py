@@ -60,6 +60,8 @@ class World(Generic[P]):
         self.wrong = none
         """In which runs two robots met, one was offered a cell that is taken or offered to another
         one, or a machine had no answer."""
+        self.taken = self._taken()
+        """By cell: a robot is there."""
         self._answer_all()
 
     # -- one step ------------------------------------------------------------------------------
@@ -78,23 +80,16 @@ class World(Generic[P]):
         self._answer_all()
 
     def _answer_all(self) -> None:
-        taken = self.taken()
-        self._offered: list[P] = list(taken)
+        self._offered = list(self.taken)
         for number in range(len(self.bodies)):
             self._answer(number, self._resting(number))
 
     def _move(self) -> None:
-        taken = self.taken()
         for body in self.bodies:
-            moved = self._moved(body, taken)
-            body.places = moved
-        for cell in range(self.study.grid.size):
-            seen = self.runs.none
-            for body in self.bodies:
-                self.wrong = self.wrong | (seen & body.places[cell])
-                seen = seen | body.places[cell]
+            body.places = self._moved(body)
+        self.taken = self._taken()
 
-    def _moved(self, body: Body[P], taken: list[P]) -> list[P]:
+    def _moved(self, body: Body[P]) -> list[P]:
         none, grid = self.runs.none, self.study.grid
         goes = any_of(list(body.commands.values()), none)
         if goes == none:
@@ -106,15 +101,22 @@ class World(Generic[P]):
                 continue
             for way, there in self.near[cell]:
                 moves = here & body.commands.get(way, none)
-                self.wrong = self.wrong | (moves & taken[there])
+                self.wrong = self.wrong | (moves & self.taken[there])
                 found[there] = found[there] | moves
         return found
 
-    def taken(self) -> list[P]:
-        """By cell: a robot is there."""
-        cells = range(self.study.grid.size)
-        none = self.runs.none
-        return [any_of([body.places[cell] for body in self.bodies], none) for cell in cells]
+    def _taken(self) -> list[P]:
+        """By cell: a robot is there; where there are two, something is wrong."""
+        none, found = self.runs.none, []
+        for cell in range(self.study.grid.size):
+            seen = none
+            for body in self.bodies:
+                here = body.places[cell]
+                if here != none:
+                    self.wrong = self.wrong | (seen & here)
+                    seen = seen | here
+            found.append(seen)
+        return found
 
     def _note_reached(self) -> None:
         for number, body in enumerate(self.bodies):
@@ -144,11 +146,10 @@ class World(Generic[P]):
     def _dispatch(self, idle: list[P]) -> None:
         goals = [[self.study.targets[one].cell for one in own] for own in self.allocation]
         places = [body.places for body in self.bodies]
-        traffic = Traffic(self.study.grid, self.runs.none, places, list(idle), goals)
+        traffic = Traffic(self.study.grid, self.runs.none, places, self.taken, list(idle), goals)
         for number, body in enumerate(self.bodies):
             traffic.reserve(traffic.ways(number, body.sent))
             traffic.reserve(body.aside)
-            # Who makes way has left a cell when it is where it was sent; until then it is taken.
         open_ = [self._open(number, idle[number]) for number in range(len(self.bodies))]
         decided = traffic.send(open_)
         for number, body in enumerate(self.bodies):
