@@ -35,10 +35,8 @@ ON_COMPILED = (
 """Tests that are run on the compiled modules, too."""
 
 
-@pytest.fixture(scope="module")
-def packages(tmp_path_factory):
+def packages(folder):
     """The folder that the wheel was unpacked into."""
-    folder = tmp_path_factory.mktemp("compiled")
     run = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", str(folder)]
     env = {**os.environ, "SYSMLC_COMPILED": "1"}
     done = subprocess.run([*run, str(ROOT)], capture_output=True, text=True, env=env)
@@ -64,17 +62,18 @@ def models():
     return [str(path) for path in found if path.suffix in (".aml", ".amlx")]
 
 
-def test_it_reads_all_plants_as_python_does(packages):
-    def told(which, env):
-        run = [sys.executable, "-c", DIGESTS, which, *models()]
-        done = subprocess.run(run, capture_output=True, text=True, env=env)
-        assert done.returncode == 0, done.stderr[-3000:]
-        return done.stdout.splitlines()
-
-    assert told("compiled", environment(packages)) == told("python", environment())
+def read_by(which, env):
+    """Digests of the graphs and findings of all plants, one a line."""
+    run = [sys.executable, "-c", DIGESTS, which, *models()]
+    done = subprocess.run(run, capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return done.stdout.splitlines()
 
 
-def test_it_passes_the_tests_of_what_is_compiled(packages):
+def test_it_reads_all_plants_as_python_does_and_passes_the_tests_of_what_is_compiled(tmp_path):
+    """One test, for the wheel takes most of the time, and tests may run in several processes."""
+    env = environment(packages(tmp_path))
+    assert read_by("compiled", env) == read_by("python", environment())
     run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *ON_COMPILED]
-    done = subprocess.run(run, capture_output=True, text=True, cwd=ROOT, env=environment(packages))
+    done = subprocess.run(run, capture_output=True, text=True, cwd=ROOT, env=env)
     assert done.returncode == 0, done.stdout[-3000:]
