@@ -119,6 +119,14 @@ NOT_PLAIN = {
     "a DOCTYPE": lambda text: text.replace("<xmi:XMI", "<!DOCTYPE x><xmi:XMI", 1),
     "an entity": lambda text: text.replace("&gt;", "&nbsp;"),
     "no character": lambda text: text.replace("&gt;", "&#1;"),
+    "a tag without its end": lambda text: text.replace(
+        "    <ownedComment",
+        '<packagedElement xmi:type="uml:Class" xmi:id="z" name="Z"/<ownedComment',
+    ),
+    "a start tag without its end": lambda text: text.replace("<body>", "<body", 1),
+    "a start tag that was seen, without its end": lambda text: text.replace(
+        "</language>", "</language><language</language>"
+    ),
     "an attribute twice": lambda text: text.replace(' name="A"', ' name="A" name="B"'),
     "an attribute without blank": lambda text: text.replace('" name="A"', '"name="A"'),
     "an attribute without value": lambda text: text.replace(' name="A"', " name"),

@@ -70,8 +70,8 @@ class Tags:
 
         ``parts`` are the piece, cut at quotes. Raises NotPlainError and IrregularError.
         """
-        last, _, text = parts[-1].partition(">")
-        key = (*parts[:-1:2], last)
+        last, sign, text = parts[-1].partition(">")
+        key = (*parts[:-1:2], last + sign)
         tag = self._bare.get(key) if len(parts) % 2 else None
         if tag is None:
             tag, text = self._parsed(piece)
