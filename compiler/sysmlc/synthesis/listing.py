@@ -14,7 +14,7 @@ from sysmlc.synthesis.memory import Reached, gives, steps
 from sysmlc.synthesis.strategy import Mode, Strategy
 from sysmlc.values import dataclass
 
-MOST_STATES = 2_000
+MOST_STATES = 1_000
 MOST_MOVES = 40_000
 
 Answer = tuple[tuple[Formula, ...], int]
@@ -119,17 +119,30 @@ class _Listing:
         possible = manager.exist(manager.support(care) - frozenset(deciding), care)
         found = {vector: possible}
         for bit in deciding:
-            split: dict[tuple[Node, ...], Node] = {}
-            for functions, memory in found.items():
-                for value in (False, True):
-                    here = memory & (manager.var(bit) if value else ~manager.var(bit))
-                    if here == manager.false:
-                        continue
-                    key = tuple(manager.assign(one, {bit: value}) for one in functions)
-                    split[key] = split.get(key, manager.false) | here
-            found = split
-            self._limit("states", len(self._states) + len(found), self._most[0])
+            found = self._split(found, bit)
         return found if possible != manager.false else {}
+
+    def _split(self, found: dict[tuple[Node, ...], Node], bit: str) -> dict[tuple[Node, ...], Node]:
+        """The same with the values of one more bit told apart where they matter."""
+        manager = self._manager
+        ends = {value: manager.cube({bit: value}) for value in (False, True)}
+        known: dict[tuple[Node, bool], Node] = {}
+
+        def left(node: Node, value: bool) -> Node:
+            key = node, value
+            if key not in known:
+                known[key] = manager.assign(node, {bit: value})
+            return known[key]
+
+        split: dict[tuple[Node, ...], Node] = {}
+        for functions, memory in found.items():
+            for value, end in ends.items():
+                here = memory & end
+                if here != manager.false:
+                    key = tuple(left(one, value) for one in functions)
+                    split[key] = split.get(key, manager.false) | here
+            self._limit("states", len(self._states) + len(split), self._most[0])
+        return split
 
     def _moves(self, state: _State, end: int) -> dict[Answer, Node]:
         """The moves of a state: what is possible, split by what is answered and what is next."""
