@@ -26,10 +26,11 @@ from sysmlc.values import dataclass
 PEER_LIMIT = 60.0
 DIN = "din8580"
 ACTIONS = ("turn", "move", "pick", "place", "compose", "decompose", "coordinator")
+WHOLE = "assembly_holistic"
 DECIDED = {
     **{f"{DIN}/{name}.json": 0.10 for name in ACTIONS},
     f"{DIN}/move.json": 0.2,
-    f"{DIN}/assembly_holistic.json": 3.0,
+    f"{DIN}/{WHOLE}.json": 3.0,
     "robots/robot_9.json": 0.3,
     "robots/robot_16.json": 0.3,
     "robots/robot_25.json": 0.3,
@@ -132,10 +133,11 @@ def cores(run: Run) -> None:
 def refinements(run: Run) -> None:
     """Each variant against the contract that it varies."""
     for name in _din(run):
-        base = f"{DIN}/{Path(name).stem.split('_')[0]}.json"
-        if base != name and Path(run.corpus, "gr1", base).exists():
-            found = work.best(partial(work.refined, run.text(name), run.text(base)))
-            run.line(f"refine {Path(name).stem} < {Path(base).stem}", found, REFINEMENT)
+        stem = Path(name).stem
+        base = next(one for one in (*ACTIONS, WHOLE) if stem.startswith(one))
+        if base != stem:
+            found = work.best(partial(work.refined, run.text(name), run.text(f"{DIN}/{base}.json")))
+            run.line(f"refine {stem} < {base}", found, REFINEMENT)
 
 
 def _din(run: Run) -> Iterator[str]:

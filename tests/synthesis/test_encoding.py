@@ -9,7 +9,7 @@ from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.derived import without_derived
 from sysmlc.synthesis.shift import shifted
 
-SUITE = 200
+SUITE = 500
 ROBOT = """
     env pos: 0..2
     env target: 0..2
@@ -32,10 +32,10 @@ ROBOT = """
 """
 
 
-@pytest.mark.parametrize("start", range(0, SUITE, 50))
+@pytest.mark.parametrize("start", range(0, SUITE, 100))
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
 def test_the_verdict_is_that_of_listed_states(kind, start):
-    found = [small_games.encoded_disagreement(kind(seed)) for seed in range(start, start + 50)]
+    found = [small_games.encoded_disagreement(kind(seed)) for seed in range(start, start + 100)]
     assert [text for text in found if text] == []
 
 
