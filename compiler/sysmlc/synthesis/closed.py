@@ -76,7 +76,7 @@ def _taken(machine: Machine, moves: Sequence[Move], symbols: Symbols, state: Var
 
 
 def _of_table(table: Table, symbols: Symbols, state: Variable) -> Relation:
-    nodes = _nodes(table, symbols)
+    nodes = nodes_of(table, symbols)
     first = tuple(symbols.unprime(one) for one in _entry(table, table.first, nodes, symbols, state))
     by_mode = [tuple(_entry(table, mode, nodes, symbols, state)) for mode in table.modes]
     later = list[Node]()
@@ -88,7 +88,7 @@ def _of_table(table: Table, symbols: Symbols, state: Variable) -> Relation:
     return Relation(first, (*later, symbols.domain(state.name)))
 
 
-def _nodes(table: Table, symbols: Symbols) -> list[Node]:
+def nodes_of(table: Table, symbols: Symbols) -> list[Node]:
     """The diagram of each place; the first two are false and true."""
     manager = symbols.manager
     found = [manager.false, manager.true]

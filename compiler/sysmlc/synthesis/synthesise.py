@@ -17,9 +17,10 @@ from sysmlc.synthesis.manager import LimitError, Limits, Manager, TooLargeError
 from sysmlc.synthesis.mealy import Machine
 from sysmlc.synthesis.memory import reached, registers
 from sysmlc.synthesis.minimise import minimised
+from sysmlc.synthesis.settled import settled
 from sysmlc.synthesis.solve import solve_arena
 from sysmlc.synthesis.strategy import Strategy, strategy
-from sysmlc.synthesis.table import tabled
+from sysmlc.synthesis.table import Table, tabled
 from sysmlc.synthesis.verify import Fault, faults
 from sysmlc.values import dataclass
 
@@ -98,6 +99,8 @@ def controller(
     with game.manager.guard():
         plan = strategy(game, solve_arena(arena))
         found = made(contract, game, plan, form)
+    if isinstance(found, Table):
+        found = settled(found, _fresh(game.manager, options))
     fault = next(faults(found, contract, _fresh(game.manager, options)), None)
     return _said(fault) if fault else found
 
