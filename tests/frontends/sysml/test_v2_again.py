@@ -107,7 +107,22 @@ def test_actors_ends_and_steps_that_several_lead_to_are_as_they_were():
     assert differences(Reading(JOINED, passes=PASSES).graph) == []
 
 
-@pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED])
+SHIPPED = """
+package P {
+    private import DIN8580::*;
+    part def Robot { action pick : Pick; }
+}
+"""
+
+
+def test_what_a_library_of_ours_has_is_referred_to_and_not_written():
+    lines = written(SHIPPED)
+    assert "action pick : DIN8580::Pick {" in lines
+    assert [line for line in lines if line.startswith("package")] == ["package P {"]
+    assert differences(Reading(SHIPPED, passes=PASSES).graph) == []
+
+
+@pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED, SHIPPED])
 def test_no_error_is_told_of_what_is_written(text):
     made, _ = document(Reading(text, passes=PASSES).graph, Sink())
     again = Reading(made, passes=PASSES)

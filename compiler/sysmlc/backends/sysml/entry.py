@@ -40,6 +40,8 @@ class Plan:
     losses: Losses
     tops: list[Entry] = field(default_factory=list)
     entries: dict[str, Entry] = field(default_factory=dict)
+    shipped: list[Entry] = field(default_factory=list)
+    """Packages of our own libraries, which the text refers to."""
     globals: dict[str, Entry] = field(default_factory=dict)
     added: dict[int, str] = field(default_factory=dict)
     """Type and multiplicity of attributes that no element stands for, by identity."""

@@ -3,6 +3,8 @@
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.measures import quantity_kind_of, unit_of
 
+SHIPPED = "sysmlc:"
+"""What the sources of elements of our own libraries begin with."""
 SCALARS = {
     "Boolean": "ScalarValues::Boolean",
     "Integer": "ScalarValues::Integer",

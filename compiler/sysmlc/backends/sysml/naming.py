@@ -14,7 +14,8 @@ _TAKEN_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
 def name_all(plan: Plan) -> None:
     """Give every member a name of its own in its namespace, if it needs one."""
     taken = dict.fromkeys(ROOTS)
-    plan.globals = _name(plan, plan.tops, set(taken))
+    shipped = {one.name: one for one in plan.shipped}
+    plan.globals = _name(plan, plan.tops, {*taken, *shipped}) | shipped
     stack = list(plan.tops)
     while stack:
         top = stack.pop()

@@ -1,7 +1,7 @@
 """Where each element stands in the text: decided before a line is written."""
 
 from sysmlc.backends.sysml.entry import Entry, Plan
-from sysmlc.backends.sysml.library import scalar_of
+from sysmlc.backends.sysml.library import SHIPPED, scalar_of
 from sysmlc.backends.sysml.merges import step_behind
 from sysmlc.backends.sysml.moves import move_flows, move_messages
 from sysmlc.backends.sysml.rules import Losses
@@ -23,11 +23,21 @@ def make_plan(graph: Graph, losses: Losses, dropped: frozenset[str]) -> Plan:
         if not root.attrs.get("external"):
             _place(plan, root, None, used)
     for root in graph.roots():
-        if root.id in used:
+        if root.id in used and root.source.startswith(SHIPPED):
+            _place_shipped(plan, root, used)
+        elif root.id in used:
             outside.place(root, used)
     move_flows(plan)
     move_messages(plan)
     return plan
+
+
+def _place_shipped(plan: Plan, root: Element, used: set[str]) -> None:
+    """What a library of ours has is referred to by its name there, and not written."""
+    number = len(plan.tops)
+    _place(plan, root, None, used)
+    plan.shipped.extend(plan.tops[number:])
+    del plan.tops[number:]
 
 
 class Outside:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from sysmlc.backends.sysml.library import SHIPPED
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.ir import Edge, Element, Graph, Kind
 
@@ -50,6 +51,8 @@ def _needed(graph: Graph, element: Element) -> Iterator[Element]:
         return
     if _is_of_measure(graph, element):
         return
+    methods = graph.targets(element, Edge.METHOD)
+    yield from (one for one in methods if one.source.startswith(SHIPPED))
     for edge in _EDGES:
         if edge is Edge.REFERENCES and element.kind in _NO_REFERENCES:
             continue
