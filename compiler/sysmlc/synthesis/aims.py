@@ -23,21 +23,25 @@ class Aim:
 
 
 def aims(
-    solution: Solution, goal: int, leading: Callable[[Node], Node], bits: Collection[str]
+    solution: Solution,
+    steps: Steps,
+    goal: int,
+    leading: Callable[[Node], Node],
+    bits: Collection[str],
 ) -> Iterator[Aim]:
     """What to do on the way to a goal, without two answers for one place.
 
-    ``leading`` gives all choices of values of ``bits`` that lead to given states for certain; what
-    leads nowhere leaves the environment without a next input, which is best of all. A state in
-    which this goal holds and another does not has no aim: the other one is in turn.
+    ``steps`` are those of the arena. ``leading`` gives all choices of values of ``bits`` that lead
+    to given states for certain; what leads nowhere leaves the environment without a next input,
+    which is best of all. A state in which this goal holds and another does not has no aim: the
+    other one is in turn.
     """
     manager = solution.arena.manager
-    steps = Steps(solution.arena)
     done = waiting = before = manager.false
     nowhere = Layer(manager.false, ())
     for layer in (nowhere, *solution.layers[goal]):
         manager.check("looking for what to do")
-        for here, there in _waits(solution, goal, layer, before, steps):
+        for here, there in _waits(solution, steps, goal, layer, before):
             where = here & ~done
             yield Aim(where, where & leading(there))
             waiting = waiting | here
@@ -49,7 +53,7 @@ def aims(
 
 
 def _waits(
-    solution: Solution, goal: int, layer: Layer, before: Node, steps: Steps
+    solution: Solution, steps: Steps, goal: int, layer: Layer, before: Node
 ) -> Iterator[tuple[Node, Node]]:
     """From which states of a layer the system may wait, and where."""
     if not layer.waiting:

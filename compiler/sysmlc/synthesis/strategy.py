@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.aims import aims
-from sysmlc.synthesis.arena import played, products
+from sysmlc.synthesis.arena import Steps, played, products
 from sysmlc.synthesis.choice import chosen, joined, substituted
 from sysmlc.synthesis.determined import answers
 from sysmlc.synthesis.game import Game
@@ -69,6 +69,7 @@ class _Maker:
         self.game, self.solution, self.arena = game, solution, solution.arena
         self.manager, self.symbols = game.manager, game.symbols
         self.count = max(1, len(self.arena.goals))
+        self.steps = Steps(self.arena)
         self.answers = answers(self.arena)
         self._owed = Product(self.manager, self.answers.parts, ())
 
@@ -116,7 +117,7 @@ class _Maker:
     def _chosen(self, goal: int, leading: Callable[[Node], Node], bits: Sequence[str]) -> Functions:
         pieces = (
             (aim.where, chosen(self.manager, aim.possible, bits))
-            for aim in aims(self.solution, goal, leading, bits)
+            for aim in aims(self.solution, self.steps, goal, leading, bits)
         )
         return joined(self.manager, pieces)
 
