@@ -1,6 +1,6 @@
 """The whole flow of the thesis's figure 4.3: from a study to a mission that is validated."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -142,8 +142,20 @@ def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = Non
     if found is None or not in_time(study, found.schedule):
         _report_no_allocation(study, found, place, sink)
         return made
+    return _validated(made, answers, _candidates(study, travel, found.schedule, first), place, sink)
+
+
+def _validated(
+    made: Outcome,
+    answers: Sequence[Answers],
+    candidates: Iterator[Schedule],
+    place: Place,
+    sink: Sink,
+) -> Outcome:
+    """Simulate allocations until one does; a run of the last one tells how, or why not."""
+    study = made.study
     tried: list[Tried] = []
-    for schedule in islice(_candidates(study, travel, found.schedule, first), MOST_TRIED):
+    for schedule in islice(candidates, MOST_TRIED):
         tried.append(Tried(schedule, validate(study, schedule.allocation, answers)))
         if tried[-1].validation.is_good:
             break

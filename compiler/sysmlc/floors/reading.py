@@ -8,7 +8,7 @@ from sysmlc.floors.ordering import orders_of
 from sysmlc.floors.study import Grid, Robot, Study, Target
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.names import Names
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 LIBRARY = "Floors"
 MOST_CELLS = 400
@@ -52,36 +52,48 @@ class _Reading:
     def study(self) -> Iterator[Study]:
         """The floor as a value; nothing when it is none, or something is wrong with it."""
         robots = [one for one in self._parts(self.block, "Robot") for _ in range(self._count(one))]
-        columns, rows = (self._size(name) for name in ("columns", "rows"))
-        if not robots or not self.is_good:
-            return
-        grid = Grid(columns, rows)
+        grid = Grid(self._size("columns"), self._size("rows"))
+        if robots and self.is_good:
+            made = self._mission(self._floor(grid, robots))
+            if made is not None:
+                self._check_ways(made)
+            if made is not None and self.is_good:
+                yield made
+
+    def _floor(self, grid: Grid, robots: list[Element]) -> Study:
+        """Robots and obstacles."""
+        starts = [self._placed(grid, one, is_needed=False) for one in robots]
         obstacles = [self._placed(grid, one) for one in self._parts(self.block, "Obstacle")]
+        self._check_cells(grid, obstacles, starts)
+        blocked = sorted((one.cell or 0, one.element.id) for one in obstacles)
+        return Study(
+            query.component_name(self.graph, self.block),
+            self.block.id,
+            Grid(grid.columns, grid.rows, tuple(cell for cell, _ in blocked)),
+            tuple(self._robots(starts)),
+            within=self._number(self.block, "within"),
+            counted=self._number(self.block, "counted") or 0,
+            obstacles=tuple(id for _, id in blocked),
+        )
+
+    def _mission(self, floor: Study) -> Study | None:
+        """The floor with its targets; None when something is wrong with one of them."""
         missions = self._parts(self.block, "Mission")
         wanted = [one for mission in missions for one in self._parts(self._type(mission), "Target")]
-        targets = [self._placed(grid, one) for one in wanted]
-        starts = [self._placed(grid, one, is_needed=False) for one in robots]
-        self._check_cells(grid, obstacles, targets, starts)
+        targets = [self._placed(floor.grid, one) for one in wanted]
+        cells = zip(floor.grid.blocked, floor.obstacles, strict=True)
+        barred = [_Placed(self.graph[id], cell) for cell, id in cells]
+        self._check_cells(floor.grid, barred, targets)
         orders = tuple(orders_of(self, missions, wanted))
         deadlines = [self._number(self._type(one), "deadline") for one in missions]
         if not self.is_good:
-            return
-        blocked = sorted((one.cell or 0, one.element.id) for one in obstacles)
-        made = Study(
-            query.component_name(self.graph, self.block),
-            self.block.id,
-            Grid(columns, rows, tuple(cell for cell, _ in blocked)),
-            tuple(self._robots(starts)),
-            tuple(self._targets(targets)),
-            orders,
-            max((one for one in deadlines if one is not None), default=None),
-            self._number(self.block, "within"),
-            self._number(self.block, "counted") or 0,
-            tuple(id for _, id in blocked),
+            return None
+        return replace(
+            floor,
+            targets=tuple(self._targets(targets)),
+            orders=orders,
+            deadline=max((one for one in deadlines if one is not None), default=None),
         )
-        self._check_ways(made)
-        if self.is_good:
-            yield made
 
     def fail(self, found: Rule, element: Element, **facts: str | int) -> None:
         """Report what is wrong with an element; the floor gives no study."""
@@ -157,24 +169,21 @@ class _Reading:
             return _Placed(part, None)
         return _Placed(part, row * grid.columns + column)
 
-    def _check_cells(
-        self, grid: Grid, obstacles: list[_Placed], targets: list[_Placed], starts: list[_Placed]
-    ) -> None:
-        """No two robots in one cell, none in that of an obstacle, no two targets in one."""
-        for group in ((*obstacles, *starts), (*obstacles, *targets)):
-            known: dict[int, _Placed] = {}
-            for one in group:
-                if one.cell is None or known.setdefault(one.cell, one) is one:
-                    continue
-                row, column = divmod(one.cell, grid.columns)
-                other = known[one.cell].element.name
-                facts: dict[str, str | int] = {
-                    "name": one.element.name,
-                    "other": other,
-                    "row": row,
-                    "column": column,
-                }
-                self.fail(rules.CELL_TAKEN, one.element, **facts)
+    def _check_cells(self, grid: Grid, obstacles: list[_Placed], others: list[_Placed]) -> None:
+        """No two of them are in one cell."""
+        known: dict[int, _Placed] = {}
+        for one in (*obstacles, *others):
+            if one.cell is None or known.setdefault(one.cell, one) is one:
+                continue
+            row, column = divmod(one.cell, grid.columns)
+            self.fail(
+                rules.CELL_TAKEN,
+                one.element,
+                name=one.element.name,
+                other=known[one.cell].element.name,
+                row=row,
+                column=column,
+            )
 
     def _robots(self, starts: Iterable[_Placed]) -> Iterator[Robot]:
         names = Names()
