@@ -5,12 +5,14 @@ from pathlib import Path
 import pytest
 from reading_v2 import FRONT
 
+from examples.compiling import compile_example, compile_text, outputs
 from sysmlc.backends.sysml.document import document
-from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
 from sysmlc.ir.measures import quantity_kind_of, unit_of
+from sysmlc.ir.text import parse_text
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
@@ -104,3 +106,36 @@ def test_baygate_comes_back_as_it_was(corpus, name):
 def test_the_example_comes_back_but_for_where_its_comments_are():
     graph = plant((ROOT / "examples/baygate/baygate.aml").read_bytes())
     assert {one.aspect for one in compare(graph, read_back(graph), ("id",))} == {"comment"}
+
+
+WITH_CONSTRAINTS = """\
+Package p "Plant"
+  Class plug "Plug" role="interface block"
+    Property plug.way "way" role="value"
+    Constraint plug.c "Allowed" body="way > 1" language="sysmlc"
+      -> references plug.way
+  DataType level "Level" role="value type"
+  Constraint p.c "" body="Level >= 0.0" language="sysmlc"
+    -> references level
+"""
+
+
+def test_constraints_of_interfaces_and_of_attribute_types_are_well_formed_in_the_text():
+    """A port has no parts, and a type is no value: these were errors of the text."""
+    text, _ = document(parse_text(WITH_CONSTRAINTS), Sink())
+    lines = [line.strip() for line in text.splitlines()]
+    assert "ref assert constraint Allowed { way > 1 }" in lines
+    assert any("Level >= 0.0" in line and "assert" not in line for line in lines)
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("name", ["vera_plant", "opak_festo_v35", "amlsec_casestudy_a"])
+def test_the_text_of_a_real_plant_has_no_errors(name, corpus, tmp_path):
+    data = (corpus / "aml" / "dev" / f"{name}.aml").read_bytes()
+    made = compile_text(tmp_path, f"{name}.aml", data, "sysml")
+    for path, text in outputs(made).items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    again = compile_example(tmp_path / "sysml" / f"{name}.sysml", "ir")
+    found = [one for one in again.diagnostics if one.severity is Severity.ERROR]
+    assert [str(one.message) for one in found] == []

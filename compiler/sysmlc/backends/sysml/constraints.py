@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import qualified
 from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.words import quoted
-from sysmlc.ir import Edge, Element
+from sysmlc.ir import Edge, Element, Kind
 
 _KEYWORDS = {
     "precondition": "precondition",
@@ -37,6 +37,9 @@ def constraint(book: Book, entry: Entry) -> list[Line]:
     marks = [f"#{book.ours(entry.parent, mark)}"] if mark else []
     name = quoted(entry.name) if entry.name else ""
     marked = [word, *marks] if word == "require" else [*marks, word]
+    if above is not None and above.shape.plain.split()[:1] == ["port"]:
+        # What a port has inside is no part of it (SysML v2, 8.3.12).
+        marked.insert(0, "ref")
     words = [*visibility(book, element), *marked, "constraint", name]
     body = annotations.of(book, entry) + book.members(entry)
     body += [Line("", text=[result])] if result else opaque_lines(book, entry, element)
@@ -47,6 +50,9 @@ def constraint(book: Book, entry: Entry) -> list[Line]:
 
 def _result(book: Book, entry: Entry, element: Element) -> str | None:
     text = element.attrs.get("body")
+    if any(one.kind is Kind.DATA_TYPE for one in book.graph.targets(element, Edge.REFERENCES)):
+        # AutomationML calls the values of an attribute type by its name: here it is no feature.
+        return None
     return expression(book, entry, str(text)) if text else None
 
 
