@@ -30,8 +30,13 @@ def started(study: Study, limits: Limits | None = None) -> tuple[Runs[Node], int
         for robot in starts:
             valid = valid & ~(taken & robot[cell])
             taken = taken | robot[cell]
-    runs = Runs(valid, manager.false, tuple(tuple(one & valid for one in own) for own in starts))
+    known = tuple(tuple(one & valid for one in own) for own in starts)
+    runs = Runs(valid, manager.false, known, _but)
     return runs, manager.count(valid, [bit for own in names for bit in own])
+
+
+def _but(one: Node, other: Node) -> Node:
+    return one & ~other
 
 
 def _in_cell(manager: Manager, study: Study, robot: int, cell: int, bits: list[str]) -> Node:

@@ -8,7 +8,7 @@ from sysmlc.floors.study import Study
 from sysmlc.floors.travel import START, Travel
 from sysmlc.values import dataclass
 
-MOST_NODES = 20_000
+MOST_NODES = 10_000
 """Partial allocations that are looked at before the best one found counts as good enough."""
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from sysmlc.floors.answers import Answers
-from sysmlc.floors.planes import Runs
+from sysmlc.floors.planes import Runs, but
 from sysmlc.floors.study import STAY, Study
 from sysmlc.floors.world import Allocation, World
 from sysmlc.plantuml import label, plain
@@ -31,7 +31,8 @@ def story(
 ) -> tuple[Moment, ...]:
     """The run from some starts, for so many steps."""
     cells = range(study.grid.size)
-    runs = Runs(1, 0, tuple(tuple(int(cell == start) for cell in cells) for start in starts))
+    placed = tuple(tuple(int(cell == start) for cell in cells) for start in starts)
+    runs = Runs(1, 0, placed, but)
     world = World(study, allocation, answers, runs)
     done = list(world.done)
     found = [_moment(world, done)]

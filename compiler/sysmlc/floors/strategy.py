@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.floors.answers import Answers
-from sysmlc.floors.planes import Runs
+from sysmlc.floors.planes import Runs, but
 from sysmlc.floors.robot import robot_contract
 from sysmlc.floors.study import Robot, Study
 from sysmlc.floors.travel import START, Travel, starts_of
@@ -65,12 +65,12 @@ def _times(study: Study, cell: int, answers: Answers) -> dict[int, int]:
     starts = [0] * study.grid.size
     for at, start in enumerate(cells):
         starts[start] = 1 << at
-    runs = Runs((1 << len(cells)) - 1, 0, (tuple(starts),))
+    runs = Runs((1 << len(cells)) - 1, 0, (tuple(starts),), but)
     world = World(alone, ((0,),), (answers,), runs)
     found: dict[int, int] = {}
     for time in range(1, 4 * study.grid.size):
         world.step()
-        arrived = world.done[0] & ~world.wrong
+        arrived = but(world.done[0], world.wrong)
         found |= {
             start: time
             for at, start in enumerate(cells)

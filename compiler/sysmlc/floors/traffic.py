@@ -8,7 +8,7 @@ robots that stand in its way are sent aside, with those who stand in their way (
 from typing import Generic
 
 from sysmlc.floors.paths import chain
-from sysmlc.floors.planes import P, any_of
+from sysmlc.floors.planes import P, Runs, any_of
 from sysmlc.floors.study import Grid
 from sysmlc.values import dataclass
 
@@ -29,7 +29,7 @@ class Traffic(Generic[P]):
     def __init__(
         self,
         grid: Grid,
-        none: P,
+        runs: Runs[P],
         places: list[list[P]],
         taken: list[P],
         is_idle: list[P],
@@ -37,10 +37,11 @@ class Traffic(Generic[P]):
     ) -> None:
         """``places`` by robot and cell, ``taken`` by cell, ``is_idle`` by robot: it is in its
         target; ``goals``: the cells of its list."""
-        self.grid, self.none, self.places, self.is_idle = grid, none, places, is_idle
+        self.grid, self.none, self.but = grid, runs.none, runs.but
+        self.places, self.is_idle = places, is_idle
         self.goals = goals
         self.taken = taken
-        self.reserved = [none] * grid.size
+        self.reserved = [runs.none] * grid.size
 
     def ways(self, robot: int, wanted: list[P]) -> list[P]:
         """By cell: it is on the robot's way to its target; ``wanted`` by place in its list."""
@@ -76,12 +77,13 @@ class Traffic(Generic[P]):
         sent: Sent[P] = Sent([[] for _ in robots], [])
         for is_first in (True, False):
             for robot in robots:
-                asks = wants[robot] & leads[robot] if is_first else wants[robot] & ~leads[robot]
+                asks = wants[robot] & leads[robot]
+                asks = asks if is_first else self.but(wants[robot], leads[robot])
                 starts = self._starting(robot, asks, ways[robot], leading, waits, is_first)
-                waits = waits | (asks & ~starts) if is_first else waits
+                waits = waits | self.but(asks, starts) if is_first else waits
                 self.reserve([starts & cell for cell in ways[robot]])
                 sent.out[robot] = _joined(sent.out[robot], [starts & one for one in open_[robot]])
-                self.is_idle[robot] = self.is_idle[robot] & ~starts
+                self.is_idle[robot] = self.but(self.is_idle[robot], starts)
         held = [waits & cell for cell in leading]
         sent.aside = _Aside(self, held, leads, open_).sent()
         return sent
@@ -89,7 +91,7 @@ class Traffic(Generic[P]):
     def _leading(self, wants: list[P]) -> list[P]:
         found, before = [], self.none
         for one in wants:
-            found.append(one & ~before)
+            found.append(self.but(one, before))
             before = before | one
         return found
 
@@ -103,11 +105,11 @@ class Traffic(Generic[P]):
         for cell, on_way in enumerate(way):
             if on_way == self.none:
                 continue
-            others = (self.taken[cell] & ~self.places[robot][cell]) | self.reserved[cell]
+            others = self.but(self.taken[cell], self.places[robot][cell]) | self.reserved[cell]
             if not is_first:
                 others = others | (leading[cell] & waits)
             barred = barred | (on_way & others)
-        return asks & ~barred
+        return self.but(asks, barred)
 
 
 def _joined(left: list[P], right: list[P]) -> list[P]:
@@ -131,7 +133,7 @@ class _Aside(Generic[P]):
 
     def sent(self) -> list[list[P]]:
         """By robot and cell: it goes there."""
-        none = self.traffic.none
+        none, but = self.traffic.none, self.traffic.but
         if all(one == none for one in self.held):
             return self.found
         wanted = [self._standing(robot, self.held) for robot in self.robots]
@@ -141,9 +143,9 @@ class _Aside(Generic[P]):
                 if wanted[robot] != none:
                     self._move(robot, wanted[robot])
             # Cells do not become free within a step: who could not go is not asked again.
-            stuck = [one & ~gone for one, gone in zip(wanted, self.gone, strict=True)]
+            stuck = [but(one, gone) for one, gone in zip(wanted, self.gone, strict=True)]
             beside = self._beside(stuck)
-            wanted = [self._standing(robot, beside) & ~asked[robot] for robot in self.robots]
+            wanted = [but(self._standing(robot, beside), asked[robot]) for robot in self.robots]
             asked = [one | more for one, more in zip(asked, wanted, strict=True)]
         return self.found
 
@@ -153,7 +155,7 @@ class _Aside(Generic[P]):
         standing = any_of(
             [one & cell for one, cell in zip(places, cells, strict=True)], self.traffic.none
         )
-        return standing & self.traffic.is_idle[robot] & ~self.leads[robot]
+        return self.traffic.but(standing & self.traffic.is_idle[robot], self.leads[robot])
 
     def _beside(self, stuck: list[P]) -> list[P]:
         """By cell: it is next to a robot that has to make way and cannot."""
@@ -170,7 +172,7 @@ class _Aside(Generic[P]):
 
     def _move(self, robot: int, wanted: P) -> None:
         """Send it to the first neighbour that is free: off the leader's way, else ahead on it."""
-        traffic, none = self.traffic, self.traffic.none
+        traffic, none, but = self.traffic, self.traffic.none, self.traffic.but
         barred = [
             taken | kept | chosen
             for taken, kept, chosen in zip(
@@ -183,9 +185,11 @@ class _Aside(Generic[P]):
                 continue
             near = [there for _, there in traffic.grid.neighbours(cell)]
             for there in near:
-                left = self._step(robot, there, left, left & ~barred[there] & ~self.held[there])
+                left = self._step(
+                    robot, there, left, but(but(left, barred[there]), self.held[there])
+                )
             for there in near if left != none else ():
-                goes = left & ~barred[there]
+                goes = but(left, barred[there])
                 if goes != none:
                     left = self._step(robot, there, left, goes & self._ahead(cell, there))
 
@@ -196,7 +200,7 @@ class _Aside(Generic[P]):
         self.found[robot][there] = self.found[robot][there] | goes
         self.chosen[there] = self.chosen[there] | goes
         self.gone[robot] = self.gone[robot] | goes
-        return left & ~goes
+        return self.traffic.but(left, goes)
 
     def _ahead(self, cell: int, there: int) -> P:
         """In which runs a cell is nearer to the leader's target than another one."""

@@ -9,7 +9,7 @@ from math import prod
 from typing import Generic
 
 from sysmlc.floors.answers import Answers
-from sysmlc.floors.planes import P, Runs, apart, patterns
+from sysmlc.floors.planes import P, Runs, apart, but, patterns
 from sysmlc.floors.study import Study
 from sysmlc.floors.travel import starts_of
 from sysmlc.floors.world import Allocation, World
@@ -139,7 +139,7 @@ def _chunk(
             starts[robot][cell] = bits
     valid = apart(starts, whole)
     placed = tuple(tuple(one & valid for one in robot) for robot in starts)
-    return Chunk(Runs(valid, 0, placed), valid.bit_count())
+    return Chunk(Runs(valid, 0, placed, but), valid.bit_count())
 
 
 class Simulation(Generic[P]):
@@ -174,7 +174,7 @@ class Simulation(Generic[P]):
         if world.wrong != runs.none:
             return self._made(world.wrong)
         for number, target in enumerate(self.study.targets):
-            left = runs.all & ~world.done[number]
+            left = runs.but(runs.all, world.done[number])
             if left == runs.none:
                 if self.reached[number] is None:
                     self.reached[number] = self.time

@@ -44,6 +44,7 @@ class World(Generic[P]):
         """The first step: robots are in their starts, which are their targets, and stay."""
         self.study, self.allocation, self.answers, self.runs = study, allocation, answers, runs
         none, size = runs.none, study.grid.size
+        self._but = runs.but
         self.bodies: list[Body[P]] = [
             Body(
                 list(runs.starts[at]),
@@ -72,8 +73,8 @@ class World(Generic[P]):
         self._move()
         for number, body in enumerate(self.bodies):
             stays = idle[number]
-            body.sent = [one & ~stays for one in body.sent]
-            body.aside = [one & ~stays for one in body.aside]
+            body.sent = [self._but(one, stays) for one in body.sent]
+            body.aside = [self._but(one, stays) for one in body.aside]
         self._note_reached()
         self._dispatch(idle)
         self._note_reached()
@@ -94,7 +95,7 @@ class World(Generic[P]):
         goes = any_of(list(body.commands.values()), none)
         if goes == none:
             return body.places
-        found = [one & ~goes for one in body.places]
+        found = [self._but(one, goes) for one in body.places]
         for cell in grid.cells:
             here = body.places[cell] & goes
             if here == none:
@@ -130,7 +131,7 @@ class World(Generic[P]):
     def _resting(self, number: int) -> P:
         """In which runs a robot has no target but the cell that it is in."""
         body, none = self.bodies[number], self.runs.none
-        return self.runs.all & ~any_of([*body.sent, *body.aside], none)
+        return self._but(self.runs.all, any_of([*body.sent, *body.aside], none))
 
     def _at_goal(self, number: int) -> P:
         """In which runs a robot is in its target."""
@@ -146,7 +147,7 @@ class World(Generic[P]):
     def _dispatch(self, idle: list[P]) -> None:
         goals = [[self.study.targets[one].cell for one in own] for own in self.allocation]
         places = [body.places for body in self.bodies]
-        traffic = Traffic(self.study.grid, self.runs.none, places, self.taken, list(idle), goals)
+        traffic = Traffic(self.study.grid, self.runs, places, self.taken, list(idle), goals)
         for number, body in enumerate(self.bodies):
             traffic.reserve(traffic.ways(number, body.sent))
             traffic.reserve(body.aside)
@@ -163,7 +164,7 @@ class World(Generic[P]):
         found: list[P] = []
         before = idle
         for target in self.allocation[number]:
-            ready = before & ~self.done[target]
+            ready = self._but(before, self.done[target])
             for earlier in self.study.earlier(target):
                 ready = ready & self.done[earlier]
             found.append(ready)
