@@ -46,7 +46,7 @@ def aims(
             yield Aim(where, where & leading(there))
             waiting = waiting | here
         possible = leading(layer.states)
-        able = manager.exist(bits, possible)
+        able = manager.exist(manager.support(possible).intersection(bits), possible)
         where = able & ~done & ~waiting
         yield Aim(where, where & possible)
         done, before = done | able, layer.states

@@ -15,8 +15,11 @@ def chosen(manager: Manager, relation: Node, bits: Sequence[str]) -> dict[str, N
     Together they are in the relation wherever some values are; elsewhere they mean nothing.
     """
     found: dict[str, Node] = {}
-    for place, bit in enumerate(bits):
-        possible = manager.exist(bits[place + 1 :], relation)
+    spoken = manager.support(relation)
+    later = [bit for bit in bits if bit in spoken]
+    for bit in bits:
+        later = later[1:] if later[:1] == [bit] else later
+        possible = manager.exist(later, relation)
         on, off = (manager.assign(possible, {bit: value}) for value in (True, False))
         found[bit] = on & ~off
         relation = substituted(manager, relation, {bit: found[bit]})

@@ -31,7 +31,7 @@ from sysmlc.synthesis.mealy import Machine, Move
 from sysmlc.synthesis.symbols import Symbols
 from sysmlc.values import dataclass
 
-MOST_CASES = 10_000
+MOST_CASES = 5_000
 """Alternatives in all conditions of a machine: more are no explicit machine any more."""
 
 

@@ -15,7 +15,7 @@ from sysmlc.synthesis.strategy import Mode, Strategy
 from sysmlc.values import dataclass
 
 MOST_STATES = 1_000
-MOST_MOVES = 40_000
+MOST_MOVES = 5_000
 
 Answer = tuple[tuple[Formula, ...], int]
 """Outputs, as in ``mealy.Move``, and the next state."""
