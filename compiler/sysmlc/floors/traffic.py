@@ -53,15 +53,17 @@ class Traffic(Generic[P]):
             for cell, after in chain(self.grid, goal):
                 if one[cell] != self.none:
                     one[after] = one[after] | one[cell]
-            found = [before | more for before, more in zip(found, one, strict=True)]
+            found = self._joined(found, one)
         return found
 
     def reserve(self, cells: list[P]) -> None:
         """Keep cells free for a robot."""
-        self.reserved = [
-            one if more == self.none else one | more
-            for one, more in zip(self.reserved, cells, strict=True)
-        ]
+        self.reserved = self._joined(self.reserved, cells)
+
+    def _joined(self, left: list[P], right: list[P]) -> list[P]:
+        """Either, one by one; an integer with nothing more would be copied."""
+        pairs = zip(left, right, strict=True)
+        return [one if more == self.none else one | more for one, more in pairs]
 
     def send(self, open_: list[list[P]]) -> Sent[P]:
         """Who sets out and who is sent aside; ``open_`` by robot and place in its list."""
@@ -81,7 +83,8 @@ class Traffic(Generic[P]):
                 asks = asks if is_first else self.but(wants[robot], leads[robot])
                 starts = self._starting(robot, asks, ways[robot], leading, waits, is_first)
                 waits = waits | self.but(asks, starts) if is_first else waits
-                self.reserve([starts & cell for cell in ways[robot]])
+                if starts != self.none:
+                    self.reserve([starts & cell for cell in ways[robot]])
                 sent.out[robot] = _joined(sent.out[robot], [starts & one for one in open_[robot]])
                 self.is_idle[robot] = self.but(self.is_idle[robot], starts)
         held = [waits & cell for cell in leading]

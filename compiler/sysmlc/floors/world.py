@@ -102,6 +102,8 @@ class World(Generic[P]):
                 continue
             for way, there in self.near[cell]:
                 moves = here & body.commands.get(way, none)
+                if moves == none:
+                    continue
                 self.wrong = self.wrong | (moves & self.taken[there])
                 found[there] = found[there] | moves
         return found
@@ -123,8 +125,9 @@ class World(Generic[P]):
         for number, body in enumerate(self.bodies):
             for place, target in enumerate(self.allocation[number]):
                 cell = self.study.targets[target].cell
-                if body.sent[place] != self.runs.none:
-                    self.done[target] = self.done[target] | (body.sent[place] & body.places[cell])
+                arrived = body.sent[place] & body.places[cell]
+                if arrived != self.runs.none:
+                    self.done[target] = self.done[target] | arrived
 
     # -- targets -------------------------------------------------------------------------------
 
@@ -138,10 +141,11 @@ class World(Generic[P]):
         body = self.bodies[number]
         found = self._resting(number)
         for place, target in enumerate(self.allocation[number]):
-            found = found | (body.sent[place] & body.places[self.study.targets[target].cell])
+            is_there = body.sent[place] & body.places[self.study.targets[target].cell]
+            found = found if is_there == self.runs.none else found | is_there
         for cell in self.study.grid.cells:
-            if body.aside[cell] != self.runs.none:
-                found = found | (body.aside[cell] & body.places[cell])
+            is_there = body.aside[cell] & body.places[cell]
+            found = found if is_there == self.runs.none else found | is_there
         return found
 
     def _dispatch(self, idle: list[P]) -> None:
