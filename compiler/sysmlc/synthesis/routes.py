@@ -36,9 +36,10 @@ class Routes:
 def routes(arena: Arena) -> Routes | None:
     """The ways to move one component of a system that has some.
 
-    Where the system may have to wait for the environment, joint steps cost less than many.
+    Where the system may have to wait for the environment, joint steps cost less than many; where
+    nothing has to be reached, there are none to take.
     """
-    if arena.fairness:
+    if arena.fairness or not arena.goals:
         return None
     for place, turn in enumerate(arena.turns):
         components = _components(arena, turn) if turn.owner is Owner.SYSTEM else ()
