@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from functools import partial
 
 import pytest
 
@@ -52,6 +53,8 @@ class Watching:
             stdout=self.lines,
             stderr=self.errors,
             env={**os.environ, "SYSMLC_CACHE": "off", "PYTHONUNBUFFERED": "1"},
+            # A shell starts what runs in the background deaf to SIGINT, and that is inherited.
+            preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
         )
 
     def until(self, what):
