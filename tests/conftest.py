@@ -5,6 +5,7 @@ the corpus or PlantUML may not be skipped: a skip fails.
 """
 
 import difflib
+import gc
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,6 +24,14 @@ settings.load_profile("sysmlc")
 
 GOLDEN = Path(__file__).parent / "golden"
 _SHOWN = 80
+
+
+@pytest.fixture(autouse=True, scope="module")
+def read_and_done_with():
+    """What front ends froze for the garbage collector may go when a module of tests is over."""
+    yield
+    gc.unfreeze()
+    gc.collect()
 
 
 def pytest_addoption(parser):

@@ -5,6 +5,8 @@ there loses is told (SM730 to SM737, docs/write-sysml-v2.md); on the way from te
 may be lost or come in.
 """
 
+import gc
+
 import pytest
 from plants import baygate
 
@@ -57,6 +59,7 @@ def read(front, text):
 
 def differences(front, files):
     """What is another in the text of the text of a model."""
+    gc.unfreeze()
     made = compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
     once = read(front, text_of(made.graph))
     again = read(front, text_of(once))

@@ -44,7 +44,7 @@ USAGES = {
     Kind.ACTION: ACTIONS,
     Kind.STRUCTURED: {"ActionUsage"},
     Kind.PARAMETER: {"AttributeUsage", "ItemUsage", "ReferenceUsage", "ActionUsage", "StateUsage"},
-    Kind.LIFELINE: {"PartUsage", "ReferenceUsage"},
+    Kind.LIFELINE: {"PartUsage", "PortUsage", "ReferenceUsage"},
 }
 CONTROLS = {
     "decision": "DecisionNode",

@@ -4,6 +4,7 @@ It loads a text with the standard library, raises for a syntax error, and answer
 ``UnresolvedReference`` for each name that it does not find.
 """
 
+import gc
 from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -43,8 +44,16 @@ class Loaded:
 
 def load(files):
     """Load texts by name together with the standard library. Raises for a syntax error."""
-    model = sysml.Model.from_toolkit(sources=files, library_dir=sysml.standard_library())
     loaded = Loaded()
+    _read(loaded, files)
+    # The toolkit's models are circles, which nobody else's frozen graphs may keep alive.
+    gc.unfreeze()
+    gc.collect()
+    return loaded
+
+
+def _read(loaded, files):
+    model = sysml.Model.from_toolkit(sources=files, library_dir=sysml.standard_library())
     for element in model.all():
         _check(loaded, element)
         name = element.qualifiedName if hasattr(type(element), "qualifiedName") else None
@@ -52,7 +61,6 @@ def load(files):
             path = parts(name)
             loaded.elements.setdefault(path, Counter())[element.metaclass_name] += 1
             loaded.types.setdefault(path, set()).update(_types(element))
-    return loaded
 
 
 def _check(loaded, element):
