@@ -27,7 +27,8 @@ def test_the_wheel_carries_data_licence_and_types(dist):
     (wheel,) = dist.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     for folder in ("grammars", "metamodels", "templates"):
-        shipped = [path for path in (ROOT / folder).rglob("*") if path.is_file()]
+        found = (path for path in (ROOT / folder).rglob("*") if path.is_file())
+        shipped = [path for path in found if path.parent.name != "__pycache__"]
         expected = {f"sysmlc/{path.relative_to(ROOT).as_posix()}" for path in shipped}
         assert expected <= set(names)
     assert "sysmlc/py.typed" in names
