@@ -11,11 +11,11 @@ from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Limits, Manager
 from sysmlc.synthesis.algebra.relations import refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
-from sysmlc.synthesis.core import unrealizable_core
 from sysmlc.synthesis.deadline import deadline
 from sysmlc.synthesis.decide import Options, decide
-from sysmlc.synthesis.game import make_game
+from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.synthesise import synthesised
+from sysmlc.synthesis.unrealizable.core import unrealizable_core
 
 LIMIT = 600.0
 """CPU seconds after which something is given up."""

@@ -18,8 +18,8 @@ from sysmlc.floors.outcome import Outcome, allocated
 from sysmlc.floors.robot import robot_contract
 from sysmlc.floors.strategy import ANY, answers_of, simulated, synthesise
 from sysmlc.floors.study import Grid, Robot, Study, Target
+from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.mealy import Machine
 from sysmlc.synthesis.synthesise import Synthesis, synthesised
 from sysmlc.values import replace
 

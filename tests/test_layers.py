@@ -32,6 +32,7 @@ LAYERS = [
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 INDEPENDENT = [{"frontends", "passes", "backends"}]
+ROOMS = ["bdd", "games", "unrealizable", "algebra", "controllers"]
 
 
 def part(module: str) -> str:
@@ -65,6 +66,17 @@ def test_lower_layers_never_import_higher_ones():
         if not allowed(
             part(f"sysmlc.{path.relative_to(ROOT).with_suffix('')}".replace("/", ".")), part(module)
         )
+    ]
+    assert wrong == []
+
+
+def test_rooms_of_the_synthesis_import_only_rooms_below():
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for level, room in enumerate(ROOMS)
+        for path in sorted((ROOT / "synthesis" / room).glob("*.py"))
+        for module in sorted(imports(path))
+        if module.startswith("sysmlc.synthesis") and module.split(".")[2] not in ROOMS[: level + 1]
     ]
     assert wrong == []
 

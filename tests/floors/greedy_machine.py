@@ -6,7 +6,7 @@ from sysmlc.floors.strategy import ANY, controller_contract
 from sysmlc.floors.study import STAY, WAYS
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Owner
-from sysmlc.synthesis.mealy import Machine, Move
+from sysmlc.synthesis.controllers.mealy import Machine, Move
 
 
 def greedy_machine(study):

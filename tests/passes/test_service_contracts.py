@@ -7,9 +7,9 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.game import make_game
-from sysmlc.synthesis.manager import Manager
-from sysmlc.synthesis.solve import solve
+from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.games.game import make_game
+from sysmlc.synthesis.games.solve import solve
 
 pipeline.load("contracts")
 TANK = """\

@@ -10,14 +10,14 @@ from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import evaluation, violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.arena import plain
-from sysmlc.synthesis.derived import without_derived
-from sysmlc.synthesis.mealy import Machine
-from sysmlc.synthesis.shift import shifted
-from sysmlc.synthesis.solve import solve_arena
-from sysmlc.synthesis.strategy import strategy
+from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.strategy import strategy
+from sysmlc.synthesis.controllers.verify import faults
+from sysmlc.synthesis.games.arena import plain
+from sysmlc.synthesis.games.derived import without_derived
+from sysmlc.synthesis.games.shift import shifted
+from sysmlc.synthesis.games.solve import solve_arena
 from sysmlc.synthesis.synthesise import Form, made
-from sysmlc.synthesis.verify import faults
 from sysmlc.values import replace
 
 

@@ -7,11 +7,12 @@ from test_reach import tokens
 from test_routes import LIFT, fleet
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.synthesis import Manager, make_game, reach, routes
-from sysmlc.synthesis.core import unrealizable_core
+from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.deadline import deadline
 from sysmlc.synthesis.decide import Options, decide
-from sysmlc.synthesis.solve import by_single_moves
+from sysmlc.synthesis.games import reach, routes
+from sysmlc.synthesis.games.solve import by_single_moves
+from sysmlc.synthesis.unrealizable.core import unrealizable_core
 
 PURE = Options(engine="autoref")
 LIFTS = "".join(LIFT.replace("0..3", "0..2").format(name) for name in "abc")

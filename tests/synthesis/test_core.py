@@ -10,9 +10,10 @@ from explicit import Explicit
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
-from sysmlc.synthesis import Manager, core, make_game
-from sysmlc.synthesis.core import unrealizable_core
+from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.unrealizable import core
+from sysmlc.synthesis.unrealizable.core import unrealizable_core
 from sysmlc.values import replace
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")

@@ -8,8 +8,8 @@ import pytest
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
+from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.mealy import Machine
 from sysmlc.synthesis.synthesise import synthesised
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")

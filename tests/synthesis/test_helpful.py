@@ -6,9 +6,9 @@ from small_games import contract as random_contract
 
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.core import is_won
-from sysmlc.synthesis.helpful import helpful_assumptions
-from sysmlc.synthesis.reasons import reasons_of
+from sysmlc.synthesis.unrealizable.core import is_won
+from sysmlc.synthesis.unrealizable.helpful import helpful_assumptions
+from sysmlc.synthesis.unrealizable.reasons import reasons_of
 from sysmlc.values import replace
 
 TURN = """

@@ -11,12 +11,13 @@ from contracts_in_lines import contract
 
 from sysmlc import resources
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.synthesis import LimitError, gr1c_text, synthesise, table_text
+from sysmlc.synthesis import LimitError, synthesise
+from sysmlc.synthesis.controllers import gr1c_text, table_text
+from sysmlc.synthesis.controllers.machine_text import has_diagram, json_of, plantuml_of
+from sysmlc.synthesis.controllers.verify import Fault
 from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.files import FORMS, written
-from sysmlc.synthesis.machine_text import has_diagram, json_of, plantuml_of
 from sysmlc.synthesis.synthesise import Form, synthesised
-from sysmlc.synthesis.verify import Fault
 
 LAMP = contract(
     """

@@ -3,7 +3,7 @@
 from contracts_in_lines import contract
 
 from sysmlc.synthesis import Manager, Symbols, make_game
-from sysmlc.synthesis.order import laid
+from sysmlc.synthesis.bdd.order import laid
 
 
 def order(text: str) -> list[str]:

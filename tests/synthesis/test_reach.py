@@ -5,9 +5,10 @@ import small_games
 from contracts_in_lines import contract
 from explicit import Explicit
 
-from sysmlc.synthesis import Manager, make_game, reach
-from sysmlc.synthesis.arena import Steps, plain
-from sysmlc.synthesis.solve import solve_arena
+from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis.games import reach
+from sysmlc.synthesis.games.arena import Steps, plain
+from sysmlc.synthesis.games.solve import solve_arena
 
 GAMES = 200
 

@@ -11,15 +11,15 @@ from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import TRUE, Const
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import LimitError, Manager, make_game, solve, synthesise
-from sysmlc.synthesis.arena import nodes
-from sysmlc.synthesis.conditions import machine as written
-from sysmlc.synthesis.listing import listed
-from sysmlc.synthesis.manager import TooLargeError
-from sysmlc.synthesis.mealy import Move
-from sysmlc.synthesis.memory import reached, registers
-from sysmlc.synthesis.minimise import minimised
-from sysmlc.synthesis.settled import settled
-from sysmlc.synthesis.strategy import strategy
+from sysmlc.synthesis.bdd.manager import TooLargeError
+from sysmlc.synthesis.controllers.conditions import machine as written
+from sysmlc.synthesis.controllers.listing import listed
+from sysmlc.synthesis.controllers.mealy import Move
+from sysmlc.synthesis.controllers.memory import reached, registers
+from sysmlc.synthesis.controllers.minimise import minimised
+from sysmlc.synthesis.controllers.settled import settled
+from sysmlc.synthesis.controllers.strategy import strategy
+from sysmlc.synthesis.games.arena import nodes
 from sysmlc.synthesis.synthesise import Form
 from sysmlc.values import replace
 

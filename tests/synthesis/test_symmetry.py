@@ -11,9 +11,9 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Apply, Formula, Var
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.arena import plain
-from sysmlc.synthesis.solve import solve_arena
-from sysmlc.synthesis.symmetry import orbits
+from sysmlc.synthesis.games.arena import plain
+from sysmlc.synthesis.games.solve import solve_arena
+from sysmlc.synthesis.games.symmetry import orbits
 
 TWINS = """
     env a: 0..2

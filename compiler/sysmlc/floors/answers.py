@@ -7,8 +7,8 @@ from sysmlc.floors import words
 from sysmlc.floors.study import WAYS, Grid, Robot
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.mealy import Machine
-from sysmlc.synthesis.table import Table
+from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.table import Table
 
 
 class Memory(NamedTuple):

@@ -15,8 +15,8 @@ from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.relations import refinement_failures
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.bdd.manager import LimitError, Manager
 from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.manager import LimitError, Manager
 from sysmlc.values import dataclass, replace
 
 

@@ -10,8 +10,8 @@ from sysmlc.floors.study import Study
 from sysmlc.floors.travel import START
 from sysmlc.logic.formats import write
 from sysmlc.naming import file_names
+from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.files import files_of
-from sysmlc.synthesis.mealy import Machine
 
 
 def files(outcome: Outcome) -> Iterator[tuple[str, str]]:

@@ -4,11 +4,11 @@
 ``dd`` is imported when a ``Manager`` is made, not before.
 """
 
-from sysmlc.synthesis.game import Game, OutsideGr1Error, Part, make_game
-from sysmlc.synthesis.layers import Layer
-from sysmlc.synthesis.manager import LimitError, Limits, Manager, Node
-from sysmlc.synthesis.solve import Solution, solve
-from sysmlc.synthesis.symbols import SymbolError, Symbols
+from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, Node
+from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
+from sysmlc.synthesis.games.game import Game, OutsideGr1Error, Part, make_game
+from sysmlc.synthesis.games.layers import Layer
+from sysmlc.synthesis.games.solve import Solution, solve
 
 __all__ = [
     "Game",

@@ -9,10 +9,10 @@ from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
+from sysmlc.synthesis.bdd.manager import LimitError, Manager
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
-from sysmlc.synthesis.game import OutsideGr1Error
+from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint
-from sysmlc.synthesis.manager import LimitError, Manager
 from sysmlc.synthesis.requirements import check_viewpoints
 from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass

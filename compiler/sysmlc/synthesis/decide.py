@@ -7,13 +7,13 @@ from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.arena import Arena
-from sysmlc.synthesis.derived import without_derived
-from sysmlc.synthesis.game import Game, OutsideGr1Error, make_game
-from sysmlc.synthesis.manager import LimitError, Limits, Manager, Progress
-from sysmlc.synthesis.reasons import reasons_of
-from sysmlc.synthesis.shift import shifted
-from sysmlc.synthesis.solve import Solution, solve_arena
+from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, Progress
+from sysmlc.synthesis.games.arena import Arena
+from sysmlc.synthesis.games.derived import without_derived
+from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
+from sysmlc.synthesis.games.shift import shifted
+from sysmlc.synthesis.games.solve import Solution, solve_arena
+from sysmlc.synthesis.unrealizable.reasons import reasons_of
 from sysmlc.values import dataclass
 
 Place = Callable[[str], Subject]

@@ -5,11 +5,12 @@ from collections.abc import Iterator, Sequence
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
-from sysmlc.synthesis import gr1c_text, machine_text, rules, table_text
-from sysmlc.synthesis.closed import Controller
+from sysmlc.synthesis import rules
+from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.controllers import gr1c_text, machine_text, table_text
+from sysmlc.synthesis.controllers.closed import Controller
+from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Place
-from sysmlc.synthesis.manager import LimitError
-from sysmlc.synthesis.mealy import Machine
 from sysmlc.synthesis.synthesise import Synthesis
 from sysmlc.values import dataclass, replace
 

@@ -5,10 +5,10 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis.algebra.viewpoints import conjunction
-from sysmlc.synthesis.core import is_won, unrealizable_core
+from sysmlc.synthesis.bdd.manager import LimitError, Manager
 from sysmlc.synthesis.decide import Options, Place
-from sysmlc.synthesis.game import OutsideGr1Error, make_game
-from sysmlc.synthesis.manager import LimitError, Manager
+from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
+from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
 
 
 def _lamp(other: str) -> str:

@@ -7,21 +7,21 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.arena import Arena, nodes
-from sysmlc.synthesis.closed import Controller
-from sysmlc.synthesis.conditions import machine
+from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, TooLargeError
+from sysmlc.synthesis.controllers.closed import Controller
+from sysmlc.synthesis.controllers.conditions import machine
+from sysmlc.synthesis.controllers.listing import listed
+from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.memory import reached, registers
+from sysmlc.synthesis.controllers.minimise import minimised
+from sysmlc.synthesis.controllers.settled import settled
+from sysmlc.synthesis.controllers.strategy import Strategy, strategy
+from sysmlc.synthesis.controllers.table import Table, tabled
+from sysmlc.synthesis.controllers.verify import Fault, faults
 from sysmlc.synthesis.decide import Options, Place, Verdict, decided
-from sysmlc.synthesis.game import Game
-from sysmlc.synthesis.listing import listed
-from sysmlc.synthesis.manager import LimitError, Limits, Manager, TooLargeError
-from sysmlc.synthesis.mealy import Machine
-from sysmlc.synthesis.memory import reached, registers
-from sysmlc.synthesis.minimise import minimised
-from sysmlc.synthesis.settled import settled
-from sysmlc.synthesis.solve import solve_arena
-from sysmlc.synthesis.strategy import Strategy, strategy
-from sysmlc.synthesis.table import Table, tabled
-from sysmlc.synthesis.verify import Fault, faults
+from sysmlc.synthesis.games.arena import Arena, nodes
+from sysmlc.synthesis.games.game import Game
+from sysmlc.synthesis.games.solve import solve_arena
 from sysmlc.values import dataclass
 
 _LEAST = 0.01

@@ -11,10 +11,10 @@ from sysmlc.synthesis.algebra.discharge import Open
 from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import DomainError
 from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.bdd.manager import LimitError
 from sysmlc.synthesis.check import new_manager, said, why_not
 from sysmlc.synthesis.decide import Options, Place
-from sysmlc.synthesis.game import OutsideGr1Error
-from sysmlc.synthesis.manager import LimitError
+from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
 

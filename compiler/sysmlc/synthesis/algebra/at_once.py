@@ -7,7 +7,7 @@ from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.values import dataclass
 
 

@@ -16,8 +16,8 @@ from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed
 from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import Universe
-from sysmlc.synthesis.explain import conflict
-from sysmlc.synthesis.manager import Manager
+from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.unrealizable.explain import conflict
 from sysmlc.values import dataclass, replace
 
 

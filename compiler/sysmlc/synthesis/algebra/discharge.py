@@ -19,7 +19,7 @@ from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.recurrence import Recurrence
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.values import dataclass
 
 

@@ -4,7 +4,7 @@ from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem, Universe
 from sysmlc.synthesis.algebra.traces import Trace, lasso, one, shortest
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
 
 
 class Entailment:

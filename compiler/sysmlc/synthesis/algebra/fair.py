@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from sysmlc.synthesis.algebra.systems import FairSystem
-from sysmlc.synthesis.image import Product
-from sysmlc.synthesis.manager import Manager, Node
+from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.games.image import Product
 
 
 class Runs:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.reduction.reduce import NotReducibleError, as_ltl, is_plain, parts_of
-from sysmlc.synthesis.game import OutsideGr1Error
+from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.values import dataclass, replace
 
 

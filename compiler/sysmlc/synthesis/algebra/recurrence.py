@@ -14,7 +14,7 @@ from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.values import dataclass, replace
 
 MOST_CASES = 256

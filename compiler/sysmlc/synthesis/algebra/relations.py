@@ -12,7 +12,7 @@ from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.manager import Manager
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.values import dataclass
 
 

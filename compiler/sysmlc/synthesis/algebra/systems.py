@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
-from sysmlc.synthesis.game import OutsideGr1Error
-from sysmlc.synthesis.manager import Manager, Node
-from sysmlc.synthesis.symbols import SymbolError, Symbols
+from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
+from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.values import dataclass
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.fair import Runs
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.values import dataclass
 
 

@@ -11,7 +11,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Formula, Var
 from sysmlc.logic.names import Names
-from sysmlc.synthesis.game import OutsideGr1Error
+from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.values import dataclass, replace
 
 

@@ -5,12 +5,12 @@ from collections.abc import Iterable, Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.synthesis.bdd.manager import LimitError, Manager
 from sysmlc.synthesis.counter.environment import Environment
 from sysmlc.synthesis.counter.machine import Counter, counter
 from sysmlc.synthesis.counter.ranks import lost
 from sysmlc.synthesis.decide import Options, Place
-from sysmlc.synthesis.game import make_game
-from sysmlc.synthesis.manager import LimitError, Manager
+from sysmlc.synthesis.games.game import make_game
 
 NO_COUNTER = rule(
     "SM549",

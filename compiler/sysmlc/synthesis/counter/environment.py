@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.bdd.symbols import next_bit
 from sysmlc.synthesis.counter.ranks import Lost, Rank
-from sysmlc.synthesis.manager import Node
-from sysmlc.synthesis.symbols import next_bit
 
 Bits = Mapping[str, bool]
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from sysmlc.logic.contract import Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.bdd.manager import LimitError
 from sysmlc.synthesis.counter.environment import Bits, Environment
-from sysmlc.synthesis.manager import LimitError
 from sysmlc.values import dataclass, replace
 
 Row = tuple[Literal, ...]

@@ -7,9 +7,9 @@ of GR(1) games).
 
 from collections.abc import Iterator
 
-from sysmlc.synthesis.arena import Arena, Steps, plain
-from sysmlc.synthesis.game import Game
-from sysmlc.synthesis.manager import Node
+from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.games.arena import Arena, Steps, plain
+from sysmlc.synthesis.games.game import Game
 from sysmlc.values import dataclass
 
 

@@ -16,12 +16,12 @@ from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Formula, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis.algebra.fair import Runs
-from sysmlc.synthesis.game import make_game
+from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.games.game import make_game
+from sysmlc.synthesis.games.solve import solve
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.runs import all_steps
 from sysmlc.synthesis.lints.words import Remark
-from sysmlc.synthesis.manager import Manager
-from sysmlc.synthesis.solve import solve
 from sysmlc.values import replace
 
 NewManager = Callable[[], Manager]

@@ -7,11 +7,11 @@ from sysmlc.logic.domains import values
 from sysmlc.logic.printing import print_literal
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem
-from sysmlc.synthesis.game import Game, Part, make_game
-from sysmlc.synthesis.image import Product
+from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.games.game import Game, Part, make_game
+from sysmlc.synthesis.games.image import Product
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.words import Remark
-from sysmlc.synthesis.manager import Manager, Node
 
 _COUNTED = 3
 """Values from which on a whole number is a quantity, which jumps when nothing holds it."""

@@ -1,0 +1,1 @@
+"""Controllers: strategies taken from won games, their machines and tables, and the check of both."""

@@ -1,0 +1,179 @@
+"""Whether a controller keeps a contract: an independent check of it and the assumptions together.
+
+Nothing is shared with what made it: the contract's formulas are translated anew, the controller is
+a relation over a variable for its state (``closed``), and fair runs are looked for (``algebra``).
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.formula import Literal
+from sysmlc.synthesis.algebra.fair import Runs
+from sysmlc.synthesis.algebra.systems import FairSystem, Universe
+from sysmlc.synthesis.algebra.traces import lasso, one, shortest
+from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.controllers.closed import Controller, memory, relation
+from sysmlc.synthesis.games.image import Product, joined
+from sysmlc.values import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What a machine does wrong, with the steps that lead there."""
+
+    conjunct: Conjunct | None
+    """The guarantee that it breaks; None when it has no answer to inputs that are allowed."""
+    steps: tuple[Mapping[str, Literal], ...] = ()
+    loop: int | None = None
+    """After the last step it goes on at this one; None when the steps alone show it."""
+
+
+def faults(controller: Controller, contract: Contract, manager: Manager) -> Iterator[Fault]:
+    """Why a controller does not keep a contract; nothing when it does. The manager must be new.
+
+    In every run in which the environment keeps its assumptions the controller has an answer, keeps
+    the initial guarantees and those for every step, and, if all that should recur of the
+    environment does, what should recur of the system does. Raises OutsideGr1Error, LimitError;
+    SymbolError for a machine with other values than the contract's.
+    """
+    with manager.guard():
+        yield from _Check(controller, contract, manager).faults()
+
+
+class _Check:
+    def __init__(self, controller: Controller, contract: Contract, manager: Manager) -> None:
+        self.manager, self.contract = manager, contract
+        self.memory = memory(controller, contract)
+        extended = replace(contract, variables=(*contract.variables, self.memory))
+        self.universe = Universe((extended,), manager)
+        self.symbols = self.universe.symbols
+        done = relation(controller, self.symbols, self.memory)
+        self.first, self.moves = done.first, done.later
+        assumed = self.universe.system(contract.assumptions)
+        self.allowed = assumed.parts
+        self.starts = assumed.init
+        parts = (*assumed.parts, *self.moves)
+        starts = Product(manager, self.first, ())(self.starts)
+        self.runs = Runs(FairSystem(self.symbols, starts, parts, ()))
+        self.fair = Runs(FairSystem(self.symbols, starts, parts, assumed.fairness))
+
+    def faults(self) -> Iterator[Fault]:
+        """All of them, one for each conjunct at most."""
+        yield from self._unanswered()
+        if self._keeps_each_step():
+            guarantees = [one for one in self.contract.guarantees if one.class_ is not Class.SAFETY]
+        else:
+            guarantees = list(self.contract.guarantees)
+        for conjunct in guarantees:
+            broken = ~self.universe.node(conjunct)
+            if broken != self.manager.false:
+                yield from _SEARCHES[conjunct.class_](self, conjunct, broken)
+
+    def _keeps_each_step(self) -> bool:
+        """Whether all guarantees for every step are kept; they are looked at together."""
+        safe = [one for one in self.contract.guarantees if one.class_ is Class.SAFETY]
+        later = self.runs.after(self.runs.reachable)
+        about_two: list[Node] = []
+        for node in map(self.universe.node, safe):
+            is_now, is_later = (
+                self.manager.support(node).isdisjoint(bits)
+                for bits in (self.runs.next_bits, self.runs.bits)
+            )
+            if is_later and self.manager.support(node):
+                if not later <= self.symbols.unprime(node):
+                    return False
+            elif not (is_now and self.runs.reachable <= node):
+                about_two.append(node)
+        groups = joined(self.manager, about_two)
+        return not any(self._is_possible(~kept, self.runs.system.parts) for kept in groups)
+
+    def _is_possible(self, step: Node, parts: Iterable[Node]) -> bool:
+        """Whether a step by all parts from what is reached is one of these."""
+        if step == self.manager.false:
+            return False
+        found = Product(self.manager, [*parts, step], self.runs.bits)
+        return found(self.runs.reachable) != self.manager.false
+
+    def _unanswered(self) -> Iterator[Fault]:
+        answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
+        if self.starts & ~answered(self.manager.true) != self.manager.false:
+            yield Fault(None)
+        after = self.symbols.all_bits(self._own(), primed=True)
+        stuck = ~Product(self.manager, self.moves, after)(self.manager.true)
+        yield from self._stepping(None, stuck, self.allowed)
+
+    def _own(self) -> tuple[str, ...]:
+        variables = self.symbols.variables.values()
+        return tuple(one.name for one in variables if one.owner is Owner.SYSTEM)
+
+    def at_first(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
+        """A first step that breaks it."""
+        found = self.runs.system.init & broken
+        if found != self.manager.false:
+            yield self._fault(conjunct, [one(self.runs, found)])
+
+    def in_a_step(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
+        """A step from a state that is reached."""
+        return self._stepping(conjunct, broken, self.runs.system.parts)
+
+    def _stepping(
+        self, conjunct: Conjunct | None, broken: Node, parts: Iterable[Node]
+    ) -> Iterator[Fault]:
+        parts = tuple(parts)
+        if not self._is_possible(broken, parts):
+            return
+        found = Product(self.manager, parts, self.runs.next_bits)(self.runs.reachable & broken)
+        if found != self.manager.false:
+            yield self._fault(conjunct, shortest(self.runs, found))
+
+    def for_ever(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
+        """A fair run that from some step on breaks it for ever."""
+        fair, within = self.fair, self.runs.reachable & broken
+        if not has_fair_run(fair, within):
+            return
+        found = fair.fair_within(within)
+        if found != self.manager.false:
+            trace = lasso(fair, shortest(fair, found), found)
+            yield Fault(conjunct, tuple(map(self._shown, trace.steps)), trace.loop)
+
+    def _fault(self, conjunct: Conjunct | None, way: Iterable[Node]) -> Fault:
+        picked = (self.manager.pick(state, self.runs.bits) or {} for state in way)
+        steps = tuple(self._shown(self.symbols.decode(bits)) for bits in picked)
+        return Fault(conjunct, steps)
+
+    def _shown(self, values: Mapping[str, Literal]) -> dict[str, Literal]:
+        return {name: value for name, value in values.items() if name != self.memory.name}
+
+
+def has_fair_run(runs: Runs, within: Node) -> bool:
+    """Whether some fair run goes on for ever without leaving states.
+
+    Emerson and Lei's fixpoint, backwards: what is left has a past of its own without end, which in
+    a finite system is a cycle. What a controller does next is computed faster than what led there.
+    """
+    found = within
+    while found != runs.manager.false:
+        fewer = found
+        for goal in runs.goals:
+            fewer = fewer & runs.after(_led_to(runs, fewer, fewer & goal))
+        if fewer == found:
+            return True
+        found = fewer
+        runs.manager.check("looking for runs that never come to a goal")
+    return False
+
+
+def _led_to(runs: Runs, within: Node, start: Node) -> Node:
+    """The states that steps from the start lead to without leaving others."""
+    found = front = start
+    while front != runs.manager.false:
+        front = within & runs.after(front) & ~found
+        found = found | front
+    return found
+
+
+_SEARCHES = {
+    Class.INIT: _Check.at_first,
+    Class.SAFETY: _Check.in_a_step,
+    Class.LIVENESS: _Check.for_ever,
+}

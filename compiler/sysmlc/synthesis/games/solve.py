@@ -1,0 +1,168 @@
+"""The winning states of a GR(1) game: a three-fold fixpoint.
+
+Piterman, Pnueli, Sa'ar, Synthesis of Reactive(1) Designs (2006); Bloem, Jobstmann, Piterman,
+Pnueli, Sa'ar (2012). The outer (greatest) fixpoint are states from which every goal can be reached
+again, the middle (least) ones the layers on the way to one goal, the inner (greatest) ones states
+in which the system may stay since an assumption does not recur.
+"""
+
+from collections.abc import Mapping
+from dataclasses import field
+from itertools import cycle
+
+from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.games.arena import Arena, Steps, plain
+from sysmlc.synthesis.games.game import Game
+from sysmlc.synthesis.games.layers import Layer, Way
+from sysmlc.synthesis.games.narrow import invariant, without_ranges
+from sysmlc.synthesis.games.reach import reachable
+from sysmlc.synthesis.games.routes import SingleSteps, routes
+from sysmlc.synthesis.games.symmetry import Exchange, image, orbits
+from sysmlc.values import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The outcome of a game."""
+
+    arena: Arena
+    is_realizable: bool
+    winning: Node
+    """States from which the system wins; with ``is_complete`` false those that may still be."""
+    is_complete: bool
+    """Whether the fixpoint was computed to its end; it need not be for the verdict."""
+    layers: tuple[tuple[Layer, ...], ...]
+    """For each goal (a game without goals has one: to go on) its layers, the nearest first.
+    Without ``is_complete`` those of goals that are alike may be missing."""
+    rounds: int
+    """Times a goal was computed."""
+    steps: int
+    """Predecessors computed."""
+
+
+def solve(game: Game, is_complete: bool = True) -> Solution:
+    """Decide a game as it is written; without ``is_complete`` the verdict is all that counts.
+
+    Raises LimitError when a limit of the manager is reached.
+    """
+    return solve_arena(plain(game), is_complete)
+
+
+def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
+    """Decide what was made of a game; winning states and layers are those of the arena.
+
+    Raises LimitError when a limit of the manager is reached.
+    """
+    with arena.manager.guard():
+        if is_complete:
+            return _Solver(arena, Steps(arena), is_complete).run()
+        return by_single_moves(arena) or _Solver(arena, _few(arena), is_complete).run()
+
+
+def _few(arena: Arena) -> Steps:
+    """The steps of a game, among the states that plays come to if these are few."""
+    with arena.manager.calm():
+        return Steps(arena, reachable(arena))
+
+
+def by_single_moves(arena: Arena) -> Solution | None:
+    """The solution if the game is won by moves of one component at a time (``routes``)."""
+    ways = routes(arena)
+    if ways is None:
+        return None
+    with arena.manager.calm():
+        found = _Solver(arena, SingleSteps(arena, ways), is_complete=False).run()
+    return found if found.is_realizable else None
+
+
+@dataclass(slots=True)
+class _Solver:
+    arena: Arena
+    _steps: Steps | SingleSteps
+    is_complete: bool
+    _goals: tuple[Node, ...] = field(init=False)
+    _layers: list[tuple[Layer, ...]] = field(init=False)
+    _rounds: int = 0
+
+    def __post_init__(self) -> None:
+        self._goals = self.arena.goals or (self.arena.manager.true,)
+        self._layers = [() for _ in self._goals]
+
+    def run(self) -> Solution:
+        """Solve the game, with one goal for all that are alike if strategies are not asked for."""
+        alike = {} if self.is_complete else orbits(self.arena)
+        winning, is_known = self._settled(alike or self._each())
+        exchanges = [exchange for found in alike.values() for exchange in found]
+        if any(image(self.arena, winning, exchange) != winning for exchange in exchanges):
+            self._layers = [() for _ in self._goals]
+            winning, is_known = self._settled(self._each())
+        return self._solution(winning, is_known and self._steps.is_won(winning), is_known)
+
+    def _settled(self, alike: Mapping[int, tuple[Exchange, ...]]) -> tuple[Node, bool]:
+        """The goals in turn until none of them makes the winning states fewer.
+
+        False when it was seen before that the game is lost.
+        """
+        winning, settled = self._candidates(), 0
+        for goal in cycle(alike):
+            found = reached = self._again(goal, winning)
+            for exchange in alike[goal]:
+                found = found & image(self.arena, reached, exchange)
+            settled = settled + 1 if found == winning else 0
+            winning = found
+            if settled == len(alike):
+                return winning, True
+            if not self.is_complete and self._is_lost(winning):
+                return winning, False
+        return winning, True
+
+    def _candidates(self) -> Node:
+        """The states that may be winning: those in which a rule for the present step holds."""
+        if self.is_complete:
+            return self.arena.states
+        found = self.arena.states & invariant(self.arena)
+        return found if self._steps.within is None else found & self._steps.within
+
+    def _again(self, goal: int, winning: Node) -> Node:
+        """Those of the winning states from which the goal can be reached, again and again."""
+        if self.is_complete:
+            return self._attracted(goal, winning)
+        return self._attracted(goal, without_ranges(self.arena, goal, winning)) & winning
+
+    def _each(self) -> dict[int, tuple[Exchange, ...]]:
+        """Every goal by itself: strategies need the layers of all."""
+        return dict.fromkeys(range(len(self._goals)), ())
+
+    def _is_lost(self, winning: Node) -> bool:
+        """Whether it is seen without much work that the game is lost."""
+        if self.arena.is_ahead and winning != self.arena.manager.false:
+            return False
+        return not self._steps.is_won(winning)
+
+    def _attracted(self, goal: int, winning: Node) -> Node:
+        """``_again``, whatever is not in the range of its variable."""
+        self._rounds += 1
+        self._steps.confine(winning)
+        target = self._goals[goal] & self._steps.controllable(winning) & winning
+        fairness, before = self.arena.fairness, self._layers[goal]
+        way = Way(self._steps, fairness, winning, before, not self.is_complete)
+        layers: list[Layer] = []
+        for layer in way.layers(target):
+            layers.append(layer)
+            self._say(goal, len(layers))
+        self._layers[goal] = tuple(layers)
+        return layers[-1].states if layers else self.arena.manager.false
+
+    def _say(self, goal: int, layers: int) -> None:
+        self.arena.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
+
+    def _solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
+        return Solution(
+            self.arena,
+            is_realizable,
+            winning,
+            is_complete,
+            tuple(self._layers),
+            self._rounds,
+            self._steps.count,
+        )

@@ -1,0 +1,1 @@
+"""Why a contract cannot be kept: the core of its guarantees, and what assumptions would help."""
