@@ -34,23 +34,9 @@ Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Draw the runs that break something there (PlantUML).",
-)
+@options.folder("Draw the runs that break something there (PlantUML).")
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
-@click.option(
-    "--time-limit",
-    "seconds",
-    type=float,
-    default=10.0,
-    show_default=True,
-    metavar="S",
-    help="CPU seconds for each question about a contract; 0 is no limit.",
-)
+@options.time_limit("CPU seconds for each question about a contract; 0 is no limit.")
 @options.reporting
 @options.reading
 @click.pass_context

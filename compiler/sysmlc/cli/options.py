@@ -23,6 +23,30 @@ def models(required: bool = False) -> Callable[[_F], _F]:
     )
 
 
+def folder(help: str) -> Callable[[_F], _F]:
+    """The option ``-o``: the folder for what a command writes besides its report."""
+    return click.option(
+        "-o",
+        "--output",
+        type=click.Path(path_type=Path, file_okay=False),
+        metavar="DIR",
+        help=help,
+    )
+
+
+def time_limit(help: str) -> Callable[[_F], _F]:
+    """The option ``--time-limit``: CPU seconds for each question about contracts."""
+    return click.option(
+        "--time-limit",
+        "seconds",
+        type=float,
+        default=10.0,
+        show_default=True,
+        metavar="S",
+        help=help,
+    )
+
+
 def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
     for option in reversed(options):
         function = option(function)

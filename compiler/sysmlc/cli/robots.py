@@ -28,28 +28,14 @@ Exit codes: 0 the mission is done from every start, 1 it is not,
 2 the work could not be done.""",
 )
 @options.models(required=True)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Write report, controller, mission contract and a run there.",
-)
+@options.folder("Write report, controller, mission contract and a run there.")
 @click.option(
     "--relations/--no-relations",
     "has_relations",
     default=True,
     help="Decide what the thesis claims of the contracts.  [default: relations]",
 )
-@click.option(
-    "--time-limit",
-    "seconds",
-    type=float,
-    default=10.0,
-    show_default=True,
-    metavar="S",
-    help="CPU seconds for each question about contracts; 0 is no limit.",
-)
+@options.time_limit("CPU seconds for each question about contracts; 0 is no limit.")
 @options.reporting
 @options.reading
 @click.pass_context

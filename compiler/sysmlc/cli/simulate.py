@@ -28,13 +28,7 @@ Examples:
     help="Inputs and the expected trace, in YAML.",
 )
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="JUnit XML report.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Folder for the trace as a PlantUML sequence diagram.",
-)
+@options.folder("Folder for the trace as a PlantUML sequence diagram.")
 @options.reporting
 @options.reading
 @click.pass_context
