@@ -37,13 +37,7 @@ no machine, or the work could not be done.""",
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @click.option("--realizable", "is_decided_only", is_flag=True, help="Decide, write nothing.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Write the machines there, and what defeats a contract that cannot be kept.",
-)
+@options.folder("Write the machines there, and what defeats a contract that cannot be kept.")
 @click.option(
     "--machine",
     "machine_form",
@@ -189,7 +183,7 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     from sysmlc.synthesis.counter.defeat import environment_of
     from sysmlc.synthesis.counter.environment import NotLostError
     from sysmlc.synthesis.counter.play import Player
-    from sysmlc.synthesis.game import OutsideGr1Error
+    from sysmlc.synthesis.games.game import OutsideGr1Error
 
     contracts = chosen(read.contracts, component)
     if len(contracts) != 1:

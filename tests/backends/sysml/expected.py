@@ -44,7 +44,6 @@ USAGES = {
     Kind.ACTION: ACTIONS,
     Kind.STRUCTURED: {"ActionUsage"},
     Kind.PARAMETER: {"AttributeUsage", "ItemUsage", "ReferenceUsage", "ActionUsage", "StateUsage"},
-    Kind.LIFELINE: {"PartUsage", "PortUsage", "ReferenceUsage"},
 }
 CONTROLS = {
     "decision": "DecisionNode",
@@ -78,7 +77,7 @@ def expected(graph):
             continue
         if not all(one.name and one.kind in _PLAIN_OWNERS for one in owners[1:]):
             continue
-        metaclasses = _metaclasses(element)
+        metaclasses = _metaclasses(graph, element)
         if metaclasses and element.name:
             type_ = _type(graph, element, left_out)
             found[tuple(one.name for one in reversed(owners))] = metaclasses, type_
@@ -120,7 +119,9 @@ LIBRARY = ("Quantities", "Items", "Parts", "Ports", "Actions", "Units", "SysML")
 """Packages of the standard library that models of the corpus name theirs like."""
 
 
-def _metaclasses(element):
+def _metaclasses(graph, element):
+    if element.kind is Kind.LIFELINE:
+        return _lifeline(graph, element)
     if element.kind in (Kind.CLASS, Kind.DATA_TYPE) and element.role in ROLES:
         return {ROLES[element.role]}
     if element.kind in DEFINITIONS:
@@ -130,6 +131,13 @@ def _metaclasses(element):
     if element.kind is Kind.PROPERTY:
         return PROPERTIES.get(element.role, set())
     return USAGES.get(element.kind, set())
+
+
+def _lifeline(graph, lifeline):
+    """A lifeline is a port exactly when the type of what it represents is an interface block."""
+    types = [type_of(graph, one) for one in graph.targets(lifeline, Edge.REPRESENTS)]
+    is_port = any(one is not None and one.role == "interface block" for one in types)
+    return {"PortUsage"} if is_port else {"PartUsage", "ReferenceUsage"}
 
 
 def _type(graph, element, left_out):

@@ -49,7 +49,8 @@ def agrees(graph):
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path):
-    assert agrees(compile_example(path, "ir").graph) > 15
+    graph = compile_example(path, "ir").graph
+    assert agrees(graph) > sum(bool(element.name) for element in graph) / 4
 
 
 @pytest.mark.parametrize("seed", range(0, 50, 10))
