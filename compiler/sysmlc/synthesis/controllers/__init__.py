@@ -1,1 +1,1 @@
-"""Controllers: strategies taken from won games, their machines and tables, and the check of both."""
+"""Controllers: strategies taken from won games, machines and tables of them, and their check."""
