@@ -155,10 +155,32 @@ def test_a_word_that_nearly_is_a_keyword_is_asked_about():
         ("block Gate;", "'block' is no keyword: a block is a 'part def'"),
         ("part p { value x : Real; }", "'attribute' is meant"),
         ("action a { stream b.x to c.y; }", "'flow' is meant: flow from a.x to b.y"),
+        ("attribute a = b && c;", "conditions are joined by 'and'"),
+        ("attribute a = b || c;", "conditions are joined by 'or'"),
+        ("attribute a = b ? c : d;", "begins with 'if': if a ? b else c"),
+        ("action a { if b = 3 then c; }", "'==' compares two values"),
+        ("attribute a == 3;", "'==' compares two values; ':=' gives an initial value"),
+        ("constraint c { a > b; }", "without ';' at the end of the body"),
+        ('requirement r { doc "text"; }', "between /* and */"),
+        ("part p { connect a -> b; }", "joined by 'to': a to b"),
+        ("part p { port in q; }", "the direction stands before the kind: in port"),
+        ("part def A specialises B;", "did you mean 'specializes'?"),
+        ("feature f;", "in SysML a feature is a 'ref'"),
     ],
 )
 def test_common_slips_get_the_words_that_are_right(text, advice):
     assert advice in advised(text)[0]
+
+
+def test_a_comparison_where_a_value_is_meant_is_read_as_a_binding():
+    tree, messages = parsed("attribute a == 3;")
+    assert messages == ["1:13 SM190 '==' stands where '=' is expected"]
+    assert tree[1] == "  FeatureValue (=) LiteralInteger value=3"
+
+
+@pytest.mark.parametrize("text", ["part a b;", "part p { connect a b; }"])
+def test_what_is_no_slip_gets_no_words(text):
+    assert advised(text) == [""]
 
 
 def test_parameters_in_parentheses_of_kerml_get_the_words_that_are_right():

@@ -87,6 +87,8 @@ class Errors:
             self.report(rules.KEYWORD, start, word=word, language=_LANGUAGES[self._language])
             return
         advice = f"{hints.INITIAL}: here only '{meant}' can stand"
+        if word == "==":
+            advice = f"'==' compares two values; {hints.INITIAL}"
         expected = f"'{meant}'"
         self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection
 
+from sysmlc.language.text.foreign import direction, foreign
 from sysmlc.language.text.scan import Tokens
 from sysmlc.suggest import did_you_mean
 
@@ -20,11 +21,15 @@ _TOKENS = {
 """What to say about a token, wherever it stands."""
 _FIRST = {
     "activity": "'action' is meant",
+    "assoc": "in SysML an association is a 'connection def'",
+    "behavior": "in SysML a behaviour is an 'action def'",
     "block": "a block is a 'part def'",
     "class": "in SysML a class is a 'part def', 'item def' or 'attribute def'",
     "component": "'part' is meant",
+    "datatype": "in SysML a type of values is an 'attribute def'",
     "decision": "'decide' is meant",
     "enumeration": "'enum def' is meant",
+    "feature": "in SysML a feature is a 'ref', 'attribute', 'part' or 'item'",
     "func": "'calc' is meant",
     "function": "in SysML a function is a 'calc def'",
     "id": "an identifier stands behind the keyword: requirement <'R5'> name",
@@ -32,10 +37,13 @@ _FIRST = {
     "operation": "'action' is meant",
     "property": "'attribute', 'part' or 'ref' is meant",
     "readonly": "what never changes is 'constant', in KerML 'const'",
+    "predicate": "in SysML a predicate is a 'constraint def'",
     "signal": "what is sent is an 'item def' or 'attribute def'",
     "stream": "'flow' is meant: flow from a.x to b.y",
+    "struct": "in SysML a structure is a 'part def' or 'item def'",
     "usecase": "'use case' is meant",
     "value": "'attribute' is meant",
+    "var": "'attribute' is meant",
     "valuetype": "a type of values is an 'attribute def'",
 }
 """What to say about a word that begins a member and is no keyword."""
@@ -53,13 +61,18 @@ def slip(tokens: Tokens, at: int, expected: Collection[str], beginnings: Collect
         said = about(tokens, at, expected)
         if said:
             return said
-    return _TOKENS.get(tokens[at], "") or first_word(tokens, at - 1, beginnings)
+    foreign_one = foreign(tokens, at, expected) if not tokens[at].isalpha() else ""
+    known = _TOKENS.get(tokens[at], "") or foreign_one
+    return known or first_word(tokens, at - 1, beginnings) or foreign(tokens, at, expected)
 
 
 def missing(tokens: Tokens, before: int, at: int, beginnings: Collection[str]) -> str:
     """What may help where a member seems to end with token ``before``, and ``at`` follows."""
     return (
-        _import(tokens, at, ()) or _ends(tokens, at, ()) or first_word(tokens, before, beginnings)
+        _import(tokens, at, ())
+        or _ends(tokens, at, ())
+        or direction(tokens, before, at, beginnings)
+        or first_word(tokens, before, beginnings)
     )
 
 

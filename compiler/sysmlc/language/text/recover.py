@@ -65,7 +65,8 @@ class Recovery:
         if written[:1].isalpha() and written in self._words:
             wanted = [self._tables.types.name]
         elif written in ("=", ":=", "=="):
-            wanted = [self._words[other] for other in (":=", "=") if other in self._words]
+            likely = ("=", ":=") if written == "==" else (":=", "=")
+            wanted = [self._words[other] for other in likely if other in self._words]
         else:
             return -1
         for kind in wanted:
