@@ -8,11 +8,21 @@ from hypothesis import given, settings
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class, Conjunct, Contract, EnumerationDomain, IntegerDomain
+from sysmlc.logic.contract import (
+    Class,
+    Conjunct,
+    Contract,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.formats import plain
 from sysmlc.logic.formats.counting import counted, in_bits
 from sysmlc.logic.formats.lower import TooManyValuesError, renamed, without_arithmetic, written_out
 from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.ltl import parse_formula
 
 
 def number(variable, value):
@@ -65,6 +75,32 @@ def test_a_lowered_formula_is_true_for_the_same_values(formula):
         assert is_true(bits, as_bits(now), as_bits(then)) == truth
 
 
+def as_sums(row):
+    """Ranges that begin below 0 begin at 0 in structured slugs, all others where they do."""
+    return as_counted(row) | {"n": row["n"], "m": row["m"], "go": row["go"], "done": row["done"]}
+
+
+@given(conditions(then_or_now))
+@settings(max_examples=100, deadline=None)
+def test_sums_of_slugs_are_true_for_the_same_values(formula):
+    contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
+    sums = plain(contract, "structured").guarantees[0].formula
+    for now, then in PAIRS[:100]:
+        assert is_true(sums, as_sums(now), as_sums(then)) == is_true(formula, now, then)
+
+
+@pytest.mark.parametrize("text", ["low + 2<n", "low * 2<n", "low - 1<n", "n<low + low"])
+def test_a_sum_about_a_range_below_0_counts_from_0_in_slugs(text):
+    known = {one.name: one.domain for one in VARIABLES}
+    formula = parse_formula(text, known)
+    contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
+    sums = plain(contract, "structured").guarantees[0].formula
+    truths = [
+        (is_true(formula, row, row), is_true(sums, as_sums(row), as_sums(row))) for row in ROWS
+    ]
+    assert [one for one in truths if one[0] != one[1]] == []
+
+
 def test_bits_that_stand_for_no_value_are_ruled_out_on_their_owner_s_side():
     made = in_bits(Contract("C", "", VARIABLES, (), ()))
     assert [one.name for one in made.variables if one.name.startswith("m_")] == ["m_0", "m_1"]
@@ -79,6 +115,15 @@ def test_names_that_a_language_has_taken_get_an_underscore():
     assert names == ["go_", "n", "low", "done", "m", "mode_"]
     assert made.variables[-1].domain == EnumerationDomain(("idle", "busy_", "stop"))
     assert made.guarantees[0].formula == f.eq(Var("mode_"), Const("busy_"))
+
+
+def test_a_name_that_is_taken_gets_another_underscore_wherever_it_is_said():
+    domain = EnumerationDomain(("busy", "busy_"))
+    mode, said = Variable("mode", Owner.SYSTEM, domain), (busy("mode"), busy("mode"))
+    made = renamed(Contract("C", "", (mode,), said[:1], said[1:]), ("busy",))
+    assert made.variables[0].domain == EnumerationDomain(("busy__", "busy_"))
+    assert made.assumptions[0].formula == f.eq(Var("mode"), Const("busy__"))
+    assert made.guarantees[0].formula == f.eq(Var("mode"), Const("busy__"))
 
 
 def busy(name):

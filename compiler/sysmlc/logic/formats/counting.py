@@ -65,7 +65,7 @@ def _can_count(formula: Formula, domains_of: Known) -> bool:
 def _count(formula: Formula, domains_of: Known, shifts: Mapping[str, int]) -> Formula:
     """A comparison about the numbers that stand for values."""
     match formula:
-        case Apply(op, (Var(name) as var, Const(value))):
+        case Apply(op, (Var(name) as var, Const(value))) if op in COMPARISONS:
             return Apply(op, (var, Const(_index(value, domains_of[name], shifts[name]))))
         case Apply(op, (Const(str(value)), Var(name) as var)):
             return Apply(op, (Const(_index(value, domains_of[name], 0)), var))

@@ -111,11 +111,19 @@ def renamed(contract: Contract, reserved: Iterable[str]) -> Contract:
     """
     words = frozenset(reserved)
     names = _unlike([one.name for one in contract.variables], words)
+    literals = _unlike(_literals(contract), words)
     variables = [
-        replace(one, name=names[one.name], domain=_domain(one.domain, words))
+        replace(one, name=names[one.name], domain=_domain(one.domain, literals))
         for one in contract.variables
     ]
-    return each_conjunct(contract, lambda formula: _named(formula, names, words), variables)
+    return each_conjunct(contract, lambda formula: _named(formula, names, literals), variables)
+
+
+def _literals(contract: Contract) -> Iterable[str]:
+    """Literals of all enumerations: one that two of them have has one name in both."""
+    found = [one.domain for one in contract.variables]
+    enumerations = [one for one in found if isinstance(one, EnumerationDomain)]
+    return dict.fromkeys(literal for one in enumerations for literal in one.literals)
 
 
 def _unlike(names: Iterable[str], words: frozenset[str]) -> dict[str, str]:
@@ -131,20 +139,20 @@ def _unlike(names: Iterable[str], words: frozenset[str]) -> dict[str, str]:
     return made
 
 
-def _domain(domain: Domain, words: frozenset[str]) -> Domain:
-    if not isinstance(domain, EnumerationDomain) or words.isdisjoint(domain.literals):
+def _domain(domain: Domain, named: Mapping[str, str]) -> Domain:
+    if not isinstance(domain, EnumerationDomain):
         return domain
-    return EnumerationDomain(tuple(_unlike(domain.literals, words).values()))
+    return replace(domain, literals=tuple(named[one] for one in domain.literals))
 
 
-def _named(formula: Formula, names: Mapping[str, str], words: frozenset[str]) -> Formula:
+def _named(formula: Formula, names: Mapping[str, str], literals: Mapping[str, str]) -> Formula:
     match formula:
         case Var(name, primed):
             return Var(names[name], primed)
-        case Const(str(value)) if value in words:
-            return Const(f"{value}_")
+        case Const(str(value)):
+            return Const(literals.get(value, value))
         case Apply(op, args):
-            return Apply(op, tuple(_named(arg, names, words) for arg in args))
+            return Apply(op, tuple(_named(arg, names, literals) for arg in args))
         case _:
             return formula
 
