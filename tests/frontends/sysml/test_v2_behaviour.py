@@ -123,6 +123,54 @@ package P {
     assert str(reading.named("P::Go").kind) == "Signal"
 
 
+def test_the_start_and_the_end_of_a_block_are_its_own():
+    reading = read("""
+package P {
+    part def R {
+        attribute x : ScalarValues::Boolean;
+        perform action w {
+            first start;
+            then while x { first start; then action a; then done; }
+            then action b;
+            then done;
+        }
+    }
+}""")
+    assert reading.flows("P::R::w") == [
+        "merge -> decision",
+        "decision -> merge [else]",
+        "merge -> a",
+        "a -> merge",
+        "decision -> merge [x]",
+        "merge -> merge",
+        "start -> merge",
+        "merge -> b",
+        "b -> done",
+    ]
+
+
+def test_a_block_without_steps_leads_from_its_start_to_its_end():
+    reading = read("""
+package P {
+    part def R {
+        attribute x : ScalarValues::Boolean;
+        perform action w {
+            first start;
+            then if x { first start; then done; }
+            then action b;
+        }
+    }
+}""")
+    assert reading.flows("P::R::w") == [
+        "merge -> merge",
+        "decision -> merge [x]",
+        "merge -> merge",
+        "decision -> merge [else]",
+        "start -> decision",
+        "merge -> b",
+    ]
+
+
 def test_if_and_while_are_control_nodes_with_guards():
     reading = read("""
 package P {

@@ -83,14 +83,15 @@ def _body(low: "Lowering", body: Node, owner: Element) -> tuple[Element, Element
     inside = nodes.body_of(body)
     if not inside:
         return None
-    before = len(low.graph.owned(owner))
-    steps(low, inside, owner)
-    found = [one for one in low.graph.owned(owner)[before:] if one.kind in _NODES]
-    if not found:
+    before, ends = len(low.graph.owned(owner)), list[Element]()
+    steps(low, inside, owner, ends)
+    made = low.graph.owned(owner)[before:]
+    found = [one for one in made if one.kind in _NODES]
+    if not found and not any(one.kind is Kind.CONTROL_FLOW for one in made):
         return None
-    entry, exit_ = _control(low, body, owner, "merge"), _control(low, body, owner, "merge")
-    low.last(lambda: _tie(low, body, found, (entry, exit_)))
-    return entry, exit_
+    ends += (_control(low, body, owner, "merge"), _control(low, body, owner, "merge"))
+    low.last(lambda: _tie(low, body, found, (ends[0], ends[1])))
+    return ends[0], ends[1]
 
 
 _NODES = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)

@@ -30,14 +30,22 @@ class _Run:
     """Where the reading of a body is."""
 
     owner: Element
+    ends: list[Element] | None = None
+    """Entry and exit, where the steps are those of a block within the behaviour."""
     previous: "Node | Reference | None" = None
     waiting: "list[tuple[Node | Reference | None, Node, str]]" = field(default_factory=list)
     """Successions whose target is the next step: source, node, guard."""
 
 
-def steps(low: "Lowering", found: Iterable[Node], owner: Element) -> None:
-    """Lower the members of a behaviour with the successions between them."""
-    run = _Run(owner)
+def steps(
+    low: "Lowering", found: Iterable[Node], owner: Element, ends: list[Element] | None = None
+) -> None:
+    """Lower the members of a behaviour with the successions between them.
+
+    Steps of a block that stand in the behaviour around it have the ``ends`` of the block as
+    ``start`` and ``done``; they may be added to the list afterwards.
+    """
+    run = _Run(owner, ends)
     for node in found:
         if node.kind in _SUCCESSIONS:
             _succession(low, node, run)
@@ -45,7 +53,7 @@ def steps(low: "Lowering", found: Iterable[Node], owner: Element) -> None:
             _guarded(low, node, run)
         elif node.kind == "Membership" and not node.name and not node.short:
             run.previous = nodes.reference(node, "Membership")
-            _mention(low, run.owner, run.previous, node)
+            _mention(low, run, run.previous, node)
         else:
             low.lower(node, owner)
             if node.kind in _STEPS and "direction" not in node.facts:
@@ -109,7 +117,7 @@ def _flow(
         low.unsupported(node)
         return
     for point in (source, target):
-        _mention(low, run.owner, point, node)
+        _mention(low, run, point, node)
     is_objects = "ObjectFlow" in annotations.ours(node)
     kind = Kind.OBJECT_FLOW if is_objects else Kind.CONTROL_FLOW
     made = low.add(node, kind, node.name or "", run.owner)
@@ -118,7 +126,7 @@ def _flow(
     elif guard is not None:
         low.later(lambda: values.say(low, made, "guard", guard))
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
-    low.last(lambda: _join(low, made, source, target))
+    low.last(lambda: _join(low, made, (source, target), run.ends))
     if is_objects:
         low.last(lambda: _flow_between_pins(low, node, made))
     if guard is not None:
@@ -166,10 +174,14 @@ def _is_elsewhere(low: "Lowering", point: Reference) -> bool:
     return is_package and not is_of_library(low, point)
 
 
-def _mention(low: "Lowering", owner: Element, point: "Node | Reference | None", node: Node) -> None:
+def _mention(low: "Lowering", run: _Run, point: "Node | Reference | None", node: Node) -> None:
     """Make the start or the end of a behaviour where the text first names it."""
-    if isinstance(point, Reference) and len(point.chain) == 1 and is_of_library(low, point):
-        low.control(owner, nodes.last_name(point), node)
+    if run.ends is None and isinstance(point, Reference) and _is_own_end(low, point):
+        low.control(run.owner, nodes.last_name(point), node)
+
+
+def _is_own_end(low: "Lowering", point: Reference) -> bool:
+    return len(point.chain) == 1 and is_of_library(low, point)
 
 
 def is_of_library(low: "Lowering", point: Reference) -> bool:
@@ -181,13 +193,16 @@ def is_of_library(low: "Lowering", point: Reference) -> bool:
 def _join(
     low: "Lowering",
     made: Element,
-    source: "Node | Reference | None",
-    target: "Node | Reference",
+    points: "tuple[Node | Reference | None, Node | Reference]",
+    ends: list[Element] | None,
 ) -> None:
     owner = low.graph.owner(made)
     assert owner is not None
-    for edge, point in ((Edge.FLOW_SOURCE, source), (Edge.FLOW_TARGET, target)):
-        found = vertex(low, owner, point, is_target=edge is Edge.FLOW_TARGET)
+    for edge, point in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), points, strict=True):
+        if ends and isinstance(point, Reference) and _is_own_end(low, point):
+            found: Element | None = ends[nodes.last_name(point) == "done"]
+        else:
+            found = vertex(low, owner, point, is_target=edge is Edge.FLOW_TARGET)
         if found is None:
             low.lead(edge, made, None)
         else:
