@@ -9,9 +9,19 @@ import pytest
 from sysmlc.diagnostics import Sink
 from sysmlc.diagnostics.rule import catalogue
 from sysmlc.logic import formats
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    EnumerationDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formula import Var
+from sysmlc.logic.formula import Const, Var
+from sysmlc.logic.ltl import parse_formula
 from sysmlc.logic.printing import print_formula
 
 RULES = [one for code, one in sorted(catalogue().items()) if "SM580" <= code <= "SM589"]
@@ -300,3 +310,22 @@ def test_spoiled_files_are_told_and_never_fail():
         for contract in found:
             assert read(formats.write(contract, "neutral"), form="neutral")[1] == []
         assert all(line > 0 and column > 0 and message for _, line, column, message in told)
+
+
+def test_a_literal_that_is_called_like_a_variable_gets_an_underscore():
+    domain = EnumerationDomain(("red", "blue"))
+    variables = tuple(Variable(name, Owner.SYSTEM, domain) for name in ("colour", "red"))
+    said = tuple(
+        Conjunct(f.eq(Var("colour"), right), Class.INIT, "") for right in (Const("red"), Var("red"))
+    )
+    contract = Contract("C", "", variables, (), said)
+    for form in ("contract", "neutral", "smv"):
+        sink = Sink()
+        (again,) = formats.read(formats.write(contract, form), "C.txt", sink, form)
+        texts = [print_formula(one.formula) for one in again.guarantees]
+        assert (list(sink), texts) == ([], ["colour=red_", "colour=red"])
+
+
+def test_a_name_on_both_sides_is_the_variable_and_its_value():
+    known = {"state": EnumerationDomain(("state", "busy"))}
+    assert parse_formula("state=state", known) == f.eq(Var("state"), Const("state"))

@@ -94,8 +94,10 @@ def command(
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
     from sysmlc.cli.progress import Progress
+    from sysmlc.logic.formats.lower import unambiguous
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decide import Options
+    from sysmlc.values import replace
 
     if (is_decided_only or timers) and output is not None:
         word = "--deadline" if timers else "--realizable"
@@ -105,6 +107,7 @@ def command(
     progress = Progress(settings.verbose)
     limits = Limits(nodes, int(memory * _GIBIBYTE), seconds)
     read = read_contracts(file, language, config, settings)
+    read = replace(read, contracts=tuple(map(unambiguous, read.contracts)))
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:

@@ -125,7 +125,8 @@ class Reader:
         return Part(_GATHERED[op](*found), TRUTH, left.at)
 
     def _compared(self, op: Op, left: Part, right: Part, at: int) -> Part:
-        left, right = self._as_literal(left, right), self._as_literal(right, left)
+        right = self._as_literal(right, left)
+        left = self._as_literal(left, right) if right.formula.__class__ is Var else left
         if op in ORDERS:
             return Part(f.compare(op, self.number(left), self.number(right)), TRUTH, left.at)
         if isinstance(left.kind, EnumerationDomain) and isinstance(right.kind, EnumerationDomain):

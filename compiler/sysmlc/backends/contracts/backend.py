@@ -8,6 +8,7 @@ from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.document_text import text
+from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.naming import file_names
 from sysmlc.output import Output
@@ -48,7 +49,7 @@ class ContractsBackend:
         """Add three files a contract; their trace names every element that they tell of."""
         contracts = graph.derived(Contract)
         names = file_names(contract.component for contract in contracts)
-        for contract in contracts:
+        for contract in map(unambiguous, contracts):
             path = f"contracts/{names[contract.component]}"
             trace = tuple(trace_of(graph, contract))
             output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, self.name)

@@ -17,6 +17,7 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import OWNERS, SECTIONS
 from sysmlc.logic.formats.file import File
+from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.placed import PlacedList, PlacedObject, PlacedText, loads
 from sysmlc.logic.infix import Reader
 from sysmlc.logic.ltl import FormulaError, parse_formula
@@ -192,9 +193,10 @@ def write(contract: Contract, form: str) -> str:
     """The contract in the neutral form, or in ours."""
     from sysmlc.logic.formats.document_text import neutral, text
 
-    return f"{text(contract) if form == 'contract' else neutral(contract)}\n"
+    made = plain(contract, form)
+    return f"{text(made) if form == 'contract' else neutral(made)}\n"
 
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract: JSON has words for all of it."""
-    return contract
+    return unambiguous(contract)

@@ -107,16 +107,23 @@ def without_weak_until(formula: Formula) -> Formula:
 def renamed(contract: Contract, reserved: Iterable[str]) -> Contract:
     """The contract whose variables and literals are none of a language's words.
 
-    Those that are get an underscore behind.
+    Those that are get an underscore behind, and so do literals that are called like a variable.
     """
     words = frozenset(reserved)
     names = _unlike([one.name for one in contract.variables], words)
-    literals = _unlike(_literals(contract), words)
+    literals = _unlike(_literals(contract), words | {*names, *names.values()})
     variables = [
         replace(one, name=names[one.name], domain=_domain(one.domain, literals))
         for one in contract.variables
     ]
     return each_conjunct(contract, lambda formula: _named(formula, names, literals), variables)
+
+
+def unambiguous(contract: Contract) -> Contract:
+    """The contract without literals that are called like a variable: of ``state=red`` nobody
+    could tell whether ``red`` is the value or what the variable ``red`` is."""
+    names = {one.name for one in contract.variables}
+    return contract if names.isdisjoint(_literals(contract)) else renamed(contract, ())
 
 
 def _literals(contract: Contract) -> Iterable[str]:

@@ -20,7 +20,7 @@ from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import lowered
 from sysmlc.logic.formats.draft import Draft
 from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import TooManyValuesError, without_arithmetic
+from sysmlc.logic.formats.lower import TooManyValuesError, unambiguous, without_arithmetic
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.logic.formats.spot import OWNERS, PARTS, parts, read_implication
 from sysmlc.logic.formula import Op
@@ -104,7 +104,7 @@ class _Reader(Reader):
 
 def plain(contract: Contract, form: str) -> Contract:
     """The contract without arithmetic. Raises NotExpressibleError."""
-    return lowered(contract, form, without_arithmetic)
+    return lowered(unambiguous(contract), form, without_arithmetic)
 
 
 def write(contract: Contract, form: str) -> str:
@@ -118,5 +118,5 @@ def write(contract: Contract, form: str) -> str:
         return one
 
     found: list[str] = []
-    lowered(contract, form, text)
-    return "\n".join([found[0].rstrip("\n"), *parts(contract), ""])
+    made = lowered(unambiguous(contract), form, text)
+    return "\n".join([found[0].rstrip("\n"), *parts(made), ""])
