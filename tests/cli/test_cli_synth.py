@@ -49,6 +49,21 @@ def test_the_right_example_of_each_rule_is_decided(here):
         assert here.sysmlc("synth", "right.gr1.json", "--realizable").exit_code == 0
 
 
+CHASE = """NAME: line;
+CONTRACT good: output boolean variable lamp; Assumptions: true; Guarantees: G F(lamp);
+CONTRACT bad: output boolean variable lamp; Assumptions: true; Guarantees: G F(lamp));
+"""
+
+
+@pytest.mark.parametrize("words", [["synth"], ["synth", "--realizable"], ["contracts", "check"]])
+def test_a_contract_that_cannot_be_read_is_exit_code_2_though_others_are_kept(here, words):
+    here.write("line.ltl", CHASE)
+    made = here.sysmlc(*words, "line.ltl")
+    assert made.exit_code == 2
+    assert made.stdout.startswith("line.good: realizable")
+    assert "--> line.ltl:3:85" in made.stderr
+
+
 WIDE = {
     "variables": {
         **{f"a{n}": {"owner": "env", "type": [0, 30]} for n in range(4)},

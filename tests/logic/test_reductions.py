@@ -13,6 +13,7 @@ from sysmlc.logic.ltl import parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.reduction.reduce import NotReducibleError, parts_of, reduced
+from sysmlc.logic.texts.past import read_past
 
 DOMAINS = {name: BooleanDomain() for name in "abcd"}
 SAFE, LIVE, INIT = "safety", "liveness", "init"
@@ -77,6 +78,23 @@ def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
     if parts is not None:
         assert [(str(class_), print_formula(part)) for class_, part in found] == parts
         assert len(history.variables) == bits
+
+
+@pytest.mark.parametrize(
+    ("text", "future"),
+    [
+        ("G (Y a -> b)", "G (a -> X b)"),
+        ("G (b -> Y a)", "!b & G (X b -> a)"),
+        ("G (O a -> b)", "G (a -> G b)"),
+        ("G (H a -> b)", "b W !a"),
+        ("G (a S b -> c)", "G (b -> c & X (c W !a))"),
+        ("G (Y (a S b) -> c) & G (Y Y a -> b)", "G (b -> X (c W (c & !a))) & G (a -> X X b)"),
+        ("G F (a & Y b)", "G F (b & X a)"),
+    ],
+)
+def test_the_past_is_remembered(text, future):
+    history = History(DOMAINS)
+    assert same(parse(future), parts_of(read_past(text, DOMAINS), history), history)
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,8 @@ class ContractFile:
     findings: "tuple[Finding, ...]"
     sources: "tuple[Source, ...]"
     root: Path
+    is_whole: bool = True
+    """Whether every contract of the file could be read."""
 
 
 def chosen(
@@ -113,7 +115,8 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     name = file.name.partition(".")[0]
     read = formats.read(text, source.name, sink, language)
     contracts = tuple(one if one.component else replace(one, component=name) for one in read)
-    return ContractFile(contracts, (), sink, _from_text, (), (source,), Path.cwd())
+    is_whole = not sink.has_errors()
+    return ContractFile(contracts, (), sink, _from_text, (), (source,), Path.cwd(), is_whole)
 
 
 def _from_text(origin: str) -> "Subject":

@@ -100,7 +100,8 @@ def _checked(
     is_undecided = any(one.verdict.is_realizable is None for one in alone)
     found = (*read.sink, *(one.diagnostic for one in read.findings))
     has_errors = any(one.severity is Severity.ERROR for one in found)
-    return 2 if is_undecided or not (alone or together) else int(has_errors)
+    is_done = read.is_whole and not is_undecided and bool(alone or together)
+    return int(has_errors) if is_done else 2
 
 
 def _line(result: "Checked") -> str:

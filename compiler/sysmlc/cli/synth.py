@@ -209,4 +209,5 @@ def _told(
     from sysmlc.cli.contract_files import show
 
     show(read, settings, (verdict.text() for verdict in verdicts))
-    return max((verdict.exit_code for verdict in verdicts), default=2)
+    code = max((verdict.exit_code for verdict in verdicts), default=2)
+    return code if read.is_whole else 2

@@ -19,7 +19,7 @@ _TITLES = {
     Class.INIT: "At the start",
     Class.SAFETY: "In every step",
     Class.LIVENESS: "Again and again",
-    Class.OTHER: "In temporal logic outside GR(1)",
+    Class.OTHER: "In temporal logic",
 }
 _PREFIXES = {
     "at_": "a token is on the flow",

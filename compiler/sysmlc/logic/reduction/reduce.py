@@ -9,6 +9,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula
+from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.reduction.rules import (
     NotReducibleError,
@@ -41,7 +42,8 @@ class Reduced:
 def reduced(contract: Contract) -> Reduced:
     """The contract in GR(1), with history bits of the system.
 
-    Bits and what they follow stand behind everything else; their origin is the conjunct's.
+    Bits and what they follow stand behind everything else; their origin is the conjunct's. What is
+    said otherwise keeps its formula as its text, if it had none.
     """
     history = History(variable.name for variable in contract.variables)
     outside: list[Conjunct] = []
@@ -64,7 +66,9 @@ def _side(
             outside.append(one)
             yield one
         else:
-            yield from (replace(one, formula=part, class_=class_) for class_, part in parts)
+            text = one.text or print_formula(as_ltl(one))
+            for class_, part in parts:
+                yield replace(one, formula=part, class_=class_, text=text)
 
 
 def is_plain(conjunct: Conjunct) -> bool:
