@@ -35,6 +35,11 @@ def refinement_failures(
     assumptions entail its own, and with the other's assumptions its guarantees entail the other's.
     Raises DomainError, OutsideGr1Error, LimitError.
     """
+    with manager.guard():
+        yield from _all_failures(concrete, abstract, manager)
+
+
+def _all_failures(concrete: Contract, abstract: Contract, manager: Manager) -> Iterator[Failure]:
     both = observed((concrete, abstract))
     (concrete, abstract), seen = both.contracts, both.definitions
     universe = Universe(both.contracts, manager)
@@ -73,7 +78,8 @@ def behaviour(contract: Contract, manager: Manager) -> Trace | None:
 def _example(contract: Contract, manager: Manager, is_whole: bool) -> Trace | None:
     alone = observed((contract,))
     (made,) = alone.contracts
-    universe = Universe(alone.contracts, manager)
     promised = made.guarantees if is_whole else ()
-    system = universe.system((*made.assumptions, *promised, *alone.definitions))
-    return Entailment(universe, system).example()
+    with manager.guard():
+        universe = Universe(alone.contracts, manager)
+        system = universe.system((*made.assumptions, *promised, *alone.definitions))
+        return Entailment(universe, system).example()

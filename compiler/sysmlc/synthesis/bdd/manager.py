@@ -5,14 +5,17 @@ libraries do differently, and what may run for long, are methods of ``Manager``.
 """
 
 import logging
+import signal
+import threading
 import time
 import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
-from types import ModuleType
+from types import FrameType, ModuleType
 from typing import Any, Protocol, Self, cast
 
+from sysmlc.synthesis.bdd.inside import watch
 from sysmlc.values import dataclass
 
 ENGINES = ("cudd", "autoref")
@@ -102,13 +105,16 @@ class Manager:
         self._library = library
         self._progress = progress
         self._start = time.process_time()
-        self._peak = 0
+        self._peak = self._nodes = 0
         self._next_look = 0.0
         self._reorder_at = REORDER_AT
+        self._end: LimitError | KeyboardInterrupt | None = None
         # dd has no type hints that a checker could use.
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
         self.true: Node = cast("Node", self._bdd.true)
         self.false: Node = cast("Node", self._bdd.false)
+        if self.engine == "cudd":
+            watch(library, self._bdd, self)
 
     def declare(self, bits: Collection[str]) -> None:
         """Add bits below those that are there."""
@@ -218,19 +224,29 @@ class Manager:
 
     def check(self, doing: str = "") -> None:
         """Say what is being done; raises LimitError when a limit is exceeded."""
-        now = time.process_time()
         if doing and self._progress is not None:
             self._progress(doing)
-        if now < self._next_look:
-            return
-        self._next_look = now + _PATIENCE
-        used, limits = self.usage(), self.limits
-        if used.nodes > self._reorder_at:
+        if self.is_over() and self._end is not None:
+            raise self._end
+        if self._nodes > self._reorder_at:
             self.reorder_automatically(True)
+
+    def is_over(self) -> bool:
+        """Whether a limit is exceeded, or somebody pressed Ctrl-C; asked within operations too."""
+        now = time.process_time()
+        if self._end is None and now >= self._next_look:
+            self._next_look = now + _PATIENCE
+            self._end = self._exceeded()
+        return self._end is not None
+
+    def _exceeded(self) -> "LimitError | None":
+        used, limits = self.usage(), self.limits
+        self._nodes = used.nodes
         if limits.nodes and used.nodes > limits.nodes:
-            raise LimitError("nodes", f"{limits.nodes:,}")
+            return LimitError("nodes", f"{limits.nodes:,}")
         if limits.seconds and used.seconds > limits.seconds:
-            raise LimitError("of CPU time", f"{limits.seconds:g} s")
+            return LimitError("of CPU time", f"{limits.seconds:g} s")
+        return None
 
     def _counts(self) -> tuple[int, int]:
         if self.engine != "cudd":
@@ -244,14 +260,42 @@ class Manager:
 
     @contextmanager
     def guard(self) -> Iterator[None]:
-        """Turn what the library raises when its memory is used up into LimitError."""
+        """Turn what the library raises when an operation is given up, or its memory used up, into
+        LimitError; within it Ctrl-C ends operations, too."""
         try:
-            yield
+            with _interrupts(self._interrupted):
+                yield
         except (RuntimeError, ValueError, MemoryError) as problem:
+            if self._end is not None:
+                raise self._end from None
             if isinstance(problem, MemoryError) or _is_memory(str(problem)):
                 size = (self.limits.memory or _MEMORY) / _GIBIBYTE
                 raise LimitError("of memory", f"{size:g} GiB") from None
             raise
+        if isinstance(self._end, KeyboardInterrupt):
+            raise self._end
+
+    def _interrupted(self, number: int, frame: FrameType | None) -> None:
+        """Ctrl-C: what runs is given up soon; when it is pressed again, at once."""
+        if self._end is not None:
+            raise KeyboardInterrupt
+        self._end = KeyboardInterrupt()
+
+
+@contextmanager
+def _interrupts(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Let a function see Ctrl-C where it would raise KeyboardInterrupt: an operation of the library
+    would not be ended by that."""
+    is_main = threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    if not is_main or before is not signal.default_int_handler:
+        yield
+        return
+    signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _is_memory(text: str) -> bool:

@@ -33,10 +33,16 @@ def defeats(
     """
     for contract in contracts:
         try:
-            yield counter(environment_of(contract, options), contract), contract
+            yield _counter(contract, options), contract
         except LimitError as problem:
             subject, reached = place(contract.origin), str(problem)
             sink.report(NO_COUNTER, subject, component=contract.component, reached=reached)
+
+
+def _counter(contract: Contract, options: Options) -> Counter:
+    environment = environment_of(contract, options)
+    with environment.lost.arena.manager.guard():
+        return counter(environment, contract)
 
 
 def environment_of(contract: Contract, options: Options) -> Environment:

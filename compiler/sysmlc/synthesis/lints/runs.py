@@ -20,6 +20,12 @@ _COUNTED = 3
 def of_runs(contract: Contract, manager: Manager) -> Iterator[Remark]:
     """Dead ends of the environment, and outputs without a frame."""
     game = make_game(contract, manager)
+    with manager.guard():
+        yield from _of_game(contract, game)
+
+
+def _of_game(contract: Contract, game: Game) -> Iterator[Remark]:
+    manager = game.manager
     reachable = Runs(all_steps(game)).reachable
     alive = Product(manager, _nodes(game.assumptions), game.next_inputs)(manager.true)
     dead = reachable & ~alive

@@ -32,7 +32,8 @@ def helpful_assumptions(game: Game, most: int = 3) -> tuple[Conjunct, ...]:
     """
     bits = max(_SMALL, len(game.inputs) + len(game.outputs))
     tried = islice(_candidates(game), MOST_TRIED * _SMALL**2 // bits**2)
-    return tuple(islice((one for one in tried if _helps(game, one)), most))
+    with game.manager.guard():
+        return tuple(islice((one for one in tried if _helps(game, one)), most))
 
 
 def _candidates(game: Game) -> Iterator[Conjunct]:

@@ -1,0 +1,122 @@
+"""Limits hold within an operation on diagrams too, not only between two of them."""
+
+import gc
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.cli.group import sysmlc
+from sysmlc.diagnostics import Sink
+from sysmlc.logic import formats
+from sysmlc.logic.contract import Contract
+from sysmlc.synthesis import LimitError, Limits, Manager
+from sysmlc.synthesis.algebra.relations import refinement_failures
+from sysmlc.synthesis.bdd import inside
+from sysmlc.synthesis.games.game import make_game
+
+RUNAWAY = """{
+  "name": "runaway",
+  "variables": {
+    "a": {"owner": "env", "type": [0, 65535]},
+    "b": {"owner": "env", "type": [0, 65535]},
+    "c": {"owner": "sys", "type": [0, 65535]}
+  },
+  "assumptions": {"init": [], "safety": [], "liveness": []},
+  "guarantees": {"init": [], "safety": ["a*b = c*c + 1"], "liveness": ["c = a"]}
+}"""
+"""One conjunct whose diagram no computer can hold: nothing comes between its operations and the end
+but what is looked at within them."""
+
+
+def runaway() -> Contract:
+    (contract,) = formats.read(RUNAWAY, "runaway.gr1.json", Sink())
+    return contract
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "runaway.gr1.json"
+    path.write_text(RUNAWAY, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("option", "reached"),
+    [
+        (("--time-limit", "0.3"), "the limit of 0.3 s of CPU time was reached"),
+        (("--nodes", "50000"), "the limit of 50,000 nodes was reached"),
+        (("--memory", "0.04"), "the limit of 0.04 GiB of memory was reached"),
+    ],
+)
+def test_a_limit_ends_what_runs_and_says_what_was_reached(
+    file: Path, tmp_path: Path, option: tuple[str, str], reached: str
+) -> None:
+    out = tmp_path / "out"
+
+    done = CliRunner().invoke(sysmlc, ["synth", str(file), *option, "-o", str(out)])
+
+    assert done.exit_code == 2
+    assert "SM531" in done.output
+    assert reached in done.output
+    assert "translating the contract" in done.output
+    assert not out.exists()
+
+
+def test_comparing_contracts_keeps_limits_too() -> None:
+    other = runaway()
+    weaker = Contract(other.component, other.origin, other.variables, (), ())
+
+    with pytest.raises(LimitError, match="CPU time"):
+        list(refinement_failures(weaker, other, Manager("cudd", Limits(seconds=0.3))))
+
+
+@pytest.fixture
+def pressed_soon() -> Iterator[None]:
+    """Ctrl-C after some CPU time, wherever the program then is."""
+    before = signal.signal(signal.SIGVTALRM, lambda number, frame: signal.raise_signal(2))
+    signal.setitimer(signal.ITIMER_VIRTUAL, 0.3)
+    yield
+    signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+    signal.signal(signal.SIGVTALRM, before)
+
+
+@pytest.mark.usefixtures("pressed_soon")
+def test_ctrl_c_ends_an_operation() -> None:
+    handler = signal.getsignal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        make_game(runaway(), Manager("cudd"))
+
+    assert signal.getsignal(signal.SIGINT) is handler
+
+
+@pytest.mark.usefixtures("pressed_soon")
+def test_ctrl_c_is_neither_a_verdict_nor_a_failure(file: Path) -> None:
+    assert CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable"]).exit_code == 130
+
+
+def test_diagrams_that_outlive_their_manager_still_work() -> None:
+    manager = Manager("cudd", Limits(seconds=0.001))
+    manager.declare(["a", "b"])
+    both = manager.var("a") & manager.var("b")
+    del manager
+    gc.collect()
+
+    assert both & ~both == both & ~both
+    assert len(both) == 3
+
+
+def test_an_unknown_library_is_left_alone() -> None:
+    class Other:
+        vars: tuple[str, ...] = ()
+
+        def is_over(self) -> bool:
+            return True
+
+    library = SimpleNamespace(__file__="no library.so")
+
+    assert not inside.watch(library, Other(), Other())  # type: ignore[arg-type]
