@@ -79,14 +79,15 @@ def _discharges(
 
     def found() -> Relation:
         manager = _manager(options)
-        universe = Universe((environment, robot), manager)
-        given = (*environment.assumptions, *environment.guarantees)
-        runs = Entailment(universe, universe.system(given))
-        for conjunct in (*asked, *open_):
-            trace = runs.violation(conjunct)
-            if trace is not None:
-                reason = f"C_E does not promise: {conjunct.text}"
-                return Relation(claim, False, reason, conjunct, trace)
+        with manager.guard():
+            universe = Universe((environment, robot), manager)
+            given = (*environment.assumptions, *environment.guarantees)
+            runs = Entailment(universe, universe.system(given))
+            for conjunct in (*asked, *open_):
+                trace = runs.violation(conjunct)
+                if trace is not None:
+                    reason = f"C_E does not promise: {conjunct.text}"
+                    return Relation(claim, False, reason, conjunct, trace)
         return Relation(claim, True)
 
     return _limited(claim, found)
