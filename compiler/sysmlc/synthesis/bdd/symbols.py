@@ -40,9 +40,9 @@ class Symbols:
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
         order = ordered(self.variables.values(), self._bits, together)
-        self._to_next = {bit: next_bit(bit) for bit in order}
-        self._to_present = {after: bit for bit, after in self._to_next.items()}
-        manager.declare([bit for pair in self._to_next.items() for bit in pair])
+        manager.declare([one for bit in order for one in (bit, next_bit(bit))])
+        self._to_next = {bit: manager.var(next_bit(bit)) for bit in order}
+        self._to_present = {next_bit(bit): manager.var(bit) for bit in order}
 
     def bits(self, name: str, primed: bool = False) -> tuple[str, ...]:
         """The bits of a variable, the most significant one first."""
@@ -61,11 +61,11 @@ class Symbols:
 
     def prime(self, node: Node) -> Node:
         """The same about the next step; the diagram must not speak of it already."""
-        return self.manager.rename(node, self._to_next)
+        return self.manager.compose(node, self._to_next)
 
     def unprime(self, node: Node) -> Node:
         """The same about the present step; the diagram must speak of the next one only."""
-        return self.manager.rename(node, self._to_present)
+        return self.manager.compose(node, self._to_present)
 
     def names(self, node: Node, primed: bool = False) -> tuple[str, ...]:
         """The variables that the diagram depends on, in this step or in the next."""

@@ -11,15 +11,6 @@ from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Steps
 from sysmlc.synthesis.games.layers import Layer
 from sysmlc.synthesis.games.solve import Solution
-from sysmlc.values import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class Aim:
-    """What may be chosen somewhere: ``possible`` says it of all places in ``where``."""
-
-    where: Node
-    possible: Node
 
 
 def aims(
@@ -28,8 +19,8 @@ def aims(
     goal: int,
     leading: Callable[[Node], Node],
     bits: Collection[str],
-) -> Iterator[Aim]:
-    """What to do on the way to a goal, without two answers for one place.
+) -> Iterator[Node]:
+    """What may be chosen on the way to a goal: each says it of other places.
 
     ``steps`` are those of the arena. ``leading`` gives all choices of values of ``bits`` that lead
     to given states for certain; what leads nowhere leaves the environment without a next input,
@@ -43,12 +34,12 @@ def aims(
         manager.check("looking for what to do")
         for here, there in _waits(solution, steps, goal, layer, before):
             where = here & ~done
-            yield Aim(where, where & leading(there))
+            yield where & leading(there)
             waiting = waiting | here
         possible = leading(layer.states)
         able = manager.exist(manager.support(possible).intersection(bits), possible)
         where = able & ~done & ~waiting
-        yield Aim(where, where & possible)
+        yield where & possible
         done, before = done | able, layer.states
 
 

@@ -115,11 +115,10 @@ class _Maker:
         return self._whole(self._chosen(goal, self._answered, self.answers.bits))
 
     def _chosen(self, goal: int, leading: Callable[[Node], Node], bits: Sequence[str]) -> Functions:
-        pieces = (
-            (aim.where, chosen(self.manager, aim.possible, bits))
-            for aim in aims(self.solution, self.steps, goal, leading, bits)
-        )
-        return joined(self.manager, pieces)
+        wanted = self.manager.false
+        for possible in aims(self.solution, self.steps, goal, leading, bits):
+            wanted = wanted | possible
+        return chosen(self.manager, wanted, bits)
 
     def _whole(self, found: Functions) -> Functions:
         """All bits of the answer, by their names without primes."""

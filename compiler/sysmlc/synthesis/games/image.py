@@ -12,6 +12,9 @@ from sysmlc.values import dataclass
 
 CLUSTER = 2_000
 """Nodes up to which parts about the same bits are joined once and for all."""
+SMALL = 500
+"""Nodes up to which neighbours in the order are joined, whatever they speak of: to begin an
+operation takes longer than to go through them."""
 
 
 @dataclass(slots=True)
@@ -39,13 +42,14 @@ class Product:
         self.manager = manager
         self._bits = frozenset(bits)
         clusters = _clustered(manager, parts, self._bits, limit)
-        self._stages = tuple(_staged(clusters))
-        self._first = self._bits.difference(*(one.support for one in clusters))
+        first = self._bits.difference(*(one.support for one in clusters))
+        self._stages = tuple(_thinned(_staged(clusters), first))
+        self._alone = frozenset() if self._stages else first
 
     def __call__(self, start: Node) -> Node:
         """The product with this start."""
         manager = self.manager
-        found = manager.exist(self._first, start)
+        found = manager.exist(self._alone, start)
         for stage in self._stages:
             if found == manager.false:
                 break
@@ -106,6 +110,22 @@ def _staged(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
         rest.remove(chosen)
         alive = frozenset().union(*(one.support for one in rest))
         yield _Stage(chosen.node, chosen.support - alive)
+
+
+def _thinned(stages: Iterable[_Stage], first: frozenset[str]) -> Iterable[_Stage]:
+    """Stages with small neighbours joined; the first one lets go of what no stage speaks of."""
+    found: list[_Stage] = []
+    for one in stages:
+        both = found[-1].node & one.node if found and _are_small(found[-1], one) else None
+        if both is not None and len(both) <= SMALL:
+            found[-1] = _Stage(both, found[-1].dying | one.dying)
+        else:
+            found.append(one)
+    return [_Stage(one.node, one.dying | first) for one in found[:1]] + found[1:]
+
+
+def _are_small(one: _Stage, other: _Stage) -> bool:
+    return len(one.node) + len(other.node) <= SMALL
 
 
 def _dying(one: _Cluster, rest: Sequence[_Cluster]) -> int:
