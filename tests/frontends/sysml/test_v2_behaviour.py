@@ -31,18 +31,21 @@ package P {
     assert reading.named("P::Build::place").subkind == "opaque"
 
 
-def test_forks_and_joins_end_one_branch_with_a_flow_final():
-    reading = read("""
+FORKED = """
 package P {
     action def A {
         first start; then fork f;
             then x;
             then y;
         action x; then j;
-        action y; then j;
+        action y; %s
         join j; then done;
     }
-}""")
+}"""
+
+
+def test_the_end_behind_the_join_of_all_branches_is_the_end_of_the_activity():
+    reading = read(FORKED % "then j;")
     assert reading.flows("P::A") == [
         "start -> f",
         "f -> x",
@@ -51,7 +54,11 @@ package P {
         "y -> j",
         "j -> done",
     ]
-    assert reading.named("P::A::done").subkind == "flow-final"
+    assert reading.named("P::A::done").subkind == "final"
+
+
+def test_the_end_beside_a_branch_that_goes_on_ends_only_its_own_flow():
+    assert read(FORKED % "").named("P::A::done").subkind == "flow-final"
 
 
 def test_calls_of_operations_with_pins():

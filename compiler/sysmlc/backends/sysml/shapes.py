@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.branches import is_joined
 from sysmlc.ir.query import type_of
 from sysmlc.values import dataclass
 
@@ -151,7 +152,7 @@ def _is_apart(graph: Graph, element: Element) -> bool:
     owner = graph.owner(element)
     beside = [] if owner is None else graph.owned(owner)
     found = [one.subkind for one in beside if one.kind is Kind.CONTROL]
-    return "fork" in found or found.count("final") > 1
+    return found.count("final") > 1 or not is_joined(graph, element)
 
 
 def _pseudostate(_graph: Graph, element: Element, _known: _Known) -> Shape | None:

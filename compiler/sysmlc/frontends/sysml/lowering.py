@@ -10,6 +10,7 @@ from sysmlc.frontends.sysml.places import Places
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
+from sysmlc.ir.branches import is_joined
 from sysmlc.ir.identity import derived_id
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
@@ -290,21 +291,21 @@ class Lowering:
     def control(self, owner: Element, name: str, node: Node | None = None) -> Element:
         """The start or the end of a behaviour; made when a succession needs it.
 
-        Where a fork is, the end of one branch is not the end of all: ``done`` is a flow final.
+        Beside branches that are not joined the end of one is not the end of all: ``done`` is a
+        flow final then.
         """
         known = self._controls.get((owner.id, name))
         if known is None:
             known = self._made(node, Kind.CONTROL, name, owner)
             self._controls[owner.id, name] = known
             self.set(known, subkind="initial" if name == "start" else "final")
-            if name == "done":
-                self.later(lambda: self._end_one_branch(owner, known))
         return known
 
-    def _end_one_branch(self, owner: Element, end: Element) -> None:
-        beside = self.graph.owned(owner)
-        if any(one.subkind == "fork" for one in beside if one.kind is Kind.CONTROL):
-            self.set(end, subkind="flow-final")
+    def end_branches(self) -> None:
+        """Say of each ``done`` whether it ends the behaviour or one branch; all flows are there."""
+        for (_, name), end in self._controls.items():
+            if name == "done" and end.kind is Kind.CONTROL and not is_joined(self.graph, end):
+                self.set(end, subkind="flow-final")
 
     def _made(self, node: Node | None, kind: Kind, name: str, owner: Element) -> Element:
         return self.make(node, kind, name, owner) if node else self.below(owner, kind, name)
@@ -318,6 +319,15 @@ class Lowering:
             known = self._controls[region.id, name] = self._made(node, kind, name, region)
             self.set(known, subkind="initial" if is_start else "")
         return known
+
+    def end_of(self, holder: Element, name: str) -> Element | None:
+        """The start or the end of a behaviour or region, if something leads from or to it."""
+        return self._controls.get((holder.id, name))
+
+    @property
+    def roots(self) -> list[Node]:
+        """What holds the members at the top of each document of the unit."""
+        return [one.root for one in self._documents.values()]
 
     def id_of(self, name: str) -> str:
         """Id of the element with a qualified name, or the empty string."""

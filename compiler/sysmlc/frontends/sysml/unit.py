@@ -40,6 +40,7 @@ def lower(
             low.lower_all(document.root.members, None)
     low.last(lambda: _give_pins(low, documents))
     low.finish()
+    low.end_branches()
     literals.finish(graph)
     tell(low, documents)
     blame(low, documents)
