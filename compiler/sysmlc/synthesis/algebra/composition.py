@@ -8,12 +8,12 @@ assumed by the composition.
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
+from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
-from sysmlc.synthesis.algebra.discharge import Open, discharge
+from sysmlc.synthesis.algebra.discharge import Open, discharge, outputs
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed
-from sysmlc.synthesis.algebra.outside import open_to_outside, outputs
 from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager
@@ -57,7 +57,7 @@ def composition(composite: Composite, manager: Manager) -> Composition:
 
 def _composed(composite: Composite, manager: Manager) -> Composition:
     _one_driver_each(composite.parts)
-    whole = composite.whole or open_to_outside(composite)
+    whole = composite.whole or _open_to_outside(composite)
     wiring = Contract("", "", (), composite.wiring, ())
     made = observed((*(one.contract for one in composite.parts), wiring, whole))
     *contracts, joined, seen = made.contracts
@@ -88,6 +88,26 @@ def _contradiction(
         return not Entailment(universe, universe.system((*some, *definitions))).is_possible
 
     return conflict(every, is_impossible) if is_impossible(every) else ()
+
+
+def _open_to_outside(composite: Composite) -> Contract:
+    """The contract of a whole that has none: what parts assume of things that no part decides.
+
+    What a part assumes may speak of its own outputs, too: only then has the environment to act.
+    """
+    inside = {name for part in composite.parts for name in outputs(part)}
+    assumed = tuple(
+        one
+        for part in composite.parts
+        for one in part.contract.assumptions
+        if _is_of_outside(one, inside, outputs(part))
+    )
+    return Contract(composite.component, composite.origin, (), assumed, ())
+
+
+def _is_of_outside(conjunct: Conjunct, inside: set[str], own: set[str]) -> bool:
+    used = {one.name for one in f.variables(conjunct.formula)}
+    return not used <= inside and not used & (inside - own)
 
 
 def _with(part: Part, contract: Contract) -> Part:
