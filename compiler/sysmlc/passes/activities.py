@@ -2,22 +2,24 @@
 
 It assumes that names are resolved and roles found; it then guarantees that each stored token
 graph is 1-safe and that every node and flow that is left out has been reported. The graph itself
-stays as it is.
+stays as it is. An activity of a library is played by each operation that it is the method of.
 """
 
 from collections.abc import Iterator
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.reads import during
 from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.requirements.statements import component_of
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
-from sysmlc.values import dataclass
+from sysmlc.passes.activity_usages import drawn_of, has_steps
+from sysmlc.values import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,24 +45,30 @@ class Activities:
     def _token_graphs(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
         raising = find_raising(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
-            if _is_drawn_elsewhere(activity):
-                continue
-            with during(graph, activity.id):
-                found = self._found(graph, activity, raising, sink)
-            if found is not None:
-                yield found
+            for one in _played(graph, activity):
+                with during(graph, one.id):
+                    found = self._found(graph, one, raising, sink)
+                if found is not None:
+                    yield found
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
-        """The token graph of one activity, or None."""
+        """The token graph of an activity, or of an operation by one of a library; or None."""
         return self._found(graph, about, find_raising(graph), sink)
 
     def _found(
         self, graph: Graph, activity: Element, raising: Raising, sink: Sink
     ) -> TokenGraph | None:
+        drawn = drawn_of(graph, activity)
         try:
-            return self._token_graph(graph, activity, raising, sink)
+            if drawn is activity:
+                return self._token_graph(graph, activity, raising, sink)
+            # What is odd in a drawing is told where it is drawn.
+            tokens = self._token_graph(graph, drawn, raising, Sink())
         except activity_drawing.CannotPlayError:
             return None
+        component = component_of(graph, activity)
+        label = f"action '{activity.name}'"
+        return replace(tokens, activity=activity.id, component=component, label=label)
 
     def _token_graph(
         self, graph: Graph, activity: Element, raising: Raising, sink: Sink
@@ -85,6 +93,21 @@ class Activities:
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
+
+
+def _played(graph: Graph, activity: Element) -> list[Element]:
+    """The activity, or the operations that are performed as an activity of a library says.
+
+    An abstract activity that operations perform is one of those, too: nothing else is it.
+    """
+    is_elsewhere, is_abstract = _is_drawn_elsewhere(activity), activity.attrs.get("abstract")
+    if not (is_elsewhere or is_abstract):
+        return [activity]
+    performed = graph.sources(activity, Edge.METHOD)
+    own = [one for one in performed if not one.attrs.get("external")]
+    if own and has_steps(graph, activity):
+        return own
+    return [] if is_elsewhere else [activity]
 
 
 def _is_drawn_elsewhere(activity: Element) -> bool:

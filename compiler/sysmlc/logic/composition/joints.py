@@ -25,6 +25,10 @@ class Joints(Generic[T]):
         self._above.setdefault(other, other)
         self._above[self.find(other)] = self.find(one)
 
+    def is_joined(self, one: T) -> bool:
+        """Whether it was united with anything."""
+        return one in self._above
+
     def groups(self, given: Iterable[T]) -> list[list[T]]:
         """The given ones, those that are one together, in the order of the first of each."""
         found: dict[T, list[T]] = {}

@@ -5,7 +5,8 @@ from dataclasses import field
 
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.composition.joints import Joints
-from sysmlc.logic.composition.structure import ITSELF, End, Usage, links, usages
+from sysmlc.logic.composition.steps import EXECUTED, ends_of_steps, performed
+from sysmlc.logic.composition.structure import ITSELF, End, Usage, joined, links, usages
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import context_classifier
@@ -49,6 +50,8 @@ class Block:
     members: list[Member] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)
     """Dotted names of the features of each usage."""
+    steps: set[Slot] = field(default_factory=set)
+    """What tells of each step of an operation that it is over."""
     features: Joints[Slot] = field(default_factory=Joints)
     channels: Joints[Slot] = field(default_factory=Joints)
     """Ends between which messages pass."""
@@ -79,12 +82,15 @@ def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
         for one in side:
             for two in other:
                 _join(block, one, two)
+    for step, action in performed(block.graph, element, path):
+        if not block.features.is_joined((step.path, step.feature)):
+            _join(block, step, action)
 
 
 def contract_of(block: Block, usage: Usage) -> Contract | None:
     """What a usage promises: what requirements demand of its type, else what its behaviour is."""
     if usage.element.kind in _ACTIONS:
-        return block.contracts.get(usage.element.id)
+        return block.contracts.get(usage.element.id) or block.contracts.get(usage.type_.id)
     return required(block, usage.type_) or behaviour(block, usage.type_)
 
 
@@ -117,17 +123,32 @@ def _member(
         variables = variables_of(block.graph, definition_of(block.graph, origin))
     known = {one.name for one in contract.variables}
     found = {name: variable for name, variable in variables.items() if variable in known}
+    if origin.kind in _ACTIONS:
+        steps = ends_of_steps(block.graph, contract)
+        block.steps.update((path, name) for name in steps)
+        block.names[path] = list(dict.fromkeys((*block.names[path], *steps)))
+        found |= steps
     return Member(path, path or element.name, element.id, contract, found)
 
 
 def _join(block: Block, one: End, other: End) -> None:
     block.channels.unite((one.path, one.feature), (other.path, other.feature))
+    one, other = (_end_of(block, this, that) for this, that in ((one, other), (other, one)))
     if not (one.feature and other.feature):
         return
     theirs = set(_behind(block, other))
     for rest in _behind(block, one):
         if rest in theirs:
             block.features.unite((one.path, one.feature + rest), (other.path, other.feature + rest))
+
+
+def _end_of(block: Block, one: End, other: End) -> End:
+    """Of a step that is an action of the block, and of that action: what tells that it is over."""
+    for step in (one, other):
+        told = End(step.path, joined(step.feature, EXECUTED))
+        if step.feature and (step.path, told.feature) in block.steps:
+            return told if step is one else End(one.path, one.feature or EXECUTED)
+    return one
 
 
 def _behind(block: Block, end: End) -> Iterator[str]:

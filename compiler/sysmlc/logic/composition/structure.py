@@ -51,8 +51,17 @@ def _type(graph: Graph, feature: Element) -> Element | None:
 
 def _is_usage(graph: Graph, action: Element) -> bool:
     """Whether an action says no more than what it specialises: it has no steps of its own."""
-    is_special = bool(graph.targets(action, Edge.SPECIALIZES))
-    return is_special and not any(one.kind in _STEPS for one in graph.owned(action))
+    return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
+
+
+def drawn_of(graph: Graph, action: Element) -> Element:
+    """The activity whose steps an action has: its own, else the nearest that it specialises."""
+    family = (action, *query.generals(graph, action))
+    return next((one for one in family if _is_drawn(graph, one)), action)
+
+
+def _is_drawn(graph: Graph, action: Element) -> bool:
+    return any(one.kind in _STEPS for one in graph.owned(action))
 
 
 def _copies(part: Element) -> Iterator[str]:

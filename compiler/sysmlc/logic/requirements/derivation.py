@@ -19,6 +19,7 @@ from sysmlc.logic.requirements.statements import (
     redefining,
     statements,
 )
+from sysmlc.values import replace
 
 
 def derive(
@@ -99,6 +100,24 @@ def _contract(
     given = [one for one in starts if scope.is_input(one.formula)]
     own = [one for one in starts if not scope.is_input(one.formula)]
     return remembering(Contract(name, subject.id, used, (*given, *assumptions), (*own, *demands)))
+
+
+def with_features(contract: Contract, scope: Scope, formula: Formula) -> Contract:
+    """A behaviour's contract with the features of its definition that a formula speaks of.
+
+    They start with their values; what they become later is for the formulas to say.
+    """
+    known = {one.name for one in contract.variables}
+    added = tuple(one for one in scope.used((formula,)) if one.name not in known)
+    starts = list(_starts(scope, {one.name for one in added}))
+    given = tuple(one for one in starts if scope.is_input(one.formula))
+    own = tuple(one for one in starts if not scope.is_input(one.formula))
+    return replace(
+        contract,
+        variables=(*contract.variables, *added),
+        assumptions=(*contract.assumptions, *given),
+        guarantees=(*contract.guarantees, *own),
+    )
 
 
 def _starts(scope: Scope, used: set[str]) -> Iterator[Conjunct]:

@@ -142,8 +142,14 @@ def _context(graph: Graph, service: Element, assumed: tuple[int, int]) -> Contex
     owner = graph.owner(service)
     is_owned = owner is not None and owner.kind in query.CLASSIFIERS
     method = graph.target(service, Edge.METHOD)
-    within = method if method is not None and query.parameters(graph, method) else service
+    within = service if method is None or not _has_parameters(graph, method) else method
     return context_of(graph, owner if is_owned else service, assumed, within)
+
+
+def _has_parameters(graph: Graph, method: Element) -> bool:
+    """Whether a method has parameters of its own, or of what it specialises."""
+    family = (method, *query.generals(graph, method))
+    return any(query.parameters(graph, one) for one in family)
 
 
 def _condition(

@@ -77,13 +77,13 @@ class _Known:
     def can_break(self, conjunct: Conjunct) -> bool:
         """Whether steps that keep all facts come to one that breaks an initial condition or a
         condition of every step, however it may go on from there."""
-        runs = self.runs.runs
+        runs, kept = self.runs.runs, self._invariant()
         broken = ~self._universe.node(conjunct)
         if conjunct.class_ is Class.INIT:
-            return runs.system.init & self._invariant() & broken != runs.manager.false
+            return runs.system.init & kept & broken != runs.manager.false
         if has_primes(conjunct.formula):
-            return runs.reachable & runs.before_by(runs.manager.true, broken) != runs.manager.false
-        return runs.reachable & self._invariant() & broken != runs.manager.false
+            return runs.reachable & runs.before_by(kept, broken) != runs.manager.false
+        return runs.reachable & kept & broken != runs.manager.false
 
     def _invariant(self) -> Node:
         """What the facts say of each step alone."""
@@ -105,7 +105,7 @@ def discharge(composite: Composite, given: Iterable[Conjunct], universe: Univers
     while True:
         found = _established(waiting, stepwise, known, reading)
         if not found:
-            return Discharge(known.facts, tuple(_open(waiting, stepwise, known)))
+            return Discharge(known.facts, tuple(_open(waiting, stepwise, known, reading)))
         done, steady = found
         known = known.adding(one for part in done for one in part.contract.guarantees)
         known = known.adding(one for part in steady for one in _stepwise(part, is_assumed=False))
@@ -179,16 +179,27 @@ def outputs(part: Part) -> set[str]:
     return {one.name for one in part.contract.variables if one.owner is Owner.SYSTEM}
 
 
-def _open(waiting: _Parts, stepwise: _Parts, known: _Known) -> Iterator[Open]:
-    """What is missing for the parts that are not established."""
-    recurrence = known.recurrence([part for part in waiting if part not in stepwise])
+def _open(waiting: _Parts, stepwise: _Parts, known: _Known, reading: Readings) -> Iterator[Open]:
+    """What is missing for the parts that are not established.
+
+    Of what several parts do step by step only what breaks first is told: with it, the rest holds.
+    """
+    circular = reading.circular(stepwise)
+    ordered = [part for part in stepwise if part not in circular]
+    steps = known.adding(one for part in ordered for one in _stepwise(part, is_assumed=False))
+    steady = steps.adding(one for part in circular for one in _stepwise(part, is_assumed=False))
+    recurrence = steady.recurrence(waiting)
     for part in waiting:
         others = (one for other in waiting if other != part for one in other.contract.guarantees)
         around = known.adding((*others, *_stepwise(part, is_assumed=False)))
         for one in part.contract.assumptions:
-            if not known.gives([one]):
-                trace = around.runs.violation(one)
-                is_circular = trace is None
-                if is_circular and one.class_ is Class.LIVENESS and recurrence.is_decided:
-                    trace = recurrence.violation(one)
-                yield Open(part, one, trace, is_circular)
+            recurs = one.class_ is Class.LIVENESS
+            if known.gives([one]) or not (recurs or part in circular or steps.can_break(one)):
+                continue
+            trace = around.runs.violation(one)
+            is_circular = trace is None
+            if is_circular and recurs and recurrence.is_decided:
+                trace = recurrence.violation(one)
+                if trace is None:
+                    continue
+            yield Open(part, one, trace, is_circular)

@@ -1,0 +1,227 @@
+"""Composite operations of the library DIN8580: usages have contracts, and machines perform them."""
+
+from itertools import takewhile
+from pathlib import Path
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.diagnostics import Sink
+from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.contract import Contract, Owner
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+from sysmlc.synthesis import together
+from sysmlc.synthesis.check import check
+from sysmlc.synthesis.decide import Options
+
+STEPS = {
+    "Dismantling": ["decompose"],
+    "Emptying": ["pick", "turn", "place"],
+    "Shifting": ["pick", "move", "place"],
+    "Screwing": ["turn"],
+    "Clamping": ["pick", "move", "turn", "place"],
+    "Embedding": ["pick", "move", "place"],
+}
+"""Thesis, section 5.2.1."""
+ACTIONS = {
+    "pick": "action pick : Pick; bind pick.command = command; bind pick.executed = pick_executed;",
+    "place": """action place : Place { out attribute :>> grip := false; }
+        bind place.command = command; bind place.executed = place_executed;""",
+    "move": """action move : CoordinatedMove {
+            constant attribute :>> columns = 2;
+            constant attribute :>> rows = 2;
+        }
+        bind move.command = command; bind move.moved = move_executed; bind move.grip = grip;""",
+    "turn": """constant attribute :>> positions = 4;
+        action turn : CoordinatedTurn { constant attribute :>> positions = 4; }
+        bind turn.command = command; bind turn.turned = turn_executed; bind turn.grip = grip;
+        bind turn.angle = angle; bind turn.desired = desired;""",
+}
+KINDS = {"pick": "Supplied", "place": "Operating", "move": "Moving", "turn": "Turning"}
+JOINED = """
+        bind place.executed = pick.placed;
+        bind pick.executed = place.picked;
+        bind pick.pos = piece;
+        bind place.pos = space;
+"""
+
+
+def machine(able, operation):
+    """A machine with some actions and a coordinator."""
+    kinds, actions = (", ".join(KINDS[one] for one in able), "\n".join(ACTIONS[o] for o in able))
+    return f"""package Cells {{
+    private import DIN8580::*;
+    part def Machine :> {kinds} {{ {actions} {JOINED} {operation} }}
+}}"""
+
+
+BOUND = {
+    "move": "bind clamp.move.executed = move.moved;",
+    "turn": "bind clamp.turn.executed = turn.turned;",
+}
+"""Being at the target holds on: what is told once ends a step."""
+CLAMPS = "\n".join(["action clamp : Clamping;", "bind clamp.asked = asked;", *BOUND.values()])
+DISMANTLES = """
+package Cells {
+    private import DIN8580::*;
+    part def Opener :> Dismounting, Operating {
+        action decompose : CoordinatedDecompose;
+        action dismantle : Dismantling;
+        bind decompose.command = command;
+        bind decompose.decomposed = decompose_executed;
+        bind decompose.part1 = piece;
+        bind dismantle.asked = asked;
+        bind dismantle.decompose.executed = decompose.decomposed;
+    }
+}
+"""
+MOUNTS = """
+package Cells {
+    private import DIN8580::*;
+    part def Mounter :> Mounting {
+        action compose : CoordinatedCompose;
+        bind compose.command = command;
+        bind compose.composed = compose_executed;
+        bind compose.part1 = part1;
+        bind compose.part2 = part2;
+    }
+}
+"""
+
+
+def compiled(text):
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink)
+    assert [one.message for one in reading.sink] == []
+    return reading.graph
+
+
+def contracts(text):
+    return {one.component: one for one in compiled(text).derived(Contract)}
+
+
+def composed(text):
+    graph, sink = compiled(text), Sink()
+    made = list(compose(graph, graph.derived(Contract), sink))
+    place = lambda id: graph.subject(graph[id])  # noqa: E731
+    (result,) = together.check_together(made, place, sink, Options())
+    return result.text(), [(one.rule.code, one.message) for one in sink]
+
+
+@pytest.mark.parametrize("operation", STEPS)
+def test_a_usage_asks_for_its_steps_one_after_the_other(operation):
+    text = f"package P {{ part def Cell {{ action work : DIN8580::{operation}; }} }}"
+    found = contracts(text)
+    assert list(found) == ["P::Cell.work"]
+    contract, steps = found["P::Cell.work"], STEPS[operation]
+    sides = {side: [one.name for one in contract.variables if one.owner is side] for side in Owner}
+    assert sides[Owner.ENVIRONMENT] == [f"done_{step}" for step in steps]
+    assert {"asked", *(f"run_{step}" for step in steps)} <= set(sides[Owner.SYSTEM])
+    assert [print_formula(one.formula) for one in contract.assumptions] == [
+        f"!run_{step} | done_{step}" for step in steps
+    ]
+    promised = [print_formula(one.formula) for one in contract.guarantees]
+    for step in steps:
+        assert f"asked={step} <-> run_{step} & !done_{step}" in promised
+
+
+@pytest.mark.parametrize("operation", STEPS)
+def test_a_usage_can_be_kept_and_nothing_is_suspicious_in_it(operation):
+    text = f"package P {{ part def Cell {{ action work : DIN8580::{operation}; }} }}"
+    graph, sink = compiled(text), Sink()
+    made = graph.derived(Contract)
+    (result,) = check(made, made, lambda id: graph.subject(graph[id]), sink, Options())
+    assert result.verdict.is_realizable
+    assert [one.message for one in sink] == []
+
+
+def test_a_usage_that_says_more_has_the_steps_of_what_it_specialises():
+    text = """package P { part def Cell { action work : DIN8580::Screwing {
+        constraint { language "ltl" /* G F asked=turn */ }
+    } } }"""
+    (contract,) = contracts(text).values()
+    assert contract.component == "P::Cell.work"
+    assert "asked=turn" in [print_formula(one.formula) for one in contract.guarantees]
+    assert "run_turn" in [one.name for one in contract.variables]
+
+
+@pytest.mark.parametrize("operation", [one for one in STEPS if one != "Dismantling"])
+def test_actions_a_coordinator_and_an_operation_fit_together(operation):
+    able = [one for one in ACTIONS if one in {"pick", "place", *STEPS[operation]}]
+    lines = [f"action work : {operation};", "bind work.asked = asked;"]
+    lines += [BOUND[one].replace("clamp", "work") for one in BOUND if one in able]
+    verdict, found = composed(machine(able, "\n".join(lines)))
+    assert verdict == f"Cells::Machine: its {len(able) + 2} parts fit together"
+    assert found == []
+
+
+def test_two_arms_dismantle_what_comes():
+    assert composed(DISMANTLES) == ("Cells::Opener: its 3 parts fit together", [])
+
+
+def test_two_arms_mount_what_comes():
+    assert composed(MOUNTS) == ("Cells::Mounter: its 2 parts fit together", [])
+
+
+def test_a_step_ends_when_the_one_action_that_performs_it_is_executed():
+    graph = compiled(machine(ACTIONS, CLAMPS))
+    (found,) = compose(graph, graph.derived(Contract), Sink())
+    (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
+    inputs = [one.name for one in clamp.variables if one.owner is Owner.ENVIRONMENT]
+    assert inputs == ["pick_executed", "move_executed", "turn_executed", "place_executed"]
+
+
+def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
+    two = CLAMPS + "        action other : Pick;\n"
+    for bound, name in (("", "clamp.done_pick"), ("bind clamp.pick = other;", "other.executed")):
+        graph = compiled(machine(ACTIONS, two + bound))
+        (found,) = compose(graph, graph.derived(Contract), Sink())
+        (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
+        assert name in [one.name for one in clamp.variables]
+
+
+def test_what_nobody_asks_the_coordinator_for_is_told():
+    text = machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
+    verdict, found = composed(text)
+    assert verdict == "Cells::Machine: its 6 parts do not fit together"
+    assert found == [
+        (
+            "SM595",
+            "part 'clamp' of 'Cells::Machine' assumes '!clamp.run_turn | turn_executed', which "
+            "nothing around it promises (Whenever action 'turn' runs, the environment ends it "
+            "sooner or later)",
+        ),
+        (
+            "SM596",
+            "part 'turn' of 'Cells::Machine' assumes 'command=turn', kept by others only after it "
+            "('commanded again' of 'TurnContract' assumes it)",
+        ),
+    ]
+
+
+PAGE = (Path(__file__).parents[3] / "docs" / "elementary-actions.md").read_text(encoding="utf-8")
+
+
+def shown(start):
+    """A part of the page: from a line to the next that is not indented."""
+    lines = PAGE[PAGE.index(start) :].splitlines()
+    return "\n".join(takewhile(lambda line: not line or line.startswith(" "), lines))
+
+
+def test_the_machine_of_the_page_fits_together_and_not_without_pieces():
+    text = "package Cells { private import DIN8580::*;\n" + shown("    part def Loader") + "}"
+    assert composed(text) == ("Cells::Loader: its 4 parts fit together", [])
+    waiting = text.replace("Supplied", "Picking, Placing")
+    waiting = waiting.replace("bind pick.pos = piece;", "").replace("bind place.pos = space;", "")
+    verdict, found = composed(waiting)
+    assert verdict == "Cells::Loader: its 4 parts do not fit together"
+    assert {code for code, _ in found} == {"SM596"}
+
+
+def test_an_operation_of_ones_own_is_performed_as_those_of_the_library_are():
+    swap = shown("    action def Swapping")
+    able = [one for one in ACTIONS if one in ("pick", "place")]
+    lines = machine(able, "action swap : Swapping; bind swap.asked = asked;")
+    text = lines.replace("part def Machine", f"{swap}\n    part def Machine")
+    assert composed(text) == ("Cells::Machine: its 4 parts fit together", [])
