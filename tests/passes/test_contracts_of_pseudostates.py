@@ -227,3 +227,16 @@ def test_a_machine_in_itself_is_told():
     made, codes, _ = derived(text)
     assert made is None
     assert set(codes) == {"SM420"}
+
+
+@pytest.mark.parametrize(
+    ("outer", "codes"),
+    [
+        (arrow("b", "a", "stop"), []),
+        (arrow("b", "a", after="after 3 s"), ["SM434"]),
+    ],
+)
+def test_a_time_out_that_comes_with_a_transition_further_in_is_lost(outer, codes):
+    parts = (state("a"), inner(), arrow("i", "a"), arrow("a", "b", "start"), outer)
+    _, found, _ = derived(machine_of(region("r", *parts)))
+    assert [one for one in found if one == "SM434"] == codes

@@ -22,16 +22,18 @@ OVERRIDDEN = rule(
     "the event of transition {transition} is lost when it comes in the step in which {inner} "
     "is taken",
     why="One step takes one transition from nested states, the innermost. What time, a change or "
-    "a completion triggers inside can come with the event, and events are not kept for later.",
-    help="if the event must never be lost, let it be repeated until it is answered, or trigger "
-    "the inner transition by an event as well",
+    "a completion triggers can come with an event or with one another, and nothing is kept for "
+    "later: a time-out of the outer state that comes in such a step does not come again.",
+    help="if the event must never be lost, let it be repeated until it is answered (a change that "
+    "lasts as a guard, a time-out as a transition of the inner states), or trigger the inner "
+    "transition by an event as well",
     wrong=_nested(arrow("d", "e", after="after 2 s")),
     right=_nested(arrow("d", "e", "start")),
 )
 
 
 def report_overrides(graph: Graph, machine: Machine, sink: Sink) -> None:
-    """Report each transition that waits for an event and can be passed over without a trace."""
+    """Report each transition whose event can be passed over without a trace."""
     for outer in machine.transitions():
         inner = list(_before(machine, outer))
         if inner:
@@ -41,14 +43,18 @@ def report_overrides(graph: Graph, machine: Machine, sink: Sink) -> None:
 
 
 def _before(machine: Machine, outer: Transition) -> Iterator[Transition]:
-    """Transitions from inside its source that something other than an event triggers."""
-    if not any(isinstance(one, OnEvent) for one in outer.occurrences):
-        return
+    """Transitions from inside its source that can come in one step with what triggers it.
+
+    Of two events only one comes in a step; times and changes come with anything.
+    """
+    waits_for_event = any(isinstance(one, OnEvent) for one in outer.occurrences)
+    waits_for_more = not all(isinstance(one, OnEvent) for one in outer.occurrences)
     for inner in machine.transitions():
         source = machine.vertices[inner.source]
         if source.kind != "state" or not machine.contains(outer.source, inner.source):
             continue
         without_event = [one for one in inner.occurrences if not isinstance(one, OnEvent)]
         is_unasked = bool(without_event) or not inner.occurrences
-        if is_unasked and compatible(outer, inner, machine.scope):
+        can_meet = waits_for_more or (waits_for_event and is_unasked)
+        if can_meet and compatible(outer, inner, machine.scope):
             yield inner
