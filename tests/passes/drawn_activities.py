@@ -1,0 +1,263 @@
+"""Random activities as they are drawn, and a game of tokens on the drawing.
+
+The game reads elements of the graph and none of the compiler's derivations (UML 2.5.1, clauses
+15 and 16). In one step every node moves the tokens that it can move, as it finds them at the start
+of the step: actions start, and end when the environment says so; control nodes pass tokens on. What
+is over starts anew in the next step.
+"""
+
+import random
+from dataclasses import dataclass, field
+from itertools import product
+
+TAKES_ANY = ("merge", "flow-final", "object")
+PASSES = ("fork", "join", "value")
+WORKS = ("opaque", "send", "accept")
+
+
+@dataclass
+class Drawing:
+    """Nodes by id with what they are, flows by id with source, target and guard."""
+
+    nodes: dict[str, str] = field(default_factory=dict)
+    flows: dict[str, tuple[str, str, str]] = field(default_factory=dict)
+    objects: set[str] = field(default_factory=set)
+    """Flows that carry objects, from pin to pin."""
+
+    def incoming(self, node):
+        return [id for id, (_, target, _) in self.flows.items() if target == node]
+
+    def outgoing(self, node):
+        return [id for id, (source, _, _) in self.flows.items() if source == node]
+
+    def text(self):
+        """The activity in IR text."""
+        lines = ['Package p "P"', '  Activity a "a"']
+        for id, kind in self.nodes.items():
+            lines += self._node(id, kind)
+        for id, (source, target, guard) in self.flows.items():
+            word = "ObjectFlow" if id in self.objects else "ControlFlow"
+            ends = (self._pin(source, id, "o"), self._pin(target, id, "i"))
+            shown = f' guard="{guard}"' if guard else ""
+            lines += [f"    {word} {id}{shown}", f"      -> flow-source {ends[0]}"]
+            lines += [f"      -> flow-target {ends[1]}"]
+        return "\n".join(lines) + "\n"
+
+    def _node(self, id, kind):
+        if kind in (*WORKS, "value"):
+            yield f'    Action {id} "{id}" subkind="{kind}"'
+            for flow in sorted(self.objects):
+                source, target, _ = self.flows[flow]
+                for end, word in ((source, "o"), (target, "i")):
+                    if end == id:
+                        way = {"o": "out", "i": "in"}[word]
+                        yield f'      Pin {id}{word}{flow} "{word}{flow}" direction="{way}"'
+        elif kind == "object":
+            yield f'    ObjectNode {id} "{id}" subkind="central-buffer"'
+        else:
+            yield f'    Control {id} "" subkind="{kind}"'
+
+    def _pin(self, node, flow, word):
+        is_pinned = flow in self.objects and self.nodes[node] != "object"
+        return f"{node}{word}{flow}" if is_pinned else node
+
+
+class Pencil:
+    """Draws a random activity."""
+
+    def __init__(self, seed):
+        self.dice = random.Random(seed)
+        self.drawing = Drawing()
+        self.left = self.dice.randint(2, 7)
+        self.guards = 0
+
+    def drawn(self):
+        first, last = self.part(0)
+        self.flow(self.node("initial"), first)
+        if self.dice.random() < 0.7:
+            self.flow(last, self.node("final"))
+        return self.drawing
+
+    def node(self, kind):
+        id = f"n{len(self.drawing.nodes)}"
+        self.drawing.nodes[id] = kind
+        return id
+
+    def flow(self, source, target, guard="", is_object=False):
+        id = f"f{len(self.drawing.flows)}"
+        self.drawing.flows[id] = (source, target, guard)
+        if is_object:
+            self.drawing.objects.add(id)
+
+    def guard(self):
+        self.guards += 1
+        return f"g{self.guards}"
+
+    def part(self, depth):
+        self.left -= 1
+        words = ["action"] * 3
+        if self.left > 0 and depth < 4:
+            words += ["row", "row", "parallel", "wide", "branch", "choice", "loop", "objects"]
+            words += ["dropped", "stopped"]
+        return getattr(self, f"_{self.dice.choice(words)}")(depth + 1)
+
+    def _action(self, depth):
+        made = self.node(self.dice.choice(["opaque", "opaque", "send", "accept", "value"]))
+        return made, made
+
+    def _row(self, depth):
+        (a, b), (c, d) = self.part(depth), self.part(depth)
+        self.flow(b, c)
+        return a, d
+
+    def _parallel(self, depth):
+        return self._split(depth, self.node("fork"), self.node("join"))
+
+    def _wide(self, depth):
+        """Actions with several flows fork and join by themselves."""
+        return self._split(depth, self.node("opaque"), self.node("opaque"))
+
+    def _split(self, depth, fork, join):
+        for _ in range(2):
+            a, b = self.part(depth)
+            self.flow(fork, a)
+            self.flow(b, join)
+        return fork, join
+
+    def _branch(self, depth):
+        return self._branches(depth, (self.guard(), "else"))
+
+    def _choice(self, depth):
+        """Several guards may hold, or none."""
+        return self._branches(depth, (self.guard(), self.guard()))
+
+    def _branches(self, depth, guards):
+        decision, merge = self.node("decision"), self.node("merge")
+        for guard in guards:
+            a, b = self.part(depth)
+            self.flow(decision, a, guard)
+            self.flow(b, merge)
+        return decision, merge
+
+    def _loop(self, depth):
+        merge, decision = self.node("merge"), self.node("decision")
+        a, b = self.part(depth)
+        self.flow(merge, a)
+        self.flow(b, decision)
+        self.flow(decision, merge, "else")
+        after = self.node("opaque")
+        self.flow(decision, after, self.guard())
+        return merge, after
+
+    def _objects(self, depth):
+        """An action gives an object to the next one, perhaps by way of a buffer."""
+        one, other = self.node("opaque"), self.node("opaque")
+        if self.dice.random() < 0.5:
+            between = self.node("object")
+            self.flow(one, between, is_object=True)
+            self.flow(between, other, is_object=True)
+        else:
+            self.flow(one, other, is_object=True)
+        if self.dice.random() < 0.5:
+            self.flow(one, other)
+        return one, other
+
+    def _dropped(self, depth):
+        """One of two branches ends at a flow final."""
+        return self._side(depth, "flow-final")
+
+    def _stopped(self, depth):
+        """One of two branches ends the whole activity."""
+        return self._side(depth, "final")
+
+    def _side(self, depth, kind):
+        fork, (a, b), (c, d) = self.node("fork"), self.part(depth), self.part(depth)
+        self.flow(fork, a)
+        self.flow(fork, c)
+        self.flow(d, self.node(kind))
+        return fork, b
+
+
+class UnsafeError(Exception):
+    """A second token comes to where one is."""
+
+
+@dataclass(frozen=True)
+class Tokens:
+    """Flows with a token, and actions that run."""
+
+    at: frozenset[str]
+    running: frozenset[str]
+
+
+def start(drawing):
+    """Tokens are on what leaves initial nodes."""
+    begins = [
+        id for id, (source, _, _) in drawing.flows.items() if drawing.nodes[source] == "initial"
+    ]
+    return Tokens(frozenset(begins), frozenset())
+
+
+def is_over(drawing, tokens):
+    """A token is at an activity final, or nothing can move any more."""
+    for node, kind in drawing.nodes.items():
+        if kind == "final" and tokens.at & {*drawing.incoming(node)}:
+            return True
+    return not tokens.running and not any(
+        _can_move(drawing, node, tokens) for node in drawing.nodes
+    )
+
+
+def _can_move(drawing, node, tokens):
+    given = drawing.incoming(node)
+    ready = [flow for flow in given if flow in tokens.at]
+    return bool(ready) and (drawing.nodes[node] in TAKES_ANY or len(ready) == len(given))
+
+
+def following(drawing, tokens, inputs):
+    """All ways in which a step may end; ``inputs`` are what is done, received and open (ids of
+    actions, guards)."""
+    if is_over(drawing, tokens):
+        return {start(drawing)}
+    taken, given, running, choices = set(), [], set(tokens.running), []
+    for node, kind in drawing.nodes.items():
+        incoming, outgoing = drawing.incoming(node), drawing.outgoing(node)
+        ready = [flow for flow in incoming if flow in tokens.at]
+        has_all = bool(incoming) and len(ready) == len(incoming)
+        if kind in TAKES_ANY and ready:
+            if len(ready) > 1 and outgoing:
+                raise UnsafeError
+            taken |= {*ready}
+            given += outgoing
+        elif kind in PASSES and has_all:
+            taken |= {*ready}
+            given += outgoing
+        elif kind == "decision" and has_all:
+            open_ = _open(drawing, outgoing, inputs)
+            if open_:
+                taken |= {*ready}
+                choices.append(open_)
+        elif kind in WORKS:
+            if node in tokens.running:
+                if has_all:
+                    raise UnsafeError
+                if kind == "send" or node in inputs:
+                    running.remove(node)
+                    given += outgoing
+            elif has_all:
+                taken |= {*ready}
+                running.add(node)
+    return {_placed(tokens, taken, [*given, *chosen], running) for chosen in product(*choices)}
+
+
+def _open(drawing, outgoing, inputs):
+    guards = {flow: drawing.flows[flow][2] for flow in outgoing}
+    true = [flow for flow, guard in guards.items() if guard in inputs]
+    return true or [flow for flow, guard in guards.items() if guard == "else"]
+
+
+def _placed(tokens, taken, given, running):
+    rest = tokens.at - taken
+    if len({*given}) < len(given) or rest & {*given}:
+        raise UnsafeError
+    return Tokens(rest | {*given}, frozenset(running))
