@@ -8,10 +8,15 @@ from greedy_machine import greedy_answers
 from plain_world import Plain
 from small_floors import floor
 
+from sysmlc.floors import validate as validating
 from sysmlc.floors.diagrams import started
+from sysmlc.floors.merging import States
 from sysmlc.floors.planes import apart, patterns
-from sysmlc.floors.validate import chunks, symbolic, validate
+from sysmlc.floors.simulation import Simulation
+from sysmlc.floors.starts import chunks
+from sysmlc.floors.validate import symbolic, validate
 from sysmlc.floors.world import World
+from sysmlc.values import replace
 
 STEPS = 60
 
@@ -35,12 +40,12 @@ def some_floor(seed):
 def test_every_run_is_the_plain_one(seed):
     study, allocation = some_floor(seed)
     answers = greedy_answers(study)
-    (chunk,) = chunks(study)
-    world = World(study, allocation, answers, chunk.runs)
+    (runs,) = chunks(study)
+    world = World(study, allocation, answers, runs)
     starts = list(permutations(study.grid.cells, len(study.robots)))
     plain = {start: Plain(study, allocation, start) for start in starts}
-    bits = {start: _bit(chunk.runs, start) for start in starts}
-    assert chunk.count == len(starts)
+    bits = {start: _bit(runs, start) for start in starts}
+    assert runs.all.bit_count() == len(starts)
     for _ in range(STEPS):
         world.step()
         for start, one in plain.items():
@@ -82,19 +87,66 @@ def test_starts_are_all_placements_of_robots_in_different_cells():
 
 
 def test_given_starts_are_no_choice():
-    (chunk,) = chunks(floor(3, 0, None))
-    assert chunk.count == 8
-    (chunk,) = chunks(floor(3, 0, 1))
-    assert chunk.count == 1
+    (runs,) = chunks(floor(3, 0, None))
+    assert runs.all.bit_count() == 8
+    (runs,) = chunks(floor(3, 0, 1))
+    assert runs.all.bit_count() == 1
 
 
 def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
-    from sysmlc.floors import validate as module
-
     study, allocation = some_floor(3)
     whole = validate(study, allocation, greedy_answers(study))
-    monkeypatch.setattr(module, "CHUNK", 16)
+    monkeypatch.setattr(validating, "CHUNK", 16)
     assert validate(study, allocation, greedy_answers(study)) == whole
+
+
+def merged(monkeypatch, steps, most=1 << 17):
+    """States are gone on with once from this step on, so many in one operation."""
+    monkeypatch.setattr(validating, "MERGED", steps)
+    monkeypatch.setattr(validating, "FEW", 0)
+    monkeypatch.setattr(validating, "CHUNK", most)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_states_that_many_runs_come_to_are_gone_on_with_once(seed, monkeypatch):
+    study, allocation = some_floor(seed)
+    answers = greedy_answers(study)
+    whole = validate(study, allocation, answers)
+    for steps, most in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
+        merged(monkeypatch, steps, most)
+        found = validate(study, allocation, answers)
+        if whole.is_good:
+            assert found == whole
+        else:
+            assert (found.is_good, found.steps, found.late) == (False, whole.steps, whole.late)
+
+
+def test_states_are_fewer_than_runs():
+    study, allocation = some_floor(3)
+    (runs,) = chunks(study)
+    world = World(study, allocation, greedy_answers(study), runs)
+    assert Simulation(world).run(until=6) is None
+    states = States(len(study.robots))
+    states.add(world, range(runs.all.bit_length()))
+    assert 1 < len(states) < runs.all.bit_count() / 2
+    (batch,) = states.batches(1 << 17, world)
+    again = World(study, allocation, greedy_answers(study), batch.runs, batch.state, 6)
+    for bit, origin in enumerate(batch.origins):
+        assert _told(again, 1 << bit) == _told(world, 1 << origin)
+
+
+@pytest.mark.parametrize("deadline", [7, 9, 11, 13])
+def test_a_failing_state_leads_back_to_a_start_that_fails(deadline, monkeypatch):
+    study = floor(3, None, None, None, targets=(0, 8, 4, 2), deadline=deadline)
+    allocation = ((0, 3), (1,), (2,))
+    answers = greedy_answers(study)
+    merged(monkeypatch, 2, 50)
+    found = validate(study, allocation, answers)
+    assert found.late is not None
+    robots = zip(study.robots, found.failed, strict=True)
+    placed = replace(study, robots=tuple(replace(one, start=cell) for one, cell in robots))
+    again = validate(placed, allocation, answers)
+    assert (again.failed, again.late, again.steps) == (found.failed, found.late, deadline)
 
 
 def test_robots_that_cannot_pass_one_another_fail_with_a_start():

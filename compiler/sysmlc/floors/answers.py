@@ -1,11 +1,11 @@
 """What a robot's machine answers where one way at most is offered to it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from sysmlc.floors import words
 from sysmlc.floors.study import WAYS, Grid, Robot
-from sysmlc.logic.evaluate import value_of
+from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.table import Table
@@ -38,7 +38,8 @@ class Answers:
 
     def __init__(self, machine: Machine | Table, robot: Robot, grid: Grid) -> None:
         """Nothing is asked yet. The machine is one of the robot's contract without counters."""
-        self._machine, self._robot, self._grid = machine, robot, grid
+        self._robot, self._grid = robot, grid
+        self._step = _steps(machine)
         known = (*machine.inputs, *machine.outputs)
         kept = machine.registers if isinstance(machine, Machine) else known
         self._registers = tuple(one.name for one in kept)
@@ -60,7 +61,7 @@ class Answers:
         now: dict[str, Literal] = {words.position(robot): cell, words.target(robot): goal}
         now |= {words.sensor(robot, way): way in ways for way in WAYS}
         try:
-            outputs, state = _stepped(self._machine, memory.state, last, now)
+            outputs, state = self._step(memory.state, last, now)
         except LookupError:
             return None
         now |= outputs
@@ -71,13 +72,29 @@ class Answers:
         return Answer(command, Memory(after, goal, cell == goal, state, kept))
 
 
-def _stepped(
-    machine: Machine | Table, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
-) -> tuple[Mapping[str, Literal], int]:
-    """The outputs and the next state. Raises LookupError where the machine has no move."""
+Values = Mapping[str, Literal]
+Step = Callable[[int, Values, Values], tuple[Values, int]]
+"""The outputs and the next state, for a state, what was known before, and inputs."""
+
+
+def _steps(machine: Machine | Table) -> Step:
+    """How a machine is asked; raises LookupError where it has no move.
+
+    Its conditions, which are long, are walked through once and not for each question.
+    """
     if isinstance(machine, Table):
-        return machine.step(state, last, now)
-    move = machine.taken(state, last, now)
-    names = (one.name for one in machine.outputs)
-    values = (value_of(one, last) for one in move.output)
-    return dict(zip(names, values, strict=True)), move.state
+        return machine.step
+    names = [one.name for one in machine.outputs]
+    rows = [
+        [(evaluation(move.when), tuple(map(evaluation, move.output)), move.state) for move in moves]
+        for moves in machine.states
+    ]
+
+    def step(state: int, last: Values, now: Values) -> tuple[Values, int]:
+        for when, outputs, after in rows[state]:
+            if when(last, now):
+                values = (output(last, None) for output in outputs)
+                return dict(zip(names, values, strict=True)), after
+        raise LookupError(state)
+
+    return step

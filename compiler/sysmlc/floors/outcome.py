@@ -10,11 +10,12 @@ from sysmlc.floors.environment import Sharing, environment_contract
 from sysmlc.floors.optimal import Best, best, near
 from sysmlc.floors.relations import Relation, relations
 from sysmlc.floors.schedule import Schedule, in_time
+from sysmlc.floors.simulation import Validation
 from sysmlc.floors.story import Moment, lines, story
 from sysmlc.floors.strategy import answers_of, simulated, synthesise
 from sysmlc.floors.study import Study
 from sysmlc.floors.travel import Travel
-from sysmlc.floors.validate import Validation, validate
+from sysmlc.floors.validate import validate
 from sysmlc.synthesis.decide import Options, Place, decide
 from sysmlc.synthesis.synthesise import Synthesis
 from sysmlc.synthesis.witness import lines as run_lines

@@ -31,6 +31,15 @@ class Body(Generic[P]):
     commands: dict[str, P]
 
 
+@dataclass(frozen=True, slots=True)
+class State(Generic[P]):
+    """All that is known between two steps: what will become of a run depends on nothing else."""
+
+    bodies: list[Body[P]]
+    done: list[P]
+    """By target: it has been reached."""
+
+
 class World(Generic[P]):
     """All robots; ``step`` is one step of the contracts."""
 
@@ -40,35 +49,33 @@ class World(Generic[P]):
         allocation: Allocation,
         answers: Sequence[Answers],
         runs: Runs[P],
+        state: State[P] | None = None,
+        time: int = 0,
     ) -> None:
-        """The first step: robots are in their starts, which are their targets, and stay."""
+        """The first step, in which robots are in their starts and stay, or a ``state`` later on."""
         self.study, self.allocation, self.answers, self.runs = study, allocation, answers, runs
         none, size = runs.none, study.grid.size
         self._but = runs.but
-        self.bodies: list[Body[P]] = [
-            Body(
-                list(runs.starts[at]),
-                [none] * len(allocation[at]),
-                [none] * size,
-                {Memory(cell, cell): one for cell, one in enumerate(runs.starts[at])},
-                {},
-            )
-            for at in range(len(study.robots))
-        ]
-        self.done: list[P] = [none] * len(study.targets)
+        known = state or _first(study, allocation, runs)
+        self.bodies, self.done = known.bodies, known.done[: len(study.targets)]
+        self.time = time
         self.near = [tuple(study.grid.neighbours(cell)) for cell in range(size)]
         self.hops: dict[tuple[int, int], tuple[str, int] | None] = {}
         self.wrong = none
         """In which runs two robots met, one was offered a cell that is taken or offered to another
-        one, or a machine had no answer."""
+        one, one left its target without another one, or a machine had no answer."""
         self.taken = self._taken()
         """By cell: a robot is there."""
-        self._answer_all()
+        self.over = none
+        """In which runs nothing is left to do: all targets are reached, and all robots rest."""
+        if state is None:
+            self._answer_all()
 
     # -- one step ------------------------------------------------------------------------------
 
     def step(self) -> None:
         """Move, note what was reached, decide who goes where, let the robots answer."""
+        self.time += 1
         idle = [self._at_goal(number) for number in range(len(self.bodies))]
         self._move()
         for number, body in enumerate(self.bodies):
@@ -82,8 +89,18 @@ class World(Generic[P]):
 
     def _answer_all(self) -> None:
         self._offered = list(self.taken)
-        for number in range(len(self.bodies)):
-            self._answer(number, self._resting(number))
+        resting = [self._resting(number) for number in range(len(self.bodies))]
+        self.over = self._all_of((*self.done, *resting))
+        for number, rests in enumerate(resting):
+            self._answer(number, rests)
+
+    def _all_of(self, planes: Sequence[P]) -> P:
+        found = self.runs.all
+        for one in planes:
+            if found == self.runs.none:
+                break
+            found = found & one
+        return found
 
     def _move(self) -> None:
         for body in self.bodies:
@@ -201,16 +218,45 @@ class World(Generic[P]):
         none = self.runs.none
         if given == none:
             return
-        body = self.bodies[number]
         step = self._hop(known.cell, goal)
         if step is not None:
-            self._offer(step[1], given)
-        answer = self.answers[number].get(known, goal, step[0] if step else "")
+            self._shown(number, known, goal, step, given)
+            return
+        if self.over != none and number == self.time % len(self.bodies):
+            given = self._in_turn(number, known, given)
+        self._told(number, known, goal, "", given)
+
+    def _in_turn(self, number: int, known: Memory, given: P) -> P:
+        """Offer a way to a robot that rests when nothing is left to do; where none is free.
+
+        Each robot has its turn again and again, as C_E promises it, and stays as C_R promises.
+        """
+        for step in self.near[known.cell]:
+            free = self._but(given & self.over, self.taken[step[1]])
+            if free != self.runs.none:
+                self._shown(number, known, known.cell, step, free)
+                given = self._but(given, free)
+        return given
+
+    def _shown(
+        self, number: int, known: Memory, goal: int, step: tuple[str, int], given: P
+    ) -> None:
+        self._offer(step[1], given)
+        self._told(number, known, goal, step[0], given)
+
+    def _told(self, number: int, known: Memory, goal: int, way: str, given: P) -> None:
+        """What a robot answers to its target and the way that it is shown."""
+        none, body = self.runs.none, self.bodies[number]
+        if given == none:
+            return
+        answer = self.answers[number].get(known, goal, way)
         if answer is None:
             self.wrong = self.wrong | given
             return
         body.memory[answer.memory] = body.memory.get(answer.memory, none) | given
         if answer.command in WAYS:
+            if goal == known.cell:
+                self.wrong = self.wrong | given
             body.commands[answer.command] = body.commands.get(answer.command, none) | given
 
     def _hop(self, cell: int, goal: int) -> tuple[str, int] | None:
@@ -223,3 +269,19 @@ class World(Generic[P]):
         """Offer a cell to a robot: one that is free, and offered to no other (C_E)."""
         self.wrong = self.wrong | (given & self._offered[cell])
         self._offered[cell] = self._offered[cell] | given
+
+
+def _first(study: Study, allocation: Allocation, runs: Runs[P]) -> State[P]:
+    """Robots in their starts, which are their targets."""
+    none, size = runs.none, study.grid.size
+    bodies: list[Body[P]] = [
+        Body(
+            list(runs.starts[at]),
+            [none] * len(allocation[at]),
+            [none] * size,
+            {Memory(cell, cell): one for cell, one in enumerate(runs.starts[at])},
+            {},
+        )
+        for at in range(len(study.robots))
+    ]
+    return State(bodies, [none] * len(study.targets))
