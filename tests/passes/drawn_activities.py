@@ -216,38 +216,58 @@ def _can_move(drawing, node, tokens):
 
 def following(drawing, tokens, inputs):
     """All ways in which a step may end; ``inputs`` are what is done, received and open (ids of
-    actions, guards)."""
+    actions, guards).
+    """
     if is_over(drawing, tokens):
         return {start(drawing)}
-    taken, given, running, choices = set(), [], set(tokens.running), []
+    step = _Step(drawing, tokens, inputs)
     for node, kind in drawing.nodes.items():
-        incoming, outgoing = drawing.incoming(node), drawing.outgoing(node)
-        ready = [flow for flow in incoming if flow in tokens.at]
+        step.move(node, kind)
+    return set(step.ends())
+
+
+class _Step:
+    """What moves in a step: everything looks at the tokens as they were."""
+
+    def __init__(self, drawing, tokens, inputs):
+        self.drawing, self.tokens, self.inputs = drawing, tokens, inputs
+        self.taken, self.given, self.choices = set(), [], []
+        self.running = set(tokens.running)
+
+    def move(self, node, kind):
+        incoming, outgoing = self.drawing.incoming(node), self.drawing.outgoing(node)
+        ready = [flow for flow in incoming if flow in self.tokens.at]
         has_all = bool(incoming) and len(ready) == len(incoming)
-        if kind in TAKES_ANY and ready:
-            if len(ready) > 1 and outgoing:
-                raise UnsafeError
-            taken |= {*ready}
-            given += outgoing
-        elif kind in PASSES and has_all:
-            taken |= {*ready}
-            given += outgoing
+        if kind in TAKES_ANY and len(ready) > 1 and outgoing:
+            raise UnsafeError
+        if (kind in TAKES_ANY and ready) or (kind in PASSES and has_all):
+            self.taken.update(ready)
+            self.given += outgoing
         elif kind == "decision" and has_all:
-            open_ = _open(drawing, outgoing, inputs)
-            if open_:
-                taken |= {*ready}
-                choices.append(open_)
+            self._decide(ready, outgoing)
         elif kind in WORKS:
-            if node in tokens.running:
-                if has_all:
-                    raise UnsafeError
-                if kind == "send" or node in inputs:
-                    running.remove(node)
-                    given += outgoing
-            elif has_all:
-                taken |= {*ready}
-                running.add(node)
-    return {_placed(tokens, taken, [*given, *chosen], running) for chosen in product(*choices)}
+            self._work(node, kind, ready if has_all else [], outgoing)
+
+    def _decide(self, ready, outgoing):
+        open_ = _open(self.drawing, outgoing, self.inputs)
+        if open_:
+            self.taken.update(ready)
+            self.choices.append(open_)
+
+    def _work(self, node, kind, ready, outgoing):
+        if node not in self.tokens.running:
+            if ready:
+                self.taken.update(ready)
+                self.running.add(node)
+        elif ready:
+            raise UnsafeError
+        elif kind == "send" or node in self.inputs:
+            self.running.remove(node)
+            self.given += outgoing
+
+    def ends(self):
+        for chosen in product(*self.choices):
+            yield _placed(self.tokens, self.taken, [*self.given, *chosen], self.running)
 
 
 def _open(drawing, outgoing, inputs):

@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from drawn_activities import WORKS, Pencil, UnsafeError, following, is_over, start
+from drawn_activities import WORKS, Pencil, following, is_over, start
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
