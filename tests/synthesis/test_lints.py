@@ -53,6 +53,32 @@ def test_a_dead_end_is_shown_by_a_state():
             "step: n=2") in found(made)  # fmt: skip
 
 
+@pytest.mark.parametrize("assumed", ["power", "power & (n=1 | n=2)"])
+def test_what_is_assumed_of_inputs_at_all_times_is_no_dead_end(assumed):
+    made = contract(
+        f"""
+        env power: bool
+        env n: 0..3
+        sys on: bool
+        assume always {assumed}
+        promise always on' <-> n'=1
+        """
+    )
+    assert found(made) == []
+
+
+def test_what_is_assumed_of_inputs_and_outputs_at_all_times_is_a_dead_end():
+    made = contract(
+        """
+        env power: bool
+        sys on: bool
+        assume always on -> power
+        promise always on' <-> !on
+        """
+    )
+    assert [code for code, _ in found(made)] == ["SM534", "SM535"]
+
+
 def test_a_choice_needs_no_frame_and_a_quantity_does():
     choice = contract("sys n: 0..3\npromise always n=3 -> n'=0")
     assert [code for code, _ in found(choice)] == ["SM536"]

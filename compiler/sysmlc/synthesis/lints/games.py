@@ -21,7 +21,7 @@ from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.games.solve import solve
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.runs import all_steps
-from sysmlc.synthesis.lints.words import Remark
+from sysmlc.synthesis.lints.words import Remark, timely
 from sysmlc.values import replace
 
 NewManager = Callable[[], Manager]
@@ -111,7 +111,7 @@ def is_forced(contract: Contract, new: NewManager) -> bool:
     """
     never = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
     safe = tuple(one for one in contract.guarantees if one.class_ is not Class.LIVENESS)
-    game = make_game(replace(contract, guarantees=(*safe, never)), new())
+    game = make_game(timely(replace(contract, guarantees=(*safe, never))), new())
     reachable = Runs(all_steps(game)).reachable
     return reachable & solve(game).winning != game.manager.false
 

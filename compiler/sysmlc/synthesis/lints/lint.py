@@ -9,7 +9,7 @@ from sysmlc.synthesis.algebra.relations import environment
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.games import NewManager, of_games
 from sysmlc.synthesis.lints.runs import of_runs
-from sysmlc.synthesis.lints.words import Remark, of_words
+from sysmlc.synthesis.lints.words import Remark, of_words, timely
 
 Place = Callable[[str], Subject]
 """From the origin of a contract or of a conjunct to what findings are about."""
@@ -41,5 +41,5 @@ def _remarks(contract: Contract, new: NewManager) -> Iterator[Remark]:
     if environment(contract, new()) is None:
         yield Remark(rules.NO_ENVIRONMENT)
         return
-    yield from of_runs(contract, new())
+    yield from of_runs(timely(contract), new())
     yield from of_games(contract, new)

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Rule
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
-from sysmlc.logic.formula import Formula, variables
+from sysmlc.logic.formula import Formula, primed, variables
 from sysmlc.synthesis.lints import rules
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,28 @@ def of_words(contract: Contract) -> Iterator[Remark]:
     for conjunct in (*contract.assumptions, *contract.guarantees):
         if conjunct.class_ is Class.LIVENESS and _primed(conjunct.formula):
             yield Remark(rules.NEXT_IN_LIVENESS, conjunct)
+
+
+def timely(contract: Contract) -> Contract:
+    """The contract with what is assumed of inputs alone asked of the step that it is about.
+
+    A game asks ``G p`` of the step that comes after: it would seem that the environment could break
+    it and come to a dead end, or be brought there.
+    """
+    inputs = {one.name for one in contract.variables if one.owner is Owner.ENVIRONMENT}
+    return replace(
+        contract,
+        assumptions=tuple(made for one in contract.assumptions for made in _timely(one, inputs)),
+    )
+
+
+def _timely(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct]:
+    names = {one.name for one in variables(conjunct.formula)}
+    if conjunct.class_ is not Class.SAFETY or not names <= inputs or _primed(conjunct.formula):
+        yield conjunct
+        return
+    yield replace(conjunct, class_=Class.INIT)
+    yield replace(conjunct, formula=primed(conjunct.formula))
 
 
 def _decider(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
