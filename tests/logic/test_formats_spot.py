@@ -151,3 +151,11 @@ def test_what_a_form_has_no_words_for_names_the_conjunct(form, formula):
     with pytest.raises(NotExpressibleError) as caught:
         formats.write(Contract("C", "", VARIABLES, (), (outside,)), form)
     assert caught.value.conjunct == outside
+
+
+@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
+def test_an_assumption_about_what_the_system_does_next_is_named(form):
+    ahead = Conjunct(f.implies(Var("a"), Var("c", True)), Class.SAFETY, "model.uml:3:1")
+    with pytest.raises(NotExpressibleError) as caught:
+        formats.write(Contract("C", "", VARIABLES, (ahead,), ()), form)
+    assert caught.value.conjunct == ahead
