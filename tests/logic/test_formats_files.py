@@ -71,6 +71,8 @@ def test_the_wrong_example_has_the_fault_and_the_right_one_nearly(rule):
         ("G (a -> b)\n.inputs a\n", ("SM583", 1, 9)),
         ("[](a -> b || c && d)\n", ("SM583", 1, 11)),
         ("INFO { SEMANTICS: Moore }\nMAIN { }\n", ("SM585", 1, 18)),
+        ("INFO { SEMANTICS: Mealy,Finite }\nMAIN { }\n", ("SM585", 1, 18)),
+        ("INFO { }\nGLOBAL { DEFINITIONS { S = {1, 2}; } }\nMAIN { }\n", ("SM581", 2, 28)),
         ("INFO { }\nMAIN { INPUTS { a; } GUARANTEE { a U; } }\n", ("SM583", 2, 37)),
         (
             "INFO { }\nGLOBAL { DEFINITIONS { f(i) = f(i + 1); } }\n"

@@ -101,6 +101,17 @@ def test_a_sum_about_a_range_below_0_counts_from_0_in_slugs(text):
     assert [one for one in truths if one[0] != one[1]] == []
 
 
+@pytest.mark.parametrize("text", ["1<n", "1<=n", "1>n", "1>=n", "3<=m", "0>low", "1=n", "1!=n"])
+def test_a_comparison_may_begin_with_the_constant(text):
+    formula = parse_formula(text, {one.name: one.domain for one in VARIABLES})
+    contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
+    flat = without_arithmetic(contract).guarantees[0].formula
+    bits = in_bits(contract).guarantees[-1].formula
+    for row in ROWS:
+        truth = is_true(formula, row, row)
+        assert [is_true(flat, row, row), is_true(bits, as_bits(row), as_bits(row))] == [truth] * 2
+
+
 def test_bits_that_stand_for_no_value_are_ruled_out_on_their_owner_s_side():
     made = in_bits(Contract("C", "", VARIABLES, (), ()))
     assert [one.name for one in made.variables if one.name.startswith("m_")] == ["m_0", "m_1"]

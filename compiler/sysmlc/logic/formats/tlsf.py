@@ -49,6 +49,7 @@ _SECTIONS = {
     "GUARANTEE": (Owner.SYSTEM, Class.OTHER),
     "GUARANTEES": (Owner.SYSTEM, Class.OTHER),
 }
+_OUTSIDE = {"Moore": "the semantics of Moore machines", "Finite": "the semantics of finite runs"}
 _Handler = Callable[[Cursor, str], None]
 
 
@@ -125,10 +126,10 @@ class _File:
             self._semantics([word for word in words if word != ","], at)
 
     def _semantics(self, words: list[str], at: int) -> None:
-        if "Moore" in words:
-            what = "the semantics of Moore machines"
-            self._draft.fault(rules.OUTSIDE, at, what=what, form="TLSF")
-        elif "Strict" not in words:
+        for word in words:
+            if word in _OUTSIDE:
+                self._draft.fault(rules.OUTSIDE, at, what=_OUTSIDE[word], form="TLSF")
+        if _OUTSIDE.keys().isdisjoint(words) and "Strict" not in words:
             self._draft.file.report(rules.NOT_STRICT, at, semantics=",".join(words))
 
     def _definition(self, cursor: Cursor) -> None:

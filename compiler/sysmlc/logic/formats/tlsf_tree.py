@@ -48,6 +48,7 @@ SAME = {
 """Words for signs."""
 PREFIX = ("!", "NOT", "X", "F", "G", "SIZEOF", "-")
 _UNARY = 7
+_NO_SETS = "sets are not read; a range is, as 0 <= i < n"
 QUANTIFIERS = ("&&", "||", "FORALL", "EXISTS", "AND", "OR")
 
 
@@ -102,6 +103,8 @@ def _operand(cursor: Cursor, depth: int) -> Tree:
         return Tree("group", "(", token.at, (inner,))
     if token.kind == "number":
         return Tree("number", str(cursor.integer()), token.at)
+    if cursor.has("{"):
+        raise FormulaError(_NO_SETS, token.at)
     name = cursor.expect_kind("name", "an operand")
     return _indexed(cursor, _named(cursor, name.text, name.at, depth), depth)
 
@@ -140,6 +143,8 @@ def _quantified(cursor: Cursor, depth: int) -> Tree:
 def _range(cursor: Cursor, depth: int) -> Tree:
     """``0 <= i < n``: the operands are the bounds, the text is ``<= i <``."""
     low = expression(cursor, 9, depth + 1)
+    if cursor.has("IN"):
+        raise FormulaError(_NO_SETS, cursor.next.at)
     first = cursor.expect("<", "<=")
     name = cursor.expect_kind("name", "a name")
     second = cursor.expect("<", "<=")
