@@ -63,6 +63,14 @@ def test_a_branch_that_is_not_joined_goes_on(flows):
     assert not ends(*flows)
 
 
+def test_ways_to_what_is_no_step_lead_nowhere():
+    graph = drawn(["s f", "f x", "f y", "x e"])
+    for flow in graph.sources(graph["n.y"], Edge.FLOW_TARGET):
+        graph.disconnect(Edge.FLOW_TARGET, flow, graph["n.y"])
+        graph.connect(Edge.FLOW_TARGET, flow, graph["a"])
+    assert is_joined(graph, graph["n.e"])
+
+
 def over_by_its_meaning(graph):
     """The same from the definition: for each fork a join without which no way gets anywhere."""
     steps = [one for one in graph if one.kind in (Kind.ACTION, Kind.CONTROL)]

@@ -33,7 +33,7 @@ def is_joined(graph: Graph, end: Element) -> bool:
 def _next(graph: Graph, step: Element) -> list[str]:
     flows = (one for one in graph.sources(step, Edge.FLOW_SOURCE) if _is_control(one))
     found = (graph.target(one, Edge.FLOW_TARGET) for one in flows)
-    return [one.id for one in found if one is not None and one.owner == step.owner]
+    return [one.id for one in found if one and one.kind in _STEPS and one.owner == step.owner]
 
 
 def _waits(graph: Graph, step: Element) -> bool:
