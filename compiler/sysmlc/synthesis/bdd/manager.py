@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from types import FrameType, ModuleType
 from typing import Any, Protocol, Self, cast
+from weakref import WeakKeyDictionary
 
 from sysmlc.synthesis.bdd.inside import watch
 from sysmlc.values import dataclass
@@ -108,6 +109,7 @@ class Manager:
         self._peak = self._nodes = 0
         self._next_look = 0.0
         self._reorder_at = REORDER_AT
+        self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
         self._end: LimitError | KeyboardInterrupt | None = None
         # dd has no type hints that a checker could use.
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
@@ -175,7 +177,10 @@ class Manager:
 
     def support(self, node: Node) -> frozenset[str]:
         """The bits that the diagram depends on."""
-        return frozenset(self._bdd.support(node))
+        found = self._supports.get(node)
+        if found is None:
+            found = self._supports[node] = frozenset(self._bdd.support(node))
+        return found
 
     def branches(self, node: Node) -> tuple[str, Node, Node]:
         """The topmost bit of a diagram that is neither true nor false; what is left when it is

@@ -91,8 +91,11 @@ def make_game(contract: Contract, manager: Manager) -> Game:
     Raises OutsideGr1Error for a conjunct that GR(1) cannot say, LimitError when a limit is
     reached.
     """
-    for conjunct in (*contract.assumptions, *contract.guarantees):
-        _check(conjunct, contract, conjunct in contract.assumptions)
+    names = {owner: _names(contract, owner) for owner in Owner}
+    for conjunct in contract.assumptions:
+        _check(conjunct, names, is_assumption=True)
+    for conjunct in contract.guarantees:
+        _check(conjunct, names, is_assumption=False)
     with manager.guard():
         return _translated(contract, Symbols(manager, contract.variables, _together(contract)))
 
@@ -141,26 +144,33 @@ def _ranges(symbols: Symbols, owner: Owner, primed: bool) -> Iterator[Part]:
                 yield Part(node)
 
 
-def _check(conjunct: Conjunct, contract: Contract, is_assumption: bool) -> None:
+_Names = Mapping[Owner, frozenset[str]]
+"""The variables of each side."""
+
+
+def _names(contract: Contract, owner: Owner) -> frozenset[str]:
+    return frozenset(one.name for one in contract.variables if one.owner is owner)
+
+
+def _check(conjunct: Conjunct, names: _Names, is_assumption: bool) -> None:
     """Raise OutsideGr1Error when the conjunct's class does not allow what it speaks of."""
-    why = _objection(conjunct, contract, is_assumption)
+    why = _objection(conjunct, names, is_assumption)
     if why:
         raise OutsideGr1Error(conjunct, why)
 
 
-def _objection(conjunct: Conjunct, contract: Contract, is_assumption: bool) -> str:
+def _objection(conjunct: Conjunct, names: _Names, is_assumption: bool) -> str:
     if conjunct.class_ is Class.OTHER:
         return "it is neither initial, nor for every step (G), nor recurring (GF)"
     if conjunct.class_ is not Class.SAFETY:
-        after = _first(conjunct.formula, {one.name for one in contract.variables}, primed=True)
+        after = _first(conjunct.formula, frozenset().union(*names.values()), primed=True)
         kind = "an initial condition" if conjunct.class_ is Class.INIT else "what must recur"
         if after:
             return f"{kind} cannot speak of the next step ({after}')"
-    return _of_assumption(conjunct, contract) if is_assumption else ""
+    return _of_assumption(conjunct, names[Owner.SYSTEM]) if is_assumption else ""
 
 
-def _of_assumption(conjunct: Conjunct, contract: Contract) -> str:
-    outputs = {one.name for one in contract.variables if one.owner is Owner.SYSTEM}
+def _of_assumption(conjunct: Conjunct, outputs: frozenset[str]) -> str:
     if conjunct.class_ is Class.INIT:
         output = _first(conjunct.formula, outputs, primed=False)
         return output and f"an initial assumption cannot speak of an output ({output})"
@@ -168,7 +178,7 @@ def _of_assumption(conjunct: Conjunct, contract: Contract) -> str:
     return output and f"an assumption cannot speak of the next value of an output ({output}')"
 
 
-def _first(formula: Formula, names: set[str], primed: bool) -> str:
+def _first(formula: Formula, names: frozenset[str], primed: bool) -> str:
     """The first variable of the formula among the names, or nothing."""
     found = (one.name for one in variables(formula) if one.primed == primed and one.name in names)
     return next(found, "")
