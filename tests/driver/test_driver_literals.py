@@ -15,6 +15,8 @@ from sysmlc import cache, resources
 from sysmlc.cli import group
 from sysmlc.driver import compilation
 from sysmlc.language import library
+from sysmlc.passes.activities import Activities
+from sysmlc.passes.contracts import Contracts
 
 LINE = """\
 package Line {
@@ -58,13 +60,16 @@ package Line {
 PARTS = """\
 package Parts {
     doc /* What the cell has: 3 arms. */
+    /* What it is. */
     part def Arm { attribute 'größe' : ScalarValues::Real = 1; part gone : Missing; }
-    requirement def <'R1'> Fast { attribute most : ScalarValues::Integer = 8; }
+    action def Draw { language "C" /* return 1 */ }
+    requirement def <'R1'> Fast { doc /* The fastest. */
+        attribute most : ScalarValues::Integer = 8; }
 }
 """
 LITERAL = re.compile(
-    r"//[^\n]*|/\*.*?\*/|'[^']*'|"
-    r'("[^"]*"|(?<![\w.])\d+(?:\.\d+)?(?![\w.])|\b(?:true|false)\b)',
+    r"//[^\n]*|'[^']*'|"
+    r'("[^"]*"|/\*.*?\*/|(?<![\w.])\d+(?:\.\d+)?(?![\w.])|\b(?:true|false)\b)',
     re.DOTALL,
 )
 
@@ -133,6 +138,9 @@ def is_compiled(runs, *options) -> bool:
         ("if limit > 1 then", "if limit > 2 then"),
         ("2 + 3", "2 + 4"),
         ("assign count := count + 1;", "assign count := count + 5;"),
+        ("3 arms", "4 arms"),
+        ("3 arms", "not one arm,\n         * but four"),
+        ("What it is", "What it was"),
     ],
 )
 def test_a_literal_that_is_a_value_is_not_compiled(runs, old, new):
@@ -152,8 +160,12 @@ def test_a_literal_that_is_a_value_is_not_compiled(runs, old, new):
         ("= 3;", "= -3;"),
         ("= 3;", "= speed;"),
         ("= 3;", "= 1e999;"),
-        ("3 arms", "4 arms"),
         ("<'R1'>", "<'R2'>"),
+        ("/* What the cell has: 3 arms. */", "/* */"),
+        ("/* What the cell has: 3 arms. */", "/* sysmlc-kept/1 {} */"),
+        ("/* What the cell has: 3 arms. */", "/* As Line has it, see RecipeLevels. */"),
+        ("/* The fastest. */", "/* The slowest. */"),
+        ("/* return 1 */", "/* return 2 */"),
     ],
 )
 def test_what_may_mean_more_is_compiled(runs, old, new):
@@ -206,6 +218,52 @@ def test_what_was_restated_is_known_afterwards(runs, monkeypatch):
     assert not is_compiled(runs)
 
 
+GUARDED = """\
+package P {
+    action def Serve {
+        attribute isOn : ScalarValues::Boolean;
+        first start;
+        then decide;
+            if isOn == true then done;
+            else pick;
+        action pick;
+        then done;
+    }
+    action def Rest { first start; then action wait; then done; }
+}
+"""
+
+
+def test_a_guard_makes_only_the_contract_of_its_activity_again(runs, monkeypatch):
+    Path("unit/line.sysml").write_text(GUARDED)
+    sysmlc("unit", "-o", "out")
+    before = Path("out/contracts/P.Serve.md").read_text()
+    edited("line.sysml", "== true", "== false")
+    with monkeypatch.context() as without:
+        for pass_ in (Activities, Contracts):
+            without.setattr(pass_, "run", None)
+        sysmlc("unit", "-o", "out")
+    assert len(runs) == 1
+    assert Path("out/contracts/P.Serve.md").read_text() != before
+    assert_is_as_from_a_clean_build()
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "action def Other { doc /* [](isOn) */ }",
+        "requirement def R { subject one : Serve; require constraint { one.isOn } }",
+        'action serve : Serve { assert constraint { language "LTL" /* [](pick -> <>(isOn)) */ } }',
+        "part def Serve { perform action a : P::Serve; exhibit state s { state t; } }",
+    ],
+)
+def test_a_guard_where_more_is_said_of_its_activity(runs, more):
+    Path("unit/line.sysml").write_text(f"{GUARDED[:-2]} {more} }}\n")
+    sysmlc("unit", "-o", "out")
+    edited("line.sysml", "== true", "== false")
+    assert_is_as_from_a_clean_build()
+
+
 def test_checks_know_of_literals_too(runs):
     sysmlc("check", "unit")
     edited("line.sysml", "= 1.5;", "= 2.5;")
@@ -247,6 +305,8 @@ def another(literal: str, chosen: random.Random) -> str:
     """A literal of the same kind."""
     if literal in ("true", "false"):
         return chosen.choice(["true", "false"])
+    if literal.startswith("/*"):
+        return chosen.choice(["/* Other words. */", "/* Two\n * lines, 'größer' */", "/**/"])
     if literal.startswith('"'):
         return chosen.choice(['""', '"left"', '"Level::low"', '"größer\\n"', '"a b"'])
     return (

@@ -113,7 +113,6 @@ def test_notes_and_blanks_are_not_compiled(runs, old, new):
         ("= 3;", "= 3.5;"),
         ("speed > 2", "speed >= 2"),
         ("action pick;", "action pick; action place;"),
-        ("/* What the cell has. */", "/* What a cell has. */"),
         ("'größe'", "'große'"),
         ("-> collect", "->collect"),
         ("part gone : Missing;", "part gone : // RecipeLevels\n Missing;"),

@@ -46,8 +46,11 @@ class EmitOptions:
 class InParts(Protocol):
     """A back end that makes files about one thing after the other.
 
-    While it is at one it says so (``ir.reads.during``).
+    While it is at one it says so (``ir.reads.during``). Of what the pass ``follows`` derived for
+    an element it makes the part that is called as the pass, with the id.
     """
+
+    follows: str
 
     def part(self, graph: Graph, about: str, options: EmitOptions) -> Iterable[Artefact]:
         """The files about one thing; only their names may be others than among all."""

@@ -1,14 +1,15 @@
 """Parts of a compilation done again, on the graph of that time with other values."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import TypeVar
+from types import MappingProxyType
+from typing import TypeVar, cast
 
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.base import InParts as FilesInParts
 from sysmlc.diagnostics import Diagnostic, Place, Sink
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import Request
-from sysmlc.driver.recording import Recorded, digest_of_findings, made
+from sysmlc.driver.recording import Made, Recorded, digest_of_findings, made
 from sysmlc.ir import AttrValue, Graph
 from sysmlc.ir.reads import Reads, Value
 from sysmlc.ir.rows import Row, graph_of
@@ -18,6 +19,8 @@ from sysmlc.passes.pipeline import DERIVING, NAMES
 from sysmlc.values import dataclass, replace
 
 _T = TypeVar("_T")
+_Derived = tuple[object, str]
+"""What was derived, and a digest of what was reported."""
 _PASS, _EMIT = "pass", "emit"
 
 
@@ -70,8 +73,10 @@ def restated(
     before = [again.derived(one) for one in parts]
     again.give(changed)
     after = [again.derived(one) for one in parts]
-    differ = {one.whole for one, old, new in zip(parts, before, after, strict=True) if old != new}
-    texts = dict(again.files(readers.difference(parts) | differ))
+    for one, old, new in zip(parts, before, after, strict=True):
+        if old != new:
+            readers |= again.follow(one, old, new)
+    texts = dict(again.files({again.able(one) for one in readers.difference(parts)}))
     return texts, again.recorded(changed)
 
 
@@ -80,8 +85,12 @@ class _Partial(Graph):
 
     missing: Collection[str] = ()
     """Modules of types of which there were derived values."""
+    alone: Mapping[str, Sequence[object]] = MappingProxyType({})
+    """By module, the derived values of elements that are looked at one by one."""
 
     def derived(self, type_: type[_T]) -> Sequence[_T]:
+        if type_.__module__ in self.alone:
+            return cast("Sequence[_T]", self.alone[type_.__module__])
         self._ask(type_.__module__)
         return super().derived(type_)
 
@@ -109,6 +118,8 @@ class _Again:
         self._stored = {module: {*map(_reader, by)} for module, by in known.stored.items()}
         self._used = {module: {*map(_reader, by)} for module, by in known.used.items()}
         self._done: set[Reader] = set()
+        self._alone: dict[str, list[object]] = {}
+        self._followed: set[Reader] = set()
 
     def give(self, changed: Mapping[Value, AttrValue]) -> None:
         """Set the attributes."""
@@ -139,6 +150,53 @@ class _Again:
         sink, heard = _listening()
         found = step.part(self._graph, element, sink)
         return found, digest_of_findings(heard)
+
+    def follow(self, who: Reader, old: _Derived, new: _Derived) -> set[Reader]:
+        """Who runs again where a pass derives something else for one element.
+
+        That is the part that follows, where the value is all that comes of the element, else the
+        whole pass. Raises LostError where it reports something else.
+        """
+        if old[1] != new[1]:
+            raise LostError
+        step, element = self._pass(who), self._graph[who.part]
+        if not isinstance(step, InParts) or None in (old[0], new[0]):
+            return {who.whole}
+        if type(old[0]) is not type(new[0]) or not step.is_apart(self._graph, element):
+            return {who.whole}
+        found: set[Reader] = set()
+        for user in self._users(who.whole):
+            if user.what == _PASS:
+                part = Reader(_PASS, user.name, who.part)
+                then = self._pass(user)
+                if not isinstance(then, InParts) or then.follows != who.name:
+                    return {who.whole}
+                made = [self._from(part, one[0]) for one in (old, new)]
+                if made[0] != made[1]:
+                    found |= self.follow(part, *made)
+            else:
+                then_made = registry.load_backends([user.name])[0]
+                if not isinstance(then_made, FilesInParts) or then_made.follows != who.name:
+                    return {who.whole}
+                found.add(Reader(_EMIT, user.name, f"{who.name} {who.part}"))
+                self._alone.setdefault(type(new[0]).__module__, []).append(new[0])
+        self._followed |= found
+        return found
+
+    def able(self, who: Reader) -> Reader:
+        """Who can run again: a part that needs what a pass derived needs all, unless it follows."""
+        if who.what != _EMIT or not who.part or who in self._followed:
+            return who
+        backend = registry.load_backends([who.name])[0]
+        return who if isinstance(backend, FilesInParts) and not backend.follows else who.whole
+
+    def _from(self, who: Reader, value: object) -> _Derived:
+        """What a pass derives for one element of what another pass derived for it."""
+        self._graph.alone = {type(value).__module__: [value]}
+        try:
+            return self.derived(who)
+        finally:
+            self._graph.alone = MappingProxyType({})
 
     def files(self, affected: set[Reader]) -> Iterator[tuple[str, str]]:
         """The texts that come out where these run again, and who asks for what they derive."""
@@ -222,20 +280,27 @@ class _Again:
         if not isinstance(backend, FilesInParts):
             raise LostError
         self._expect(who)
-        # It says itself at which part it is.
-        self._reads.reader = f"{who.what} {who.name}"
+        self._reads.reader = f"{who.what} {who.name} {who.part}"
+        if who in self._followed:
+            self._graph.alone = self._alone
         found = list(backend.part(self._graph, who.part, self._options))
-        form, _, id = who.part.partition(" ")
-        ours = [made(one) for one in found]
-        known = [
-            one
+        self._graph.alone = MappingProxyType({})
+        ours = {_of_kind(made(one)): one.text for one in found}
+        kinds, about = {kind for kind, _ in ours}, who.part.partition(" ")[2]
+        known = {
+            _of_kind(one): one.path
             for one in self._known.made
-            if one.backend == who.name and one.about == id and f".{form}." in one.path
-        ]
-        paths = {one.trace: one.path for one in known}
-        if sorted(one.trace for one in ours) != sorted(paths) or len(paths) != len(known):
+            if one.backend == who.name and one.about == about and _of_kind(one)[0] in kinds
+        }
+        if ours.keys() != known.keys() or len(ours) != len(found):
             raise LostError
-        yield from ((paths[one.trace], of.text) for one, of in zip(ours, found, strict=True))
+        yield from ((known[one], text) for one, text in ours.items())
+
+
+def _of_kind(one: Made) -> tuple[str, str]:
+    """What kind of file it is, as its name ends, and what it tells of."""
+    name, _, last = one.path.rpartition(".")
+    return f"{name.rpartition('.')[2]}.{last}", one.trace
 
 
 def _with(rows: Sequence[Row], changed: Mapping[Value, AttrValue]) -> list[Row]:

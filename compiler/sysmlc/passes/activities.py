@@ -37,6 +37,7 @@ class Activities:
 
     name: ClassVar[str] = "activities"
     after: ClassVar[tuple[str, ...]] = ("classify", "flows")
+    follows: ClassVar[str] = ""
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a TokenGraph for each activity that can be played."""
@@ -50,6 +51,10 @@ class Activities:
                     found = self._found(graph, one, raising, sink)
                 if found is not None:
                     yield found
+
+    def is_apart(self, graph: Graph, about: Element) -> bool:
+        """Activities are derived one by one."""
+        return True
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
         """The token graph of an activity, or of an operation by one of a library; or None."""

@@ -10,8 +10,14 @@ from sysmlc.ir import Element, Graph
 class InParts(Protocol):
     """A pass that does for one element after the other what no other one concerns.
 
-    While it is at one it says so (``ir.reads.during``).
+    While it is at one it says so (``ir.reads.during``). ``follows`` is the pass whose derived
+    value of an element it may make its own of; empty for the first.
     """
+
+    follows: ClassVar[str]
+
+    def is_apart(self, graph: Graph, about: Element) -> bool:
+        """Whether what is derived for one element is all that comes of it: nothing is joined."""
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
         """What is derived for one element; equal values have equal consequences."""

@@ -18,7 +18,10 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
 from sysmlc.logic.requirements import derivation as requirements
+from sysmlc.logic.requirements.statements import statements
+from sysmlc.logic.services import conditions
 from sysmlc.logic.services import derivation as services
+from sysmlc.logic.texts.formal import is_formal
 from sysmlc.passes.contract_formulas import add_formulas
 from sysmlc.values import dataclass, replace
 
@@ -55,6 +58,7 @@ class Contracts:
 
     name: ClassVar[str] = "contracts"
     after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
+    follows: ClassVar[str] = "activities"
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a Contract for each behaviour that is derived and for subjects of requirements."""
@@ -73,8 +77,24 @@ class Contracts:
             if contract is not None:
                 yield contract
 
+    def is_apart(self, graph: Graph, about: Element) -> bool:
+        """Whether no constraint adds to contracts, and no other behaviour has the name."""
+        if graph.of_kind(Kind.CONSTRAINT) and (
+            any(map(_is_formula, graph.of_kind(Kind.CONSTRAINT)))
+            or statements(graph)
+            or any(conditions.services(graph, (self.assumed_low, self.assumed_high), Sink()))
+        ):
+            return False
+        name = query.component_name(graph, about)
+        behaviours = graph.of_kind(Kind.ACTIVITY, Kind.STATE_MACHINE)
+        return [query.component_name(graph, one) for one in behaviours].count(name) == 1
+
     def part(self, graph: Graph, about: Element, sink: Sink) -> Contract | None:
-        """The contract of a state machine that says what a component does; None of others."""
+        """The contract of an activity, or of a state machine that says what a component does."""
+        if about.kind is Kind.ACTIVITY:
+            found = (one for one in graph.derived(TokenGraph) if one.activity == about.id)
+            tokens = next(found, None)
+            return None if tokens is None else activity_contract.derive(tokens)
         if not _is_behaviour(graph, about):
             return None
         options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
@@ -96,6 +116,11 @@ def _is_submachine(graph: Graph, machine: Element) -> bool:
     is_called = any(one.kind is Kind.STATE for one in graph.sources(machine, Edge.CALLS))
     own = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
     return is_called and not any(graph.sources(machine, edge) for edge in own)
+
+
+def _is_formula(constraint: Element) -> bool:
+    body, language = (str(constraint.attrs.get(key, "")) for key in ("body", "language"))
+    return is_formal(language, body)
 
 
 def _of_activities(graph: Graph) -> Iterator[Contract]:

@@ -6,12 +6,13 @@ from sysmlc.backends.contracts.trace import trace as trace_of
 from sysmlc.backends.templates import faults
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
+from sysmlc.ir.reads import during
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.document_text import text
 from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.output import Artefact, Output
 from sysmlc.values import dataclass
 
 TOO_LARGE = rule(
@@ -44,6 +45,16 @@ class ContractsBackend:
     name: str = "contracts"
     summary: str = "assume/guarantee contracts as JSON, SPIN formula and explanation"
     is_default: bool = True
+    follows: str = "contracts"
+
+    def part(self, graph: Graph, about: str, options: EmitOptions) -> list[Artefact]:
+        """The files of one contract, as ``contracts`` and the id of what it comes from."""
+        output, id = Output(), about.partition(" ")[2]
+        for contract in map(unambiguous, graph.derived(Contract)):
+            if contract.origin == id:
+                name = file_names([contract.component])[contract.component]
+                _add(graph, contract, output, f"contracts/{name}", Sink(), options)
+        return output.artefacts()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files a contract; their trace names every element that they tell of."""
@@ -51,10 +62,22 @@ class ContractsBackend:
         names = file_names(contract.component for contract in contracts)
         for contract in map(unambiguous, contracts):
             path = f"contracts/{names[contract.component]}"
-            trace = tuple(trace_of(graph, contract))
-            output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, self.name)
-            _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
-            _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
+            with during(graph, f"contracts {contract.origin}"):
+                _add(graph, contract, output, path, sink, options)
+
+
+def _add(
+    graph: Graph,
+    contract: Contract,
+    output: Output,
+    path: str,
+    sink: Sink,
+    options: EmitOptions,
+) -> None:
+    trace = tuple(trace_of(graph, contract))
+    output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, "contracts")
+    _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
+    _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
 
 
 def _add_spin(

@@ -59,6 +59,7 @@ class PlantUml:
     name: str = "plantuml"
     summary: str = "block, internal block, activity, state machine, requirement, sequence, use case"
     is_default: bool = True
+    follows: str = ""
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""

@@ -53,8 +53,11 @@ def comment(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _comment(low: "Lowering", node: Node, owner: Element | None) -> Element:
-    body = str(node.facts.get("body", "")).strip()
-    return low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
+    with low.literals.unnoted():
+        body = str(node.facts.get("body", "")).strip()
+    made = low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
+    low.literals.give_body(low, made, node)
+    return made
 
 
 def representation(low: "Lowering", node: Node, owner: Element | None) -> None:

@@ -5,11 +5,14 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.frontends.sysml.nodes import arguments
 from sysmlc.ir import AttrValue
+from sysmlc.ir.kept import PREFIX
 from sysmlc.language.tree import Node
 
 KINDS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
 """Metaclasses of literals that have a value."""
-_NEGATED, _SEQUENCE, _TAG, _TEXT = "-", ",", "tag", "text"
+BODIES = frozenset({"Comment", "Documentation"})
+"""Metaclasses of what has a text for its readers."""
+_NEGATED, _SEQUENCE, _TAG, _TEXT, _BODY = "-", ",", "tag", "text", "body"
 _GAP = re.compile('"\ue000(\\d+)\ue001"')
 
 
@@ -63,6 +66,11 @@ def text(node: Node, printed: Callable[[Node], str]) -> AttrValue:
     return (_TEXT, *(int(one) if at % 2 else one for at, one in enumerate(pieces)))
 
 
+def body(place: int) -> AttrValue:
+    """The same for the body of a comment, by where that starts: ``("body", place)``."""
+    return (_BODY, place)
+
+
 def places(found: AttrValue) -> Iterator[int]:
     """Where the literals of a form start."""
     if isinstance(found, int):
@@ -83,8 +91,8 @@ def value(found: AttrValue, literal: Callable[[int], AttrValue]) -> AttrValue:
     values = [value(one, literal) for one in found[1:]]
     if found[0] == _SEQUENCE:
         return _sequence(values)
-    if found[0] == _TAG:
-        return _tagged(values[0])
+    if found[0] in (_TAG, _BODY):
+        return _tagged(values[0]) if found[0] == _TAG else _said(str(values[0]).strip())
     number = values[0]
     is_number = isinstance(number, int | float) and not isinstance(number, bool)
     return -number if is_number and isinstance(number, int | float) else None
@@ -109,6 +117,11 @@ def _filled(pieces: tuple[AttrValue, ...], literal: Callable[[int], AttrValue]) 
         else:
             return None
     return "".join(said)
+
+
+def _said(text: str) -> str | None:
+    """The body of a comment; without one there is no attribute, and what is kept is read."""
+    return None if not text or text.startswith(PREFIX) else text
 
 
 def _tagged(found: AttrValue) -> AttrValue:

@@ -4,9 +4,10 @@ from collections.abc import Callable, ItemsView, Iterator, KeysView, Sequence, V
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml.forms import KINDS, form, value
+from sysmlc.frontends.sysml.forms import BODIES, KINDS, body, form, value
 from sysmlc.ir import AttrValue, Element, Graph
-from sysmlc.ir.reads import Literal, Watched
+from sysmlc.ir.reads import Literal, Reads, Watched
+from sysmlc.language.text.words import last
 from sysmlc.language.tree import Document, Fact, Node
 
 if TYPE_CHECKING:
@@ -31,10 +32,13 @@ class Literals:
         for document in documents:
             for node in document.root.walk():
                 if node.kind in KINDS:
-                    self._watch(node, (document.path, node.start))
+                    self._watch(node, (document.path, node.start), "value")
+                elif node.kind in BODIES:
+                    at = last(document.text, node.start, node.end)
+                    self._watch(node, (document.path, at), "body")
 
-    def _watch(self, node: Node, place: Place) -> None:
-        found = node.facts.get("value")
+    def _watch(self, node: Node, place: Place, fact: str) -> None:
+        found = node.facts.get(fact)
         if found is not None:
             self._values[place] = found
             node.facts = Facts(node.facts, place, self)
@@ -72,6 +76,23 @@ class Literals:
             return
         with self.unnoted():
             found = how(node)
+        self._give(reads, document, element, key, node, found)
+
+    def give_body(self, low: "Lowering", element: Element, node: Node) -> None:
+        """The attribute ``body`` was set to what a comment says."""
+        document, reads = low.document(node), low.graph.reads
+        if reads is not None and isinstance(node.facts, Facts) and document is not None:
+            self._give(reads, document, element, "body", node, body(node.facts.place[1]))
+
+    def _give(
+        self,
+        reads: Reads,
+        document: Document,
+        element: Element,
+        key: str,
+        node: Node,
+        found: AttrValue,
+    ) -> None:
         known = value(found, lambda at: self._values.get((document.path, at)))
         attrs = element.attrs.plain() if isinstance(element.attrs, Watched) else element.attrs
         if known is not None and repr(known) == repr(attrs.get(key)):
@@ -80,7 +101,8 @@ class Literals:
             list(map(self.note, self._within(document.path, node)))
 
     def _within(self, path: str, node: Node) -> Iterator[Place]:
-        return ((path, one.start) for one in node.walk() if one.kind in KINDS)
+        facts = (one.facts for one in node.walk())
+        return (one.place for one in facts if isinstance(one, Facts) and one.place[0] == path)
 
     def finish(self, graph: Graph) -> None:
         """Leave what was given to attributes and asked for by nobody else."""
@@ -101,31 +123,31 @@ def watched(documents: Sequence[Document], graph: Graph) -> Literals:
 class Facts(dict[str, Fact]):
     """Facts of a literal; it is noted when somebody asks for them."""
 
-    __slots__ = ("_literals", "_place")
+    __slots__ = ("_literals", "place")
 
     def __init__(self, facts: dict[str, Fact], place: Place, literals: Literals) -> None:
         super().__init__(facts)
-        self._place = place
+        self.place = place
         self._literals = literals
 
     def __getitem__(self, key: str) -> Fact:
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().__getitem__(key)
 
     def get(self, key: str, default: Fact | None = None) -> Fact | None:  # type: ignore[override]
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().get(key, default)
 
     def __iter__(self) -> Iterator[str]:
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().__iter__()
 
     def keys(self) -> KeysView[str]:  # type: ignore[override]
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().keys()
 
     def copy(self) -> dict[str, Fact]:
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().copy()
 
     def __or__(self, other: dict[str, Fact]) -> dict[str, Fact]:  # type: ignore[override]
@@ -135,17 +157,17 @@ class Facts(dict[str, Fact]):
         return other | self.copy()
 
     def __eq__(self, other: object) -> bool:
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().__eq__(other)
 
     def __ne__(self, other: object) -> bool:
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().__ne__(other)
 
     def values(self) -> ValuesView[Fact]:  # type: ignore[override]
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().values()
 
     def items(self) -> ItemsView[str, Fact]:  # type: ignore[override]
-        self._literals.note(self._place)
+        self._literals.note(self.place)
         return super().items()

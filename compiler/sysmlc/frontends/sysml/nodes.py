@@ -54,7 +54,7 @@ def quoted(node: Node, text: str) -> str:
 
     for one in node.walk():
         # Whoever asks for literals is told of, and a text that is quoted has them all.
-        one.facts.get("value")
+        one.facts.get("value" if one.kind.startswith("Literal") else "body")
     return said(text, node.start, node.end) if 0 <= node.start < node.end else ""
 
 

@@ -27,6 +27,8 @@ DIGITS = 1_000
 _HEAD = 64
 """Characters in which a file of another encoding, UTF-16 or a binary one, has a zero."""
 _REST = re.compile(r"[\w ]*")
+_OPENING = re.compile(r"\A[ \t\f\v]*(?:(?:\r\n|\r|\n)[ \t\f\v]*\*? ?)?")
+_LINE_START = re.compile(r"(\r\n|\r|\n)[ \t\f\v]*\*? ?")
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
 
@@ -164,6 +166,12 @@ def _check_names(tokens: Tokens, types: Types) -> None:
             if all(char != fault.text for fault in tokens.faults):
                 start = tokens.starts[index] + name.index(char)
                 tokens.faults.append(Fault("character", start, char))
+
+
+def body_text(written: str) -> str:
+    """The body of a comment as KerML 8.2.3.3.2, note 1, takes it from the text."""
+    inner = written[2:-2]
+    return _LINE_START.sub(r"\1", _OPENING.sub("", inner, count=1))
 
 
 def unquoted(written: str) -> str:

@@ -3,7 +3,7 @@
 import math
 from hashlib import sha256
 
-from sysmlc.language.text.scan import BAD, DIGITS, TOKEN, unquoted
+from sysmlc.language.text.scan import BAD, DIGITS, TOKEN, body_text, unquoted
 
 _TRUTH = frozenset({"true", "false"})
 
@@ -30,7 +30,7 @@ def digests(text: str) -> tuple[str, str]:
     The first is equal for texts that differ in blanks, line ends and notes between their tokens
     only. Two tokens stay together, in one line or in two as they were: faults are mended by that.
     What stands before the first is not looked at. The second knows of literals of what kind they
-    are: a text, a natural or another number, a truth value.
+    are: a text, a natural or another number, a truth value, the body of a comment.
     """
     found = spans(text)
     if found is None or "\0" in text:
@@ -59,6 +59,8 @@ def literal_kind(piece: str) -> str:
     """What kind of literal a token is; empty for any other token."""
     if piece[:1] == '"':
         return "text"
+    if piece[:2] == "/*":
+        return "comment"
     if piece[:1].isdigit() or (piece[:1] == "." and piece[1:2].isdigit()):
         return "natural" if piece.isdigit() and len(piece) <= DIGITS else "number"
     return "truth" if piece in _TRUTH else ""
@@ -69,12 +71,25 @@ def literal(piece: str) -> str | int | float | bool | None:
     kind = literal_kind(piece)
     if kind == "text":
         return unquoted(piece)
+    if kind == "comment":
+        return body_text(piece)
     if kind == "truth":
         return piece == "true"
     if kind == "natural":
         return int(piece)
     found = float(piece) if kind else math.inf
     return None if math.isinf(found) else found
+
+
+def last(text: str, start: int, end: int) -> int:
+    """Where the last token of part of a text starts; -1 without one."""
+    found = -1
+    for match in TOKEN.finditer(text, start, end):
+        group = match.lastindex or 0
+        if not group:
+            break
+        found = match.start(group)
+    return found
 
 
 def said(text: str, start: int, end: int) -> str:

@@ -1,20 +1,9 @@
 """Packages, imports, aliases, dependencies, annotations (KerML 8.2.3, SysML 8.2.2.3 to 8.2.2.5)."""
 
-import re
-
 from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import OWNING, made, own
-from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.scan import Tokens, body_text
 from sysmlc.language.tree import Node, Reference, Relation
-
-_OPENING = re.compile(r"\A[ \t\f\v]*(?:(?:\r\n|\r|\n)[ \t\f\v]*\*? ?)?")
-_LINE_START = re.compile(r"(\r\n|\r|\n)[ \t\f\v]*\*? ?")
-
-
-def body_text(written: str) -> str:
-    """The body of a comment as KerML 8.2.3.3.2, note 1, takes it from the text."""
-    inner = written[2:-2]
-    return _LINE_START.sub(r"\1", _OPENING.sub("", inner, count=1))
 
 
 def root(tokens: Tokens, members: list[Node]) -> Node:
