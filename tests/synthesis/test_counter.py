@@ -12,11 +12,13 @@ from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import LimitError, Manager, make_game
+from sysmlc.synthesis.counter.defeat import environment_of
 from sysmlc.synthesis.counter.environment import Environment, NotLostError
 from sysmlc.synthesis.counter.files import files
 from sysmlc.synthesis.counter.machine import counter, example
 from sysmlc.synthesis.counter.play import Player
 from sysmlc.synthesis.counter.ranks import lost
+from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.witness import lines
 
 LAMP = """
@@ -58,6 +60,13 @@ def test_a_component_without_an_answer_ends_the_run():
     found = defeated(STUCK)
     assert list(lines(example(found)))[-1] == "then there is no answer"
     assert [one.given for one in found.states if not one.moves] == [(True,)]
+
+
+def test_the_environment_prevents_what_it_can_and_does_not_wait_for_other_goals():
+    busy = contract(f"sys n: 0..1\nsys m: 0..1\n{LAMP}\npromise recurs n=1\npromise recurs m=1")
+    found = counter(environment_of(busy, Options()), busy)
+    assert len(found.states) == 2
+    assert "go=true" in list(lines(example(found)))[1]
 
 
 def test_a_contract_that_can_be_kept_is_not_defeated():
@@ -168,13 +177,13 @@ def test_the_game_says_what_an_answer_breaks_and_how_it_ends():
     assert has_ended
     assert said[1:] == [
         "step 1: go=false",
-        "That breaks 'at=0' (at=0).",
+        "That breaks 'at=0'.",
         "     at=0",
         "step 2: go=true",
         "     at=0",
         "'at' is one of 0, 1",
         "'up' is not yours; yours are at",
-        "That breaks 'go' -> at'=at' (go' -> at'=at).",
+        "That breaks 'go' -> at'=at'.",
         "     at=0",
         "step 3: nothing changes",
         "     at=0",

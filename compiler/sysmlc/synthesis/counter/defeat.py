@@ -10,7 +10,10 @@ from sysmlc.synthesis.counter.environment import Environment
 from sysmlc.synthesis.counter.machine import Counter, counter
 from sysmlc.synthesis.counter.ranks import lost
 from sysmlc.synthesis.decide import Options, Place
-from sysmlc.synthesis.games.game import make_game
+from sysmlc.synthesis.games.game import Game, make_game
+from sysmlc.synthesis.unrealizable.core import is_won
+from sysmlc.synthesis.unrealizable.explain import conflict
+from sysmlc.values import replace
 
 NO_COUNTER = rule(
     "SM549",
@@ -46,11 +49,19 @@ def _counter(contract: Contract, options: Options) -> Counter:
 
 
 def environment_of(contract: Contract, options: Options) -> Environment:
-    """What the environment does to win.
+    """What the environment does to win, against goals that cannot be met together.
 
-    Raises NotLostError when the contract can be kept, OutsideGr1Error, LimitError.
+    Other goals would only hide why: it could wait for ever until they are met. Raises NotLostError
+    when the contract can be kept, OutsideGr1Error, LimitError.
     """
     manager = Manager(options.engine, options.limits, options.progress)
-    game = make_game(reduced(contract).contract, manager)
+    game = _without_needless_goals(make_game(reduced(contract).contract, manager))
     with manager.guard():
         return Environment(lost(game))
+
+
+def _without_needless_goals(game: Game) -> Game:
+    if not game.goals or is_won(game):
+        return game
+    found = conflict(game.goals, lambda some: not is_won(replace(game, goals=tuple(some))))
+    return replace(game, goals=found)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from sysmlc.logic.contract import Class, Contract, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Literal
@@ -131,8 +131,7 @@ class Player:
         for one in self._contract.guarantees:
             values = (before, now) if before else (now, None)
             if one.class_ is class_ and not is_true(one.formula, *values):
-                text = f" ({one.text.removesuffix('.')})" if one.text else ""
-                yield f"That breaks '{print_formula(one.formula)}'{text}."
+                yield f"That breaks '{print_formula(one.formula)}'{_about(one)}."
 
     def _for_ever(self, state: Bits, step: int, earlier: int) -> str:
         lost = self._environment.lost
@@ -141,8 +140,14 @@ class Player:
         if not lost.game.goals:
             return f"{said}. You have lost."
         conjunct = lost.game.goals[rank.goal].conjunct
-        goal = print_formula(conjunct.formula) if conjunct else ""
-        return f"{said}:\n'{goal}' does not come about again. You have lost."
+        goal = f"'{print_formula(conjunct.formula)}'{_about(conjunct)}" if conjunct else ""
+        return f"{said}:\n{goal} does not come about again. You have lost."
+
+
+def _about(conjunct: Conjunct) -> str:
+    """What the conjunct says in other words, in parentheses."""
+    is_new = conjunct.text not in ("", print_formula(conjunct.formula))
+    return f" ({conjunct.text.removesuffix('.')})" if is_new else ""
 
 
 def _same(own: Values, before: Values) -> int:
