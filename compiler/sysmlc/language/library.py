@@ -128,7 +128,7 @@ def find(
     ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar.
     Raises SourceError when the one that was asked for is not there or has no model files.
     """
-    asked = str(path) if path else environment.get(VARIABLE, "")
+    asked = asked_for(path, environment)
     if asked:
         sources = _read(Path(asked))
         if not sources:
@@ -140,9 +140,14 @@ def find(
     return core(cache)
 
 
+def asked_for(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> str:
+    """The folder or archive that an option, else the environment names; empty for none."""
+    return str(path) if path else environment.get(VARIABLE, "")
+
+
 def place(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> Path | None:
     """The folder or archive that ``find`` reads; None for the small library of our own."""
-    asked = str(path) if path else environment.get(VARIABLE, "")
+    asked = asked_for(path, environment)
     return Path(asked) if asked else _installed()
 
 

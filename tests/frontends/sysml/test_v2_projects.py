@@ -66,3 +66,12 @@ def test_archives_of_the_library_are_examined(tmp_path):
         made = compile_model(Request((tmp_path / "m.sysml",), library=str(library)))
         codes = [one.rule.code for one in made.diagnostics]
         assert ("SM168" in codes) == (name == "bad")
+
+
+def test_archives_of_the_library_of_the_environment_are_examined(tmp_path, monkeypatch):
+    (tmp_path / "m.sysml").write_text("package M { private import Robots::*; part r : Robot; }")
+    for name, value in (("good", SUM), ("bad", "00")):
+        monkeypatch.setenv("SYSML_LIBRARY_PATH", str(pack(tmp_path / f"{name}.kpar", value)))
+        made = compile_model(Request((tmp_path / "m.sysml",)))
+        codes = [one.rule.code for one in made.diagnostics]
+        assert ("SM168" in codes) == (name == "bad")

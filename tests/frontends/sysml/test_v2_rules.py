@@ -157,6 +157,14 @@ def test_sm484_a_library_that_is_not_there_is_told(tmp_path):
     assert [one.name for one in graph] == ["P", "A"]
 
 
+def test_sm484_names_the_library_of_the_environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("SYSML_LIBRARY_PATH", str(tmp_path / "nowhere"))
+    sink = Sink()
+    FRONTEND.read([Source("a.sysml", b"package P;")], Graph(), sink, Coverage())
+    (told,) = [one for one in sink if one.is_error]
+    assert (told.rule.code, "nowhere" in told.message) == ("SM484", True)
+
+
 @pytest.mark.parametrize(
     ("name", "data", "is_ours"),
     [

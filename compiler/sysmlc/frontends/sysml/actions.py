@@ -141,10 +141,10 @@ def send(low: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _payload(low: "Lowering", made: Element, payload: Node) -> None:
-    created = nodes.target(payload, "Membership", "FeatureTyping")
+    created = nodes.reference(payload, "Membership", "FeatureTyping")
     is_new = payload.kind in ("ConstructorExpression", "InvocationExpression")
     if created is not None and is_new:
-        low.later(lambda: low.lead(Edge.CALLS, made, created))
+        low.refer(Edge.CALLS, made, created)
         given = [one for one in payload.members if one.kind in nodes.EXPRESSIONS or one.members]
         for one in given:
             _argument(low, made, one)

@@ -165,7 +165,8 @@ def _paths(low: "Lowering", connector_: Element) -> set[tuple[str, ...]]:
 
 def flow_definition(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A flow between classifiers (UML 2.5.1 clause 20.1)."""
-    if sum(map(_is_end, node.members)) < 2:
+    ends = [one for one in node.members if _is_end(one)]
+    if len(ends) < 2 or not all(nodes.reference(one, "FeatureTyping") for one in ends[:2]):
         low.unsupported(node)
         return
     made = low.add(node, Kind.ITEM_FLOW, nodes.name_of(node), owner, role="item flow")

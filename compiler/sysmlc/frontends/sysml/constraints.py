@@ -6,6 +6,7 @@ from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import marked, visibility
 from sysmlc.frontends.sysml.features import property_
+from sysmlc.frontends.sysml.libraries import SHIPPED
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -34,9 +35,18 @@ def constraint(low: "Lowering", node: Node, owner: Element | None) -> None:
     low.set(made, **visibility(node))
     if result is not None:
         low.later(lambda: _body(low, node, made, result))
+        if _is_open(low, node):
+            low.approximated(node, "a constraint that nothing asserts", "one that holds")
     for found in nodes.references(node, "ReferenceSubsetting"):
         low.refer(Edge.REFERENCES, made, found)
     annotations.texts(low, node, made, "a constraint")
+
+
+def _is_open(low: "Lowering", node: Node) -> bool:
+    """Whether a condition is only given a name: it may hold or not (SysML 2.0, 7.20.1)."""
+    is_usage = node.kind == "ConstraintUsage" and node.membership == "FeatureMembership"
+    document = low.document(node)
+    return is_usage and document is not None and not document.path.startswith(SHIPPED)
 
 
 def _body(low: "Lowering", node: Node, made: Element, result: Node) -> None:

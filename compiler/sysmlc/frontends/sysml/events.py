@@ -70,6 +70,8 @@ def _received(low: "Lowering", made: Element, payload: Node) -> None:
     else:
         low.set(made, subkind="signal", payload=nodes.name_of(payload))
         low.later(lambda: low.lead_all(Edge.TYPED_BY, made, types))
+        if not types:
+            low.lead(Edge.TYPED_BY, made, None)
         low.later(lambda: _by_kind(low, made))
 
 

@@ -37,6 +37,8 @@ class Lowering:
         self.sink = sink
         self.elements: dict[int, Element] = {}
         self.verdicts: dict[int, Verdict] = {}
+        self.lost: set[int] = set()
+        """Identities of approximated nodes that are nowhere in the graph, nor is what they own."""
         self.accepted: set[int] = set()
         """Identities of item definitions that are sent or accepted: signals."""
         self.typing: set[int] = set()
@@ -351,7 +353,13 @@ class Lowering:
     def approximated(self, node: Node, said: str, written: str) -> None:
         """Part of the node's meaning is lost: ``said`` is kept as ``written``."""
         self.verdicts[id(node)] = Verdict.APPROXIMATED
+        if written == "nothing":
+            self.lost.add(id(node))
         self.told.setdefault((said, written), []).append(node)
+
+    def ordinal(self, document: Document, node: Node) -> int:
+        """The place of a node in a document of the unit, as elements have it."""
+        return self._places.ordinal(document, node)
 
     def subject(self, node: Node) -> Subject:
         """The node as the subject of a diagnostic."""

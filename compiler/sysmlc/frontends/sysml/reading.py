@@ -119,15 +119,16 @@ def _missing(
 
 def _library(path: str, cache: "Cache | None", sink: Sink) -> "Library":
     """The standard library, or our small one with what goes wrong told."""
-    from sysmlc.language.library import core, find
+    from sysmlc.language.library import asked_for, core, find
 
+    asked = asked_for(path)
     try:
         found = find(path or None, cache=cache)
-        if path:
+        if asked:
             from sysmlc.frontends.sysml.projects import examine_library
 
-            examine_library(Path(path), sink)
+            examine_library(Path(asked), sink)
         return found
     except SourceError as problem:
-        sink.report(NO_LIBRARY, Subject(path), path=path, problem=problem.message)
+        sink.report(NO_LIBRARY, Subject(asked), path=asked, problem=problem.message)
         return core(cache)

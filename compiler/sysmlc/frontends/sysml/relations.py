@@ -156,17 +156,22 @@ def _allocate(low: "Lowering", node: Node, made: Element) -> None:
 
 def import_(low: "Lowering", node: Node, owner: Element | None) -> None:
     """An import of a package or an element; those of libraries need no element."""
-    found = nodes.reference(node, "importedNamespace", "importedMembership")
+    filtered = [one for package in nodes.members(node, "Package") for one in package.members]
+    said = next((one for one in filtered if one.kind.endswith("Import")), node)
+    found = nodes.reference(said, "importedNamespace", "importedMembership")
     target = None if found is None else found.target
     if target is None or low.document(target) is None or owner is None:
         low.external(node)
         return
-    subkind = "package" if node.kind == "NamespaceImport" else "element"
+    subkind = "package" if said.kind == "NamespaceImport" else "element"
     made = low.add(node, Kind.IMPORT, "", owner, subkind=subkind)
     if node.visibility != "public":
         low.set(made, visibility=node.visibility or "private")
     low.lower_all((one for one in node.members if nodes.is_text(one)), made)
     low.later(lambda: _imported(low, made, target))
+    if said is not node:
+        low.approximated(node, "an import with a filter", "one without")
+        low.skipped.update(id(one) for one in node.walk() if one is not node)
 
 
 def _imported(low: "Lowering", made: Element, target: Node) -> None:

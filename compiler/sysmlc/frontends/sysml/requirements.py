@@ -41,6 +41,8 @@ def _member(low: "Lowering", node: Node, made: Element) -> None:
         for type_ in types_of(low, node):
             low.later(lambda type_=type_: low.lead(Edge.SUBJECT, made, type_))  # type: ignore[misc]
         low.elements[id(node)] = made
+        if nodes.value_of(node) is not None:
+            low.approximated(node, "the value of a subject", "its type")
     elif node.membership == "RequirementConstraintMembership":
         constraint(low, node, made)
         edge = Edge.ASSUMES if node.role == "assumption" else Edge.REQUIRES
@@ -100,6 +102,8 @@ def _package(low: "Lowering", owner: Element | None) -> Element | None:
 def objective(low: "Lowering", node: Node, owner: Element | None) -> None:
     """What a case is for: requirements that it verifies, and texts."""
     low.skipped.add(id(node))
+    if nodes.reference(node, "FeatureTyping", "ReferenceSubsetting", "Subsetting"):
+        low.approximated(node, "the type of an objective", "nothing")
     for one in nodes.body_of(node):
         if one.membership == "RequirementVerificationMembership":
             verify(low, one, owner)

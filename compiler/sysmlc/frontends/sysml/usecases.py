@@ -35,6 +35,8 @@ def include(low: "Lowering", node: Node, owner: Element | None) -> None:
 def _subject(low: "Lowering", node: Node, made: Element) -> None:
     for type_ in types_of(low, node):
         low.later(lambda type_=type_: low.lead(Edge.SUBJECT, made, type_))  # type: ignore[misc]
+    if nodes.value_of(node) is not None:
+        low.approximated(node, "the value of a subject", "its type")
 
 
 def _actor(low: "Lowering", node: Node, made: Element) -> None:

@@ -139,8 +139,10 @@ def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
         "source": graph.target(element, Edge.FLOW_SOURCE),
         "target": graph.target(element, Edge.FLOW_TARGET),
     }
+    known = element.attrs.get("unresolved")
+    told = known if isinstance(known, tuple) else ()
     for end, vertex in ends.items():
-        if vertex is None:
+        if vertex is None and f"flow-{end}" not in told:
             name = element.name or "<Transition>"
             sink.report(DANGLING, graph.subject(element), transition=name, end=end)
     return None in ends.values()

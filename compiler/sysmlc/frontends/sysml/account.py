@@ -1,0 +1,81 @@
+"""Every node of a document is counted once, and what is lost is listed with the reason."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Coverage, Rule, Verdict
+from sysmlc.diagnostics.coverage import Loss
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
+from sysmlc.language.tree import Document, Node
+
+_Found = tuple[Node, Verdict, bool]
+"""A node, what became of it, and whether that is said of its owner and not of itself."""
+_REASONS: dict[Verdict, tuple[Rule | None, str]] = {
+    Verdict.UNSUPPORTED: (UNSUPPORTED, "not read"),
+    Verdict.APPROXIMATED: (APPROXIMATED, "read without part of its meaning"),
+    Verdict.EXTERNAL: (None, "stands for what is in a library"),
+    Verdict.IGNORED_NOTATION: (None, "means nothing beyond what it shows or names"),
+}
+
+
+def account(low: Lowering, document: Document, coverage: Coverage) -> None:
+    """Count each node; what has no verdict of its own shares that of its owner."""
+    counts = coverage.file(document.path)
+    found = list(_verdicts(low, document.root))
+    for node, verdict, _ in found:
+        counts.count(node.kind, verdict)
+    if coverage.is_detailed:
+        counts.losses.extend(_losses(low, document, found))
+
+
+def _verdicts(low: Lowering, root: Node) -> Iterator[_Found]:
+    """The nodes in the order of the text; inside what is lost all is lost."""
+    open_ones: list[_Found] = [(root, Verdict.MAPPED, False)]
+    lost = set(low.lost)
+    while open_ones:
+        node, verdict, is_shared = open_ones.pop()
+        yield node, verdict, is_shared
+        is_part = verdict is Verdict.APPROXIMATED and id(node) not in lost
+        shared = Verdict.MAPPED if is_part else verdict
+        for one in reversed(node.members):
+            own = low.verdicts.get(id(one))
+            if own is None and id(node) in lost:
+                lost.add(id(one))
+            open_ones.append((one, own or shared, own is None))
+
+
+def _losses(low: Lowering, document: Document, found: list[_Found]) -> Iterator[Loss]:
+    """What is not mapped; what it owns counts with it while it shares the verdict."""
+    reasons = {
+        id(node): (APPROXIMATED, f"{said} is read as {written}")
+        for (said, written), told in low.told.items()
+        for node in told
+        if said != "unsupported"
+    }
+    begun: list[tuple[Node, Verdict, int]] = []
+    for node, verdict, is_shared in found:
+        if is_shared and begun and verdict is not Verdict.MAPPED:
+            first, known, number = begun[-1]
+            begun[-1] = (first, known, number + 1)
+        elif verdict is not Verdict.MAPPED:
+            begun.append((node, verdict, 1))
+    for node, verdict, number in begun:
+        rule, reason = reasons.get(id(node)) or _REASONS[verdict]
+        yield Loss(
+            node.kind,
+            verdict,
+            low.ordinal(document, node),
+            number,
+            _around(low, node),
+            "" if id(node) in low.elements else node.name or "",
+            rule,
+            reason,
+        )
+
+
+def _around(low: Lowering, node: Node) -> str:
+    """Id of the nearest element that a node stands in or has become."""
+    at: Node | None = node
+    while at is not None and id(at) not in low.elements:
+        at = at.owner
+    return "" if at is None else low.elements[id(at)].id

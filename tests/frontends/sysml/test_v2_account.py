@@ -1,0 +1,102 @@
+"""What is lost of a text is told and listed, and what follows from an unknown name is not told."""
+
+import pytest
+from reading_v2 import FRONT, PASSES, read
+
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.ir import Graph
+from sysmlc.sources import Source
+
+ENGINE = """
+    part def Engine { attribute mass : ScalarValues::Integer; }
+    part engine : Engine;
+    requirement def Mass { subject e : Engine; }
+"""
+
+
+def told(text):
+    """What is said to be lost, without the number."""
+    sink = read(f"package P {{ {text} }}").sink
+    return [one.message.partition(" (")[0] for one in sink if one.rule.code in ("SM480", "SM481")]
+
+
+def listed(text):
+    """What the report lists: type, verdict, elements, reason."""
+    coverage = Coverage(is_detailed=True)
+    FRONT.read([Source("m.sysml", text.encode())], Graph(), Sink(), coverage)
+    (file,) = coverage.files()
+    lost = [(one.type, str(one.verdict), one.elements, one.reason) for one in file.losses]
+    unmapped = file.elements - file.totals()["mapped"]
+    assert sum(one.elements for one in file.losses) == unmapped
+    return lost
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "requirement r : Mass { subject = engine; }",
+            "the value of a subject is read as its type",
+        ),
+        ("use case u { subject e : Engine = engine; }", "the value of a subject is read as its"),
+        (
+            "analysis a { subject e : Engine; objective : Mass; }",
+            "the type of an objective is read as nothing",
+        ),
+        ("flow def F { end a; end b; }", "flow definition is not read"),
+        ("part def Q { constraint { 1 < 2 } }", "a constraint that nothing asserts is read as"),
+        ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
+    ],
+)
+def test_what_is_lost_is_told(text, said):
+    (one,) = told(ENGINE + text)
+    assert one.startswith(said)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "requirement r : Mass { subject e; }",
+        "analysis a { subject e : Engine; objective { doc /* why */ } }",
+        "part def Q { assert constraint { 1 < 2 } }",
+        "requirement def R { subject e : Engine; require constraint { e.mass < 3 } }",
+        "package A; private import A::*;",
+    ],
+)
+def test_what_is_kept_is_not(text):
+    assert told(ENGINE + text) == []
+
+
+def test_a_loss_is_listed_with_what_is_in_it():
+    text = f"package P {{ {ENGINE} analysis a {{ subject e : Engine;"
+    text += " objective { assume constraint { e.mass > 2 } verify engine2; } }"
+    text += " requirement engine2 : Mass; private import ScalarValues::*; }"
+    assert listed(text) == [
+        ("ConstraintUsage", "approximated", 5, "a part of an objective is read as nothing"),
+        ("NamespaceImport", "external", 1, "stands for what is in a library"),
+    ]
+
+
+def test_an_import_with_a_filter_is_in_the_graph():
+    reading = read("package P { package A; private import A::*[@SysML::PartDefinition]; }")
+    (found,) = [one for one in reading.graph if str(one.kind) == "Import"]
+    assert reading.to(reading.graph.qualified_name(found), "references") == ["P::A"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "state def S { entry; then x; state x; transition first gone then x; }",
+        "state def S { entry; then x; state x; transition first x accept Gone then x; }",
+        "state def S { entry; then x; state x; transition first x then gone; }",
+        "action def A { accept Gone; }",
+        "action def A { send new Gone() to self; }",
+        "action def A { first start; then gone; action b; first b then gone; }",
+        "part def B { port p; port q; connect p to gone; bind q = gone; }",
+    ],
+)
+def test_what_follows_from_an_unknown_name_is_not_told(text):
+    passes = (*PASSES, "behaviours", "activities", "contracts")
+    reading = read(f"package P {{ {text} }}", passes=passes)
+    errors = [one.rule.code for one in reading.sink if str(one.rule.severity) != "info"]
+    assert set(errors) == {"SM205"}
