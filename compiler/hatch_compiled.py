@@ -12,9 +12,9 @@ REQUIRED = ["mypy[mypyc]>=1.15", "setuptools>=77"]
 """What building needs beside hatchling."""
 
 _CAEX = (
-    *("account", "columns", "context", "document", "features", "holders", "identifiers", "links"),
-    *("members", "metadata", "pieces", "plain", "plans", "roles", "sides", "site", "sites"),
-    *("slots", "structures", "swift", "tags", "types"),
+    *("account", "attributes", "columns", "context", "document", "features", "holders"),
+    *("identifiers", "interfaces", "links", "members", "metadata", "pieces", "plain", "plans"),
+    *("roles", "sides", "site", "sites", "slots", "structures", "swift", "tags", "types"),
 )
 _IR = ("graph", "neighbours", "reference")
 MODULES = (

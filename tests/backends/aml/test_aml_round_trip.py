@@ -21,6 +21,8 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
   <InternalElement Name="line" ID="line" RefBaseSystemUnitPath="Lib/Line">
     <Attribute Name="size"><Attribute Name="w"><Value>3</Value></Attribute></Attribute>
     <ExternalInterface Name="in" ID="line-in" RefBaseClassPath="Ports/Port"/>
+    <ExternalInterface Name="side" ID="line-side">
+      <Attribute Name="width" Unit="mm"><Value>5</Value></Attribute></ExternalInterface>
     <InternalElement Name="belt" ID="belt" RefBaseSystemUnitPath="Lib/Belt">
       <Attribute Name="speed"><Description>measured</Description><Value>2.5</Value></Attribute>
       <ExternalInterface Name="out" ID="belt-out" RefBaseClassPath="Ports/Port"/>
@@ -32,6 +34,9 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
         <Attribute Name="Cardinality"><Attribute Name="MinOccur"><Value>0</Value></Attribute>
           <Attribute Name="MaxOccur"><Value>2</Value></Attribute></Attribute>
         <Attribute Name="colour"><Value>red</Value></Attribute>
+        <Attribute Name="pressure" AttributeDataType="xs:float" Unit="bar">
+          <Description>at rest</Description><DefaultValue>5</DefaultValue><Value>6</Value>
+          <RefSemantic CorrespondingAttributePath="IRDI:p"/></Attribute>
         <ExternalInterface Name="inner" ID="own-p-inner" RefBaseClassPath="Ports/Port"/>
       </ExternalInterface>
       <RoleRequirements RefBaseRoleClassPath="Roles/Mover">
@@ -79,6 +84,7 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
     <Attribute Name="size"><Attribute Name="w" AttributeDataType="xs:double"><Value>1</Value>
     </Attribute></Attribute>
     <ExternalInterface Name="in" ID="l-in" RefBaseClassPath="Ports/Port"/>
+    <ExternalInterface Name="side" ID="l-side" RefBaseClassPath="Ports/Port"/>
     <InternalElement Name="belt" ID="l-belt" RefBaseSystemUnitPath="Lib/Belt">
       <ExternalInterface Name="out" ID="l-belt-out" RefBaseClassPath="Ports/Port"/>
     </InternalElement>

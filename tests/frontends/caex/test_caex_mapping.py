@@ -441,6 +441,98 @@ def test_what_an_instance_says_of_an_interface_is_a_slot():
     assert reading.to("Plant::i::p", "instance-of") == ["Lib::C::p"]
 
 
+CONSTRAINED = (
+    '<Constraint Name="c"><OrdinalScaledType><RequiredMaxValue>9</RequiredMaxValue>'
+    "</OrdinalScaledType></Constraint>"
+)
+REFERRING = '<RefSemantic CorrespondingAttributePath="x"/>'
+SPEED = '<Attribute Name="speed" AttributeDataType="xs:double" Unit="m/s"/>'
+
+
+def port_of_class(attribute):
+    return (
+        interfaces(f'<InterfaceClass Name="P">{SPEED}</InterfaceClass>')
+        + '<SystemUnitClassLib Name="Lib"><SystemUnitClass Name="C">'
+        f'<ExternalInterface Name="p" ID="1" RefBaseClassPath="Interfaces/P">{attribute}'
+        "</ExternalInterface></SystemUnitClass></SystemUnitClassLib>"
+    )
+
+
+@pytest.mark.parametrize(
+    ("attribute", "kinds"),
+    [
+        ('<Attribute Name="level"/>', ["Property"]),
+        ('<Attribute Name="level" Unit="m"><Value>1</Value></Attribute>', ["Property"]),
+        (
+            '<Attribute Name="level" AttributeDataType="xs:anyURI"><Value/></Attribute>',
+            ["Property"],
+        ),
+        (f'<Attribute Name="level"><Value>1</Value>{REFERRING}</Attribute>', ["Property"]),
+        (
+            f'<Attribute Name="level"><Value>1</Value>{CONSTRAINED}</Attribute>',
+            ["Property", "Constraint"],
+        ),
+        (
+            '<Attribute Name="level"><Description>why</Description><Value>1</Value></Attribute>',
+            ["Property"],
+        ),
+        ('<Attribute Name="level"><DefaultValue>1</DefaultValue></Attribute>', ["Property"]),
+        (
+            '<Attribute Name="level"><Attribute Name="low" Unit="m"/></Attribute>',
+            ["Property", "DataType"],
+        ),
+        ('<Attribute Name="speed" Unit="km/h"><Value>1</Value></Attribute>', ["Property"]),
+        (f'<Attribute Name="speed"><Value>1</Value>{CONSTRAINED}</Attribute>', ["Property"]),
+        ('<Attribute Name="speed"><Description>why</Description></Attribute>', ["Property"]),
+        (f'<Attribute Name="Direction">{CONSTRAINED}<Value>In</Value></Attribute>', ["Property"]),
+    ],
+)
+def test_an_interface_whose_attributes_say_more_than_values_has_a_class_of_its_own(
+    attribute, kinds
+):
+    reading = Read(port_of_class(attribute))
+    (own,) = reading.graph.targets(reading.one("Lib::C::p", "Port"), "typed-by")
+    assert (own.role, own.subkind) == ("interface block", "external-interface")
+    assert [g.name for g in reading.graph.targets(own, "specializes")] == ["P"]
+    assert {e.kind.value for e in reading.graph.owned(own)} >= set(kinds)
+    assert "unsupported" not in reading.totals
+
+
+@pytest.mark.parametrize(
+    "attribute",
+    [
+        '<Attribute Name="level" AttributeDataType="xs:double"><Value>1</Value></Attribute>',
+        '<Attribute Name="level"><Attribute Name="low"><Value>1</Value></Attribute></Attribute>',
+        SPEED,
+        '<Attribute Name="speed"><Value>2</Value></Attribute>',
+        '<Attribute Name="Direction" RefAttributeType="AutomationMLBaseAttributeTypeLib/Direction"'
+        ' AttributeDataType="xs:string"><Value>In</Value></Attribute>',
+    ],
+)
+def test_an_interface_with_values_alone_is_of_the_class_that_it_names(attribute):
+    reading = Read(port_of_class(attribute))
+    assert reading.to("Lib::C::p", "typed-by", "Port") == ["Interfaces::P"]
+    assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    "inside", ['<Attribute Name="speed" Unit="km/h"/>', '<ExternalInterface Name="r"/>']
+)
+def test_an_interface_that_says_more_in_an_instance_is_redefined_there(inside):
+    reading = Read(
+        port_of_class("")
+        + plant(
+            '<InternalElement Name="c" ID="c" RefBaseSystemUnitPath="Lib/C">'
+            f'<ExternalInterface Name="p" ID="2">{inside}</ExternalInterface></InternalElement>'
+        )
+    )
+    assert reading.to("Plant::c::p", "redefines", "Port") == ["Lib::C::p"]
+    (own,) = reading.graph.targets(reading.one("Plant::c::p", "Port"), "typed-by")
+    assert [g.name for g in reading.graph.targets(own, "specializes")] == ["P"]
+    assert [e.name for e in reading.graph.owned(own)] == ["speed" if "speed" in inside else "r"]
+    assert "unsupported" not in reading.totals
+
+
 def test_nested_interfaces_are_ports_of_a_class_of_their_own():
     reading = Read(
         classes(
@@ -521,6 +613,49 @@ def test_a_mapping_of_what_is_not_there_is_an_error():
     ]
 
 
+def test_a_mapping_leads_to_inner_attributes():
+    deep = (
+        '<Attribute Name="{}"><Attribute Name="{}"><Attribute Name="{}"/></Attribute></Attribute>'
+    )
+    reading = Read(
+        roles(f'<RoleClass Name="R">{deep.format("a", "x.y", "z")}</RoleClass>')
+        + plant(
+            f'<InternalElement Name="m" ID="m">{deep.format("b", "c", "d")}'
+            '<RoleRequirements RefBaseRoleClassPath="Roles/R"><MappingObject>'
+            '<AttributeNameMapping SystemUnitAttributeName="b.c.d" RoleAttributeName="a.x.y.z"/>'
+            "</MappingObject></RoleRequirements></InternalElement>"
+        )
+    )
+    (inner,) = (e for e in reading.graph if e.name == "d" and e.kind.value == "Property")
+    assert [t.name for t in reading.graph.targets(inner, "redefines")] == ["z"]
+    assert reading.findings == []
+
+
+def requiring(inside):
+    return Read(
+        roles('<RoleClass Name="R"><Attribute Name="a"/></RoleClass>')
+        + plant(
+            '<InternalElement Name="m" ID="m"><Attribute Name="a" Unit="m"><Value>1</Value>'
+            '</Attribute><ExternalInterface Name="i" ID="i"/>'
+            f'<RoleRequirements RefBaseRoleClassPath="Roles/R">{inside}</RoleRequirements>'
+            "</InternalElement>"
+        )
+    )
+
+
+def test_an_interface_that_the_element_has_is_no_second_one_where_its_role_requires_it():
+    reading = requiring('<ExternalInterface Name="i" ID="i2"/>')
+    assert [e.id for e in reading.graph if e.kind.value == "Port"] == ["i"]
+    assert reading.findings == []
+
+
+def test_a_required_value_is_kept_with_its_unit_and_what_else_is_required_is_told():
+    reading = requiring(f'<Attribute Name="a" Unit="km"><Value>5</Value>{CONSTRAINED}</Attribute>')
+    (kept,) = (e for e in reading.graph if e.name == "RoleRequirements")
+    assert (kept.attrs["required"], kept.attrs["unit"]) == ("5", "km")
+    assert "SM139: 1 element 'Constraint' not read" in reading.findings
+
+
 # -- facets and groups (rule 16) ---------------------------------------------------------------
 
 BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
@@ -547,6 +682,66 @@ def test_a_facet_shows_features_of_its_element_and_a_group_the_masters_of_its_mi
     assert reading.to("Plant::cell::g", "references", "Group") == ["Plant::cell::a"]
     assert reading.one("Plant::cell::g").attrs["associated_facet"] == "plc"
     assert reading.findings == []
+
+
+def showing(role, inside, beside=""):
+    return Read(
+        plant(
+            '<InternalElement Name="cell" ID="0"><Attribute Name="x"><Value>1</Value></Attribute>'
+            f'<ExternalInterface Name="i" ID="i"/>{beside}'
+            f'<InternalElement Name="s" ID="s">{inside}{playing(f"{BASE_ROLE}/{role}")}'
+            "</InternalElement></InternalElement>"
+        )
+    )
+
+
+def test_a_group_may_hold_groups():
+    inner = (
+        f'<InternalElement Name="g" ID="g">{value("AssociatedFacet", "f")}'
+        '<InternalElement Name="m" ID="m" RefBaseSystemUnitPath="a"/>'
+        f"{playing(BASE_ROLE + '/Group')}</InternalElement>"
+    )
+    reading = showing("Group", inner, '<InternalElement Name="a" ID="a"/>')
+    assert reading.owned("Plant::cell::s") == ["Group g"]
+    assert reading.to("Plant::cell::s::g", "references") == ["Plant::cell::a"]
+    assert reading.one("Plant::cell::s::g").attrs["associated_facet"] == "f"
+    assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    "feature",
+    [
+        '<Attribute Name="x"/>',
+        '<Attribute Name="x"><Value>1</Value></Attribute>',
+        '<Attribute Name="other" RefAttributeType="0/x"/>',
+        '<ExternalInterface Name="i" ID="j"/>',
+        '<ExternalInterface Name="other" ID="j" RefBaseClassPath="i"/>',
+    ],
+)
+def test_a_facet_shows_mirrors_and_copies(feature):
+    reading = showing("Facet", feature)
+    shown = "i" if feature.startswith("<E") else "x"
+    assert reading.to("Plant::cell::s", "references", "Facet") == [f"Plant::cell::{shown}"]
+    assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    ("role", "inside", "tag"),
+    [
+        ("Group", '<Attribute Name="size" Unit="m"/>', "Attribute"),
+        ("Group", '<InternalElement Name="own" ID="own"/>', "InternalElement"),
+        ("Group", '<ExternalInterface Name="p" ID="p"/>', "ExternalInterface"),
+        ("Group", playing(f"{BASE_ROLE}/Resource"), "RoleRequirements"),
+        ("Facet", '<Attribute Name="new"/>', "Attribute"),
+        ("Facet", '<Attribute Name="x"><Value>2</Value></Attribute>', "Attribute"),
+        ("Facet", '<ExternalInterface Name="new" ID="p"/>', "ExternalInterface"),
+        ("Facet", '<InternalElement Name="own" ID="own"/>', "InternalElement"),
+    ],
+)
+def test_what_a_facet_or_group_should_not_hold_is_told(role, inside, tag):
+    reading = showing(role, inside)
+    assert reading.findings == [f"SM139: 1 element '{tag}' not read"]
+    assert reading.totals["unsupported"] == 1 + inside.count("<Value>")
 
 
 def test_a_role_that_is_only_called_facet_makes_none():

@@ -91,6 +91,12 @@ REPEATED = [
     "</ExternalInterface>",
     '<ExternalInterface Name="q"><ExternalInterface Name="r"/></ExternalInterface>',
     '<ExternalInterface Name="q" ID="cp"/>',
+    '<ExternalInterface Name="p"><Attribute Name="speed" Unit="m/s"><Value>2</Value></Attribute>'
+    "</ExternalInterface>",
+    '<ExternalInterface Name="q"><Attribute Name="v"><Value>2</Value></Attribute>'
+    '</ExternalInterface><ExternalInterface Name="r"><Attribute Name="v"/></ExternalInterface>',
+    '<ExternalInterface Name="q"><Attribute Name="speed"><Description>fast</Description>'
+    '<Value>2</Value></Attribute><Attribute Name="w"/></ExternalInterface>',
     '<ExternalInterface Name="q" RefBaseClassPath="cp"/>',
 ]
 

@@ -242,7 +242,7 @@ def _slot(book: Book, unit: Unit, slot: Element) -> None:
         for one in path:
             interfaces.repeated(book, one, unit.file, unit.node)
         node = interfaces.repeated(book, feature, unit.file, unit.node)
-        interfaces.say(slot, node)
+        interfaces.say(book, slot, feature, node)
     else:
         node = _attribute(book, unit, [*path, feature])
         if slot.attrs.get("value") is not None or not _texts(node):

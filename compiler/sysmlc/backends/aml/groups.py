@@ -29,6 +29,9 @@ def write(book: Book, element: Element, file: File) -> Node:
     for target in book.graph.targets(element, Edge.REFERENCES):
         book.say(Edge.REFERENCES, element, target)
         _mirror(book, element, node, target)
+    for one in book.owned(element):
+        if one.kind is Kind.GROUP:
+            node.add(write(book, one, file))
     node.add(Node("RoleRequirements", {"RefBaseRoleClassPath": _role(book, element, file)}))
     return node
 

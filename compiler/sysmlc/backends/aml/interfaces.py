@@ -1,6 +1,6 @@
 """External interfaces: ports, with direction, cardinality, category and values."""
 
-from sysmlc.backends.aml import header
+from sysmlc.backends.aml import attributes, header
 from sysmlc.backends.aml.attributes import unresolved
 from sysmlc.backends.aml.book import Book, File
 from sysmlc.backends.aml.families import Family, is_inline
@@ -26,7 +26,19 @@ def write(book: Book, port: Element, file: File, above: Node) -> Node:
             if one.kind is Kind.PORT:
                 inner = _interface(book, one, file, node)
                 waiting.append((inner, _own_type(book, one), around | {type_.id}))
+            elif attributes.is_attribute(book, one):
+                _full(node, attributes.write(book, one, file))
     return top
+
+
+def _full(interface: Node, attribute: Node) -> None:
+    """Put an attribute with all that it says in the place of that with its value alone."""
+    known = interface.child("Attribute", attribute.attributes["Name"])
+    interface.add(attribute)
+    if known is not None:
+        said = {child.tag for child in attribute.children}
+        attribute.children += [child for child in known.children if child.tag not in said]
+        interface.children.remove(known)
 
 
 def _interface(book: Book, port: Element, file: File, above: Node) -> Node:
@@ -37,7 +49,7 @@ def _interface(book: Book, port: Element, file: File, above: Node) -> Node:
     for target in book.graph.targets(port, Edge.REDEFINES):
         above.interfaces.setdefault(target.id, node)
     _refer(book, port, node, file)
-    say(port, node)
+    say(book, port, port, node)
     header.write(book, port, node)
     return node
 
@@ -85,8 +97,8 @@ def _own_type(book: Book, port: Element) -> Element | None:
     return type_ if type_ is not None and is_inline(type_) else None
 
 
-def say(element: Element, node: Node) -> None:
-    """Add as attributes what a port, or a slot for one, says."""
+def say(book: Book, element: Element, port: Element, node: Node) -> None:
+    """Add as attributes what a port, or a slot for it, says."""
     attrs = element.attrs
     direction = _DIRECTIONS.get(str(attrs.get("direction")))
     if direction:
@@ -98,6 +110,35 @@ def say(element: Element, node: Node) -> None:
     for key in sorted(attrs):
         if key.startswith(_VALUE):
             _value(node, key.removeprefix(_VALUE).split("."), attrs[key])
+    _type_as_in_class(book, book.graph.target(port, Edge.TYPED_BY), node)
+
+
+def _type_as_in_class(book: Book, type_: Element | None, above: Node) -> None:
+    """Let attributes have the data types that the class of their interface gives them."""
+    waiting = [(type_, above)]
+    while waiting:
+        one, node = waiting.pop()
+        features = _values_of(book, one)
+        for child in node.children:
+            feature = features.get(child.attributes.get("Name", ""))
+            if child.tag != "Attribute" or feature is None:
+                continue
+            if child.attributes.pop("AttributeDataType", None) and "data_type" in feature.attrs:
+                child.attributes["AttributeDataType"] = str(feature.attrs["data_type"])
+            waiting.append((book.graph.target(feature, Edge.TYPED_BY), child))
+
+
+def _values_of(book: Book, type_: Element | None) -> dict[str, Element]:
+    """The value properties of a type and of those that it specialises, the nearest first."""
+    found: dict[str, Element] = {}
+    seen: set[str] = set()
+    while type_ is not None and type_.id not in seen:
+        seen.add(type_.id)
+        for one in book.graph.owned(type_):
+            if one.kind is Kind.PROPERTY:
+                found.setdefault(one.name, one)
+        type_ = book.graph.target(type_, Edge.SPECIALIZES)
+    return found
 
 
 def _cardinality(node: Node, multiplicity: str) -> None:

@@ -60,6 +60,8 @@ def _required(book: Book, player: Element, node: Node) -> None:
             made = _role(node, "RoleRequirements", path)
             name = str(one.attrs.get("attribute", ""))
             attribute = made.add(Node("Attribute", {"Name": name}))
+            if one.attrs.get("unit"):
+                attribute.attributes["Unit"] = str(one.attrs["unit"])
             attribute.say("Value", text_of(one.attrs.get("required", "")))
             book.said.add(one.id)
             for target in book.graph.targets(one, Edge.REFERENCES):

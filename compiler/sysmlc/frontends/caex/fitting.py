@@ -75,7 +75,9 @@ def unfit(
 ) -> AttrValue:
     """What is meant by a text that its data type does not have; nothing is said by an empty one."""
     if text.strip():
-        context.unfit.setdefault((document, data_type, text), []).append(row)
+        rows = context.unfit.setdefault((document, data_type, text), [])
+        if row not in rows[-1:]:
+            rows.append(row)
     return meant(text, stated)
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Verdict
+from sysmlc.frontends.caex import mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import own
@@ -10,7 +11,7 @@ from sysmlc.frontends.caex.libraries import mark
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Kind
 
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
 
@@ -48,39 +49,66 @@ def roles_of(context: Context, site: Site) -> Iterator[Type]:
 
 
 def lower(context: Context, site: Site, kind: Kind) -> None:
-    """Add the Facet or Group; what it shows is known when everything is placed."""
-    above = site.parent
-    owner = own(context, above).id if above else site.instance
-    element = context.add(kind, site.node, site.document, owner)
+    """Add the Facet or Group; what it shows is known when everything is placed.
+
+    What it has beside that is left without a verdict, and told as not read.
+    """
+    element = context.add(kind, site.node, site.document, _owner(context, site))
     site.part = element.id
-    mark(site.node)
-    site.node.element = element.id
+    for role in map(site.document.node, site.roles):
+        path = role.attributes.get(ROLE_REFERENCES[role.tag], "")
+        if context.shown.get((site.document, path)) is kind:
+            role.verdict = Verdict.MAPPED
     for node in site.node.of("Attribute"):
         if node.name == "AssociatedFacet":
             context.graph.set(element, associated_facet=node.text("Value") or None)
+            node.verdict = Verdict.MAPPED
+
+
+def _owner(context: Context, site: Site) -> str:
+    above = site.parent
+    if above is None:
+        return site.instance
+    is_group = above.type is None and above.part and context.graph[above.part].kind is Kind.GROUP
+    return above.part if is_group else own(context, above).id
 
 
 def show(context: Context, site: Site) -> None:
     """Draw the references of a Facet to features, of a Group to the masters of its mirrors."""
     element = context.graph[site.part]
-    for target in dict.fromkeys(_shown(context, site, element)):
+    shown = _features if element.kind is Kind.FACET else _masters
+    for target in dict.fromkeys(shown(context, site)):
         if target in context.graph:
             context.graph.connect(Edge.REFERENCES, element, target)
 
 
-def _shown(context: Context, site: Site, element: Element) -> Iterator[str]:
-    above = site.parent.type if site.parent else None
-    for node in site.node.children:
-        if node.tag in ("Attribute", "ExternalInterface") and above is not None:
-            known = above.find(node.tag, node.name)
-            if known is not None and element.kind is Kind.FACET:
-                yield known.id
-        elif node.tag == "InternalElement":
-            yield from _master(context, node)
+def _features(context: Context, site: Site) -> Iterator[str]:
+    """Features of the element around a facet: mirrored, or of the same name."""
+    for node in site.node.of("Attribute", "ExternalInterface"):
+        if mirrors.is_mirror(context, node):
+            master = mirrors.master(context, site.document, node)
+            target = master.element if master is not None else ""
+        else:
+            target = _of_the_name(site, node)
+        if target:
+            mark(node)
+            yield target
 
 
-def _master(context: Context, node: Node) -> Iterator[str]:
-    found = context.find(node.attributes.get("RefBaseSystemUnitPath", "").strip())
-    if found is not None and found[1].element:
-        node.verdict = Verdict.MAPPED
-        yield found[1].element
+def _of_the_name(site: Site, node: Node) -> str:
+    """The feature of the name, unless the facet gives it another value."""
+    above = site.parent
+    known = above.type.find(node.tag, node.name) if above is not None and above.type else None
+    if above is None or known is None:
+        return ""
+    beside = (one for one in above.node.of(node.tag) if one.name == node.name)
+    said = {None, known.node.text("Value"), *(one.text("Value") for one in beside)}
+    return known.id if node.text("Value") in said else ""
+
+
+def _masters(context: Context, site: Site) -> Iterator[str]:
+    for node in site.node.of("InternalElement"):
+        found = context.find(node.attributes.get("RefBaseSystemUnitPath", "").strip())
+        if found is not None and found[1].element:
+            node.verdict = Verdict.MAPPED
+            yield found[1].element

@@ -9,6 +9,7 @@ from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.groups import roles_of
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
+from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.ir import Edge
 
 _MAPPINGS = {
@@ -65,13 +66,27 @@ def _own(context: Context, site: Site, tag: str, name: str) -> str:
     found = context.find(name)
     if found is not None and found[1].element:
         return found[1].element
-    known = site.type.find(tag, name) if site.type else None
+    known = _member(site.type, tag, name)
     return known.id if known else ""
+
+
+def _member(type: Type | None, tag: str, name: str) -> Member | None:
+    """A feature; ``.`` leads to those inside it, unless it is part of a name."""
+    found = type.find(tag, name) if type is not None else None
+    if found is not None or type is None:
+        return found
+    places = [place for place, sign in enumerate(name) if sign == "."]
+    for place in places:
+        outer = type.find(tag, name[:place])
+        inner = _member(outer.type, tag, name[place + 1 :]) if outer is not None else None
+        if inner is not None:
+            return inner
+    return None
 
 
 def _of_role(context: Context, site: Site, tag: str, name: str) -> str:
     found = context.find(name)
     if found is not None and found[1].element:
         return found[1].element
-    members = (role.find(tag, name) for role in roles_of(context, site))
+    members = (_member(role, tag, name) for role in roles_of(context, site))
     return next((member.id for member in members if member is not None), "")

@@ -1,12 +1,20 @@
 """Attributes and interfaces of internal elements: those of their class, and new ones."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, features, fitting, mirrors, ports, special
+from sysmlc.frontends.caex import (
+    attributes,
+    documents,
+    fitting,
+    interfaces,
+    mirrors,
+    ports,
+    special,
+)
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.libraries import mark
-from sysmlc.frontends.caex.sameness import says_more
+from sysmlc.frontends.caex.sameness import more_than_values, says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
@@ -44,19 +52,29 @@ def lower_one(context: Context, site: Site, child: Node) -> None:
 def _required(context: Context, site: Site, requirements: Node) -> None:
     """What an element needs to play its role, and has not already."""
     for node in requirements.of("Attribute", "ExternalInterface"):
-        if node.tag == "ExternalInterface":
+        known = site.type.find(node.tag, node.name) if site.type is not None else None
+        if known is not None and node.tag == "Attribute":
+            keep(context, site, node, requirements, known)
+        elif known is not None and known.document is site.document and _is_inside(site, known):
+            node.verdict, node.element = Verdict.MAPPED, known.id
+        elif node.tag == "ExternalInterface":
             _interface(context, site, node)
-        elif site.type is not None and site.type.find(node.tag, node.name) is not None:
-            keep(context, site, node, requirements)
         else:
-            features.attribute(context, own(context, site), node, site.document)
+            attributes.attribute(context, own(context, site), node, site.document)
 
 
-def keep(context: Context, site: Site, node: Node, requirements: Node) -> None:
+def _is_inside(site: Site, known: Member) -> bool:
+    """Whether a feature stands in the element itself."""
+    return site.row < known.row < site.document.ends[site.row]
+
+
+def keep(context: Context, site: Site, node: Node, requirements: Node, known: Member) -> None:
     """A value that the role requires of an attribute that the element has anyway."""
     value = node.text("Value")
     owner = site.own.id if site.own is not None else site.instance or site.part
-    mark(node)
+    node.verdict = Verdict.MAPPED
+    if not says_more(context.types, site.document, node, known):
+        mark(node)
     if value is None or not owner:
         return
     role = requirements.attributes.get("RefBaseRoleClassPath", "")
@@ -64,6 +82,9 @@ def keep(context: Context, site: Site, node: Node, requirements: Node) -> None:
     made = Element(id, Kind.METADATA, "RoleRequirements", owner, node.ordinal)
     made.source = site.document.name
     made.attrs.update({"role_class": role, "attribute": node.name, "required": value})
+    unit = node.attributes.get("Unit", "")
+    if unit and unit != known.node.attributes.get("Unit"):
+        made.attrs["unit"] = unit
     context.graph.add(made)
     context.graph.connect(Edge.REFERENCES, id, owner)
 
@@ -71,7 +92,7 @@ def keep(context: Context, site: Site, node: Node, requirements: Node) -> None:
 def _attribute(context: Context, site: Site, node: Node) -> None:
     known = site.declared.find("Attribute", node.name) if site.declared else None
     if known is None or says_more(context.types, site.document, node, known):
-        features.attribute(context, own(context, site), node, site.document)
+        attributes.attribute(context, own(context, site), node, site.document)
         return
     waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
     while waiting:
@@ -131,8 +152,12 @@ def _description(context: Context, site: Site, node: Node, known: Member, path: 
 
 def _interface(context: Context, site: Site, node: Node) -> None:
     known = site.declared.find(node.tag, node.name) if site.declared else None
-    if known is None or is_of_another_class(context, node, known):
-        features.interface(context, own(context, site), node, site.document)
+    if (
+        known is None
+        or is_of_another_class(context, node, known)
+        or _has_more(context, node, known)
+    ):
+        interfaces.interface(context, own(context, site), node, site.document)
         return
     waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
     while waiting:
@@ -147,6 +172,21 @@ def _interface(context: Context, site: Site, node: Node) -> None:
             inner = member.type.find(child.tag, child.name) if member.type else None
             if inner is not None:
                 waiting.append((child, inner, (*path, member.id)))
+
+
+def _has_more(context: Context, top: Node, known: Member) -> bool:
+    """Whether an interface has more interfaces than that of its class, or attributes say more."""
+    waiting = [(top, known)]
+    while waiting:
+        node, member = waiting.pop()
+        if any(True for _ in more_than_values(context.types, node.document, node, member.type)):
+            return True
+        for child in node.of("ExternalInterface"):
+            inner = member.type.find(child.tag, child.name) if member.type else None
+            if inner is None:
+                return True
+            waiting.append((child, inner))
+    return False
 
 
 def is_of_another_class(context: Context, node: Node, known: Member) -> bool:

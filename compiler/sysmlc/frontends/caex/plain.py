@@ -1,15 +1,15 @@
 """New features of a class that hold nothing inside: value properties and ports by their shape.
 
 What an attribute states in attributes of XML decides its type and how its value is read, for
-all attributes that state the same. Other features go the general way (``features``), which
-gives the same result for every row.
+all attributes that state the same. Other features go the general way (``attributes`` and
+``interfaces``), which gives the same result for every row.
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import documents, fitting, measures, mirrors, ports, special
+from sysmlc.frontends.caex import documents, fitting, measures, mirrors, ports, sameness, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.types import Member, Missing, Type
@@ -61,6 +61,7 @@ class Plain:
         self._values = document.texts["Value"]
         self._defaults = document.texts["DefaultValue"]
         self._ports: dict[str, _PortShape | None] = {}
+        self._more: dict[tuple[int, Type | None, bool], bool] = {}
         self._told: dict[tuple[int, str | None], dict[str, AttrValue]] = {}
         self._sources: list[Element] = []
         self._targets: list[Element] = []
@@ -154,7 +155,7 @@ class Plain:
         shape = self._ports[path] if path in self._ports else self._port(path)
         if shape is None:
             return False
-        if owner.inherits("ExternalInterface", name):
+        if owner.inherits("ExternalInterface", name) or self._says_more(row, shape.type):
             return False
         made = context.add_at(_PORT, document, row, owner.id)
         if shape.target is not None:
@@ -168,6 +169,24 @@ class Plain:
         if shape.meaning:
             self._mean(shape.meaning, owner, made, row)
         return True
+
+    def _says_more(self, row: int, type: Type | None) -> bool:
+        """Whether attributes of an interface say more than values, told once of a single one."""
+        document = self.document
+        inside = document.ends[row] - row - 1
+        if not inside:
+            return False
+        if inside > 1 or row + 1 in self._defaults or row + 1 in document.texts["Description"]:
+            return self._has_more(row, type)
+        key = document.alike[row + 1], type, row + 1 in self._values
+        known = self._more.get(key)
+        if known is None:
+            known = self._more[key] = self._has_more(row, type)
+        return known
+
+    def _has_more(self, row: int, type: Type | None) -> bool:
+        types, node = self._context.types, self.document.node(row)
+        return any(True for _ in sameness.more_than_values(types, self.document, node, type))
 
     def _said(self, row: int) -> dict[str, AttrValue]:
         """What the attributes of an interface say, told once of a single one and its value."""

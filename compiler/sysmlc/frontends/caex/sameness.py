@@ -9,6 +9,10 @@ from sysmlc.frontends.caex.vocabulary import Family
 _STATED = ("Unit", "AttributeDataType")
 """What an attribute states in attributes of XML; one that is left out states nothing."""
 _KEPT = ("Constraint", "RefSemantic")
+_TOLD = frozenset({"", "xs:string", "xs:boolean", "xs:integer", "xs:double"})
+"""Data types that a value has anyway."""
+_STANDARD = frozenset({"Direction", "Cardinality", "Category"})
+"""Attribute types of what a port says by itself (IEC 62714-1)."""
 _BOOKKEEPING = frozenset({"ID", "ChangeMode"})
 
 
@@ -25,6 +29,56 @@ def says_more(types: Types, document: Document, top: Node, known: Member) -> boo
                 return True
             waiting.append((child, inner))
     return False
+
+
+def more_than_values(
+    types: Types, document: Document, interface: Node, type: Type | None
+) -> Iterator[Node]:
+    """Attributes of an interface that say more than values for what its class has."""
+    for node in interface.of("Attribute"):
+        known = type.find("Attribute", node.name) if type is not None else None
+        if known is None:
+            if _is_more_than_a_value(node):
+                yield node
+        elif _describes(node, known) or _port_says_more(types, document, node, known):
+            yield node
+
+
+def _port_says_more(types: Types, document: Document, node: Node, known: Member) -> bool:
+    """As ``says_more``; what a port has of its own (direction, cardinality) has one type."""
+    if node.name in _STANDARD and not any(one.tag in _KEPT for one in node.walk()):
+        return False
+    return says_more(types, document, node, known)
+
+
+def _is_more_than_a_value(top: Node) -> bool:
+    """Whether an attribute that no class has says more than name and value."""
+    waiting = [top]
+    for node in waiting:
+        if node.text("Value") is None and not node.children:
+            return True
+        if node.attributes.get("Unit") or not _is_told(node):
+            return True
+        if node.text("DefaultValue") or node.text("Description"):
+            return True
+        inside = list(node.of("Attribute"))
+        if len(inside) < len(node.children):
+            return True
+        waiting += inside
+    return False
+
+
+def _is_told(node: Node) -> bool:
+    """Whether the value of an attribute tells its type: that of a standard name is known."""
+    path = node.attributes.get("RefAttributeType", "")
+    if path:
+        return path.rpartition("/")[2] in _STANDARD
+    return node.attributes.get("AttributeDataType", "") in _TOLD
+
+
+def _describes(node: Node, known: Member) -> bool:
+    text = (node.text("Description") or "").strip()
+    return bool(text) and text != (known.node.text("Description") or "").strip()
 
 
 def _differs(types: Types, document: Document, node: Node, known: Member) -> bool:

@@ -95,6 +95,9 @@ class Sites:
             return False
         groups.lower(self._context, site, kind)
         self._showing.append(site)
+        for row in site.inner if kind is Kind.GROUP else ():
+            if groups.kind_of(self._context, Site(site.document, row, site)) is Kind.GROUP:
+                self._shows(self._site(site.document, row, site))
         return True
 
     def _type(self, site: Site) -> None:

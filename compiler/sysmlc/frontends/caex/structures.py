@@ -1,6 +1,6 @@
 """New attributes that hold attributes and nothing else: a value property with a type of its own.
 
-The general way (``features``) gives the same result for each.
+The general way (``attributes``) gives the same result for each.
 """
 
 from sysmlc.frontends.caex.context import Context
