@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.composite import Composite
 from sysmlc.logic.contract import Conjunct
 from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis.algebra.apart import apart, is_joined
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, composition
 from sysmlc.synthesis.algebra.discharge import Open
 from sysmlc.synthesis.algebra.relations import Failure
@@ -126,6 +127,8 @@ class Together:
     parts: int
     has_whole: bool
     """Whether the block itself promises something."""
+    is_joined: bool
+    """Whether any of the parts has to do with another, or with the block."""
     is_kept: bool | None
     """Whether the parts fit together and keep what the block promises; None when undecided."""
     witnesses: tuple[Witness, ...] = ()
@@ -137,9 +140,11 @@ class Together:
     def _verdict(self) -> str:
         if self.is_kept is None:
             return "its parts are not put together"
-        if self.has_whole:
+        if self.has_whole and self.is_joined:
             verb = "keep" if self.is_kept else "break"
             return f"its {self.parts} parts together {verb} its contract"
+        if self.is_kept and not self.is_joined:
+            return f"nothing joins its {self.parts} parts"
         return f"its {self.parts} parts {'fit' if self.is_kept else 'do not fit'} together"
 
 
@@ -148,10 +153,19 @@ def check_together(
 ) -> Iterator[Together]:
     """Compose the parts of each block; what is open and what is broken is reported."""
     for one in composites:
-        found = _composed(one, place, sink, options)
-        kept = None if found is None else not (found.open or found.failures or found.conflict)
-        witnesses = () if found is None else tuple(_witnesses(one, found))
-        yield Together(one.component, len(one.parts), one.whole is not None, kept, witnesses)
+        found = [(group, _composed(group, place, sink, options)) for group in _questions(one)]
+        made = [(group, each) for group, each in found if each is not None]
+        is_broken = any(each.open or each.failures or each.conflict for _, each in made)
+        kept = None if len(made) < len(found) and not is_broken else not is_broken
+        witnesses = tuple(w for group, each in made for w in _witnesses(group, each))
+        has_whole, joined = one.whole is not None, is_joined(one)
+        yield Together(one.component, len(one.parts), has_whole, joined, kept, witnesses)
+
+
+def _questions(composite: Composite) -> list[Composite]:
+    """What has to be composed: a part alone fits, where the block promises nothing."""
+    groups = apart(composite)
+    return [one for one in groups if len(one.parts) > 1 or one.whole is not None]
 
 
 def _composed(

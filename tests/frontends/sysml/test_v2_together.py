@@ -77,3 +77,31 @@ def test_requirements_that_lean_on_one_another():
     told = told_of_requirements(rule.wrong)["SM599"]
     assert told.notes == ("'Shines' demands 'lit'", "'Shines' demands 'lit -> power'")
     assert "SM599" not in told_of_requirements(rule.right)
+
+
+APART = together.OPEN.right.replace("bind feeder.ready = picker.ready;", "")
+
+
+def test_parts_that_share_nothing_are_not_said_to_fit():
+    silent = APART.replace("subject cell : Cell", "subject cell : Other").replace(
+        "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
+    )
+    (result,), found = checked(silent)
+    assert result.text() == "Line::Cell: nothing joins its 2 parts"
+    assert found == []
+
+
+def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter():
+    """The picker is told by nobody that something is ready, which the block does not assume."""
+    (result,), found = checked(APART)
+    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert [one.rule.code for one in found] == ["SM595", "SM597"]
+
+
+def test_what_no_part_speaks_of_is_not_kept():
+    nobody = together.OPEN.right.replace("bind picker.taken = taken;", "")
+    (result,), found = checked(nobody)
+    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert [one.message for one in found] == [
+        "the parts of 'Line::Cell' together do not keep 'taken' ('Works' demands it)"
+    ]

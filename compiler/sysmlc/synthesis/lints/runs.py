@@ -32,7 +32,7 @@ def _of_game(contract: Contract, game: Game) -> Iterator[Remark]:
     if dead != manager.false:
         yield Remark(rules.DEADLOCK, said=_words(game, dead))
     for variable in contract.variables:
-        if variable.owner is Owner.SYSTEM:
+        if variable.owner is Owner.SYSTEM and not _is_determined(game, variable):
             yield from _frame(game, variable, reachable & alive)
 
 
@@ -43,6 +43,28 @@ def all_steps(game: Game) -> FairSystem:
         init = init & part.node
     parts = (*_nodes(game.assumptions), *_nodes(game.guarantees))
     return FairSystem(game.symbols, init, parts, _nodes(game.fairness))
+
+
+def _is_determined(game: Game, variable: Variable) -> bool:
+    """Whether single guarantees leave no two values: most say what one output becomes."""
+    manager = game.manager
+    bits = game.symbols.bits(variable.name, primed=True)
+    others = [bit for bit in game.next_outputs if bit not in bits]
+    left = manager.true
+    for node in _nodes(game.guarantees):
+        if not manager.support(node).isdisjoint(bits):
+            left = left & _any_value(game, variable, manager.exist(others, node))
+    return left == manager.false
+
+
+def _any_value(game: Game, variable: Variable, node: Node) -> Node:
+    """Where each value of the next step would do."""
+    manager, found = game.manager, game.manager.true
+    bits = game.symbols.bits(variable.name, primed=True)
+    for value in values(variable.domain):
+        code = manager.cube(game.symbols.code(variable.name, value, primed=True))
+        found = found & manager.exist(bits, node & code)
+    return found
 
 
 def _frame(game: Game, variable: Variable, states: Node) -> Iterator[Remark]:

@@ -1,0 +1,48 @@
+"""Contracts of real models can be kept, and nothing in them or between them is suspicious."""
+
+import pytest
+
+from sysmlc.diagnostics import Sink
+from sysmlc.driver import Request, compile_model
+from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.contract import Contract
+from sysmlc.synthesis.check import check
+from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.together import check_together
+
+pytestmark = pytest.mark.corpus
+
+
+@pytest.fixture(scope="module")
+def laboratory(corpus):
+    return compile_model(Request((corpus / "sysml2" / "ice-lab",))).graph
+
+
+def place(graph):
+    return lambda id: graph.subject(graph[id])
+
+
+def test_every_contract_of_the_ice_laboratory_can_be_kept_and_none_is_suspicious(laboratory):
+    found, sink = laboratory.derived(Contract), Sink()
+    results = list(check(found, found, place(laboratory), sink, Options()))
+    verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
+    assert len(verdicts) == 50
+    assert [name for name, is_kept in verdicts.items() if not is_kept] == []
+    assert [one.message for one in sink] == []
+
+
+def test_machines_of_the_ice_laboratory_exchange_nothing_that_a_contract_speaks_of(laboratory):
+    """Its services call OPC UA methods; connectors and flows lead to no behaviour."""
+    sink = Sink()
+    made = list(compose(laboratory, laboratory.derived(Contract), sink))
+    told = [one.text() for one in check_together(made, place(laboratory), sink, Options())]
+    assert told == [
+        "PlantTopology::Cell2_Milling: nothing joins its 4 parts",
+        "PlantTopology::ICEProductionLine: nothing joins its 39 parts",
+    ]
+    assert [one.message for one in sink] == []
+    line = {one.name: one for one in made[1].parts}
+    assert "cell2" in line
+    assert "cell7.waitAckBay" in line
+    names = [v.name for part in made[1].parts for v in part.contract.variables]
+    assert len(names) == len(set(names))
