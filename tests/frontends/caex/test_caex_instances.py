@@ -306,6 +306,7 @@ def cell(side_a, side_b, more=""):
         ("1:out", "a.out"),
         ("{1}:out", "a.out"),
         ("Plant/cell/a:out", "a.out"),
+        ("[Plant]/[cell]/[a]:out", "a.out"),
         ("2:Ch. 1^In:x", "b.Ch. 1^In:x"),
     ],
 )
@@ -313,6 +314,16 @@ def test_each_way_to_write_the_side_of_a_link(side, end):
     reading = Read(aml_2(cell(side, "20")))
     assert reading.links() == {"l": (end, "b.Ch. 1^In:x")}
     assert reading.findings == []
+
+
+@pytest.mark.parametrize("side", ["c:io", "Plant/cell/[c/1]:io"])
+def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
+    held = classes(
+        '<SystemUnitClass Name="C"><ExternalInterface Name="io" ID="io"/></SystemUnitClass>'
+    )
+    more = '<InternalElement Name="c/1" ID="c" RefBaseSystemUnitPath="Lib/C"/>'
+    reading = Read(aml_2(cell(side, "20", more) + held))
+    assert reading.links() == {"l": ("c/1.io", "b.Ch. 1^In:x")}
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, ty
 
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir.measures import quantity_kind_of, unit_of
+from sysmlc.sources import Source
 
 
 def value(name, text, data_type="xs:string"):
@@ -863,6 +864,17 @@ def test_descriptions_revisions_and_additional_information_are_kept():
     ]
     assert reading.one("Lib::C::Revision").attrs["author_name"] == "ada"
     assert reading.totals == {"mapped": 11}
+
+
+@pytest.mark.parametrize(("mode", "kept"), [("delete", "delete"), ("state", None)])
+def test_a_change_mode_is_kept_where_nothing_else_is_said(mode, kept):
+    reading = Read(classes(f'<SystemUnitClass Name="C" ChangeMode="{mode}"/>'))
+    assert reading.one("Lib::C").attrs.get("change_mode") == kept
+
+
+def test_a_file_that_states_no_name_has_that_of_the_file():
+    reading = Read(Source("cell.aml", b'<CAEXFile SchemaVersion="2.15"/>'))
+    assert [e.name for e in reading.graph if e.subkind == "caex"] == ["cell.aml"]
 
 
 def test_ids_of_automationml_are_those_of_the_graph():

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
 
@@ -82,7 +83,7 @@ class Sides:
         return Problem("no element has that id" if _is_id(text) else "it names no interface")
 
     def _by_path(self, path: str) -> tuple[Document, Node] | None:
-        top, *names = path.split("/")
+        top, *names = split(path).names
         for document in self._context.documents:
             nodes = self._inside(document.root).get(top, [])
             for name in names:
