@@ -45,7 +45,7 @@ def test_what_a_usage_is_beyond_a_feature_is_kept():
 @pytest.mark.parametrize(
     ("member", "what"),
     [
-        ("constraint safe { attribute x; 1 == 2 }", "a constraint"),
+        ("assert constraint safe { attribute x; 1 == 2 }", "a constraint"),
         ("satisfy q { attribute x; }", "a satisfaction"),
         ("flow from a.x to b.x { attribute x; }", "a flow"),
         ("allocate a to b { attribute x; }", "an allocation"),
