@@ -310,6 +310,7 @@ def test_state_machines_are_exhibited_states():
         "attribute n;",
         "action go;",
         "exhibit state Life {",
+        '@Kept { attributes = ("region.name=main"); }',
         "first start then Shut;",
         "state Shut {",
         "entry action lock assign n := 0;",
@@ -417,7 +418,7 @@ Package p "Plant"
         -> role c.z
 """
     lines = lines_of(model)
-    assert "attribute x;" in lines
+    assert 'attribute x { @Kept { attributes = ("visibility=private"); } }' in lines
     assert "private attribute y;" in lines
     assert "bind a.x = z;" in lines
     assert [one[:5] for one in written(refined(model))[1]] == ["SM734"]

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.kept import facts
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import reference, visible
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
@@ -11,6 +12,7 @@ from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.words import comment_lines, quoted, string, writable
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.query import CLASSIFIERS
 
 _STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
 _SUBKINDS = (
@@ -62,6 +64,7 @@ def of(book: Book, entry: Entry) -> list[Line]:
     return [
         *_description(element),
         *_named(book, entry, element),
+        *_kept(book, entry, element),
         *_aml(book, entry, element),
         *_interfaces(book, entry, element),
         *_kind(book, entry, element),
@@ -78,9 +81,16 @@ def _description(element: Element) -> list[Line]:
 
 
 def _named(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """The name in the source, where its namespace has that name already."""
-    is_other = bool(element.name) and entry.name != writable(element.name)
-    return [ours(book, entry, "Named", {"name": element.name})] if is_other else []
+    """The name in the source, where the text has another one; none where the text needs one."""
+    if not entry.name or entry.name == writable(element.name):
+        return []
+    return [ours(book, entry, "Named", {"name": element.name})]
+
+
+def _kept(book: Book, entry: Entry, element: Element) -> list[Line]:
+    """Attributes that nothing else in the text says."""
+    found = facts(book, entry, element)
+    return [ours(book, entry, "Kept", {"attributes": found})] if found else []
 
 
 def ours(book: Book, entry: Entry, name: str, facts: Mapping[str, AttrValue]) -> Line:
@@ -126,7 +136,8 @@ def _flat(value: AttrValue) -> AttrValue:
 def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
     is_named = _is_told(element) and element.source not in book.caex
     domain = element.attrs.get("domain") if element.kind in _ITEMS else None
-    name = element.subkind if is_named else _KINDS.get(element.kind) or _plain_port(book, element)
+    name = element.subkind if is_named else _KINDS.get(element.kind)
+    name = name or _plain_port(book, element) or _still(book, entry, element)
     facts = {"name": name, "domain": domain}
     return [ours(book, entry, "Kind", facts)] if any(facts.values()) else []
 
@@ -136,6 +147,20 @@ def _plain_port(book: Book, element: Element) -> str | None:
     is_plain = element.kind is Kind.PORT and element.role == "port"
     is_plain = is_plain and not is_part_port(book.graph, element)
     return "port" if is_plain and element.source not in book.caex else None
+
+
+def _still(book: Book, entry: Entry, element: Element) -> str | None:
+    """A behaviour of a classifier that does nothing, which would be an operation."""
+    is_usage = element.kind is Kind.ACTIVITY and entry.shape.keyword == "action"
+    owner = book.graph.owner(element) if is_usage else None
+    if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):
+        return None
+    is_run = element in book.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR)
+    has_steps = any(one.kind in _STEPS for one in book.graph.owned(element))
+    return None if is_run or has_steps else "activity"
+
+
+_STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL})
 
 
 def _partitions(book: Book, entry: Entry, element: Element) -> list[Line]:
@@ -186,6 +211,7 @@ def _applications(book: Book, entry: Entry, element: Element) -> list[Line]:
             continue
         book.said.add(one.id)
         if is_standard(one):
+            book.approximated(element, "an applied stereotype of SysML", "a keyword")
             continue
         definition = book.plan.applied.get(one.id)
         if definition is not None:

@@ -3,9 +3,10 @@
 from sysmlc.backends.sysml import annotations
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.kept import whole
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.words import comment_lines, quoted
-from sysmlc.ir import AttrValue, Edge, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _HIDDEN = frozenset({"external", "library", "subkind", "unresolved"})
 
@@ -22,9 +23,11 @@ def group(book: Book, entry: Entry) -> list[Line]:
 
 
 def facts(book: Book, entry: Entry) -> list[Line]:
-    """A document, an alias or further information: a comment that lists what is known of it."""
+    """A document, an alias or further information: metadata, at the top a comment that lists it."""
     element = entry.element
     assert element is not None
+    if _is_below(entry) and not book.graph.owned(element):
+        return [_kept(book, entry, element)]
     known = sorted((key, one) for key, one in element.attrs.items() if key not in _HIDDEN)
     found = [f"{key} = {_text(value)}" for key, value in known]
     title = f"{element.kind} {element.subkind}".strip()
@@ -39,6 +42,20 @@ def facts(book: Book, entry: Entry) -> list[Line]:
     about = f" about {', '.join(names)}" if names else ""
     name = f" {quoted(entry.name)}" if entry.name else ""
     return [Line(f"comment{name}{about}", text=body), *inner]
+
+
+def _is_below(entry: Entry) -> bool:
+    above = entry.parent
+    return above is not None and above.shape.keyword != "comment"
+
+
+def _kept(book: Book, entry: Entry, element: Element) -> Line:
+    """The same below something else: metadata, which gives it back."""
+    owner = book.graph.owner(element)
+    known: dict[str, AttrValue] = {"kind": str(element.kind), "name": element.name}
+    if entry.parent is not None and entry.parent.element is not owner:
+        known["isOfType"] = True
+    return annotations.ours(book, entry, "Element", known | {"attributes": whole(book, element)})
 
 
 def _text(value: AttrValue) -> str:

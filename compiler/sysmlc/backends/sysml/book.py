@@ -40,6 +40,10 @@ class Book:
     """What elements refer to without a name, so that they cannot be written; by their ids."""
     loops: set[str] = field(default_factory=set)
     """Ids of regions that are written as loops over a collection."""
+    kept: set[tuple[str, str]] = field(default_factory=set)
+    """Ids of elements with the names of attributes that metadata keeps."""
+    kept_edges: set[tuple[Edge, str, str]] = field(default_factory=set)
+    """Edges that metadata keeps, with the ids of their ends."""
     public: frozenset[str] = frozenset()
     """Ids of elements that are written as public because the text refers to them."""
     caex: frozenset[str] = frozenset()

@@ -4,6 +4,7 @@ from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import scalar_of
+from sysmlc.backends.sysml.relating import is_apart
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.specific import feature_of, types_of
 from sysmlc.backends.sysml.words import quoted
@@ -174,6 +175,8 @@ def typing(book: Book, scope: Entry | None, element: Element) -> tuple[list[str]
     for feature in book.graph.targets(element, Edge.SUBSETS):
         if feature is element:
             book.lost(element, "subsets")
+            continue
+        if is_apart(book, element, feature):
             continue
         name = book.name(scope, element, Edge.SUBSETS, feature)
         subsets += [] if name is None else [name]

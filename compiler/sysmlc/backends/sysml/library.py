@@ -129,12 +129,12 @@ ROOTS = frozenset(_ROOTS.split())
 
 
 _OURS = """
-    AutomationML Facet Group Kind Named ObjectFlow Through External Unit Units Requirement Partition
-    Call fullPort blockPort shared realization generalization trace copies satisfies verifies
-    derives allocates conforms exposes substitution usage abstraction manifestation deployment
-    roleBinding extension internalLink processLink orderLink constrains precondition postcondition
-    bodyCondition invariant choice junction forking joining shallowHistory deepHistory entryPoint
-    exitPoint connectionPoint termination
+    AutomationML Facet Group Kind Named Kept Element ObjectFlow Through External Unit Units
+    Requirement Partition Call fullPort blockPort shared realization generalization trace copies
+    satisfies verifies derives allocates conforms exposes substitution usage abstraction
+    manifestation deployment roleBinding extension internalLink processLink orderLink constrains
+    precondition postcondition bodyCondition invariant choice junction forking joining
+    shallowHistory deepHistory entryPoint exitPoint connectionPoint termination
 """
 _REST = """
     FullPort BlockPort SharedAggregation Realization Generalization Trace Copies Satisfies

@@ -21,7 +21,7 @@ UNSAID_EDGE = rule(
     Severity.WARNING,
     "SysML v2 text does not say '{edge}' from {kind} to {target} ({count} left out)",
     why="The textual notation of SysML v2 knows no such relation between such elements.",
-    wrong='Package p "Plant"\n  Class a "A"\n    -> mirrors b\n  Class b "B"\n',
+    wrong='Package p "Plant"\n  Class a "A"\n    -> mirrors t\n    TemplateParameter t "T"\n',
     right='Package p "Plant"\n  Class a "A"\n    -> specializes b\n  Class b "B"\n',
 )
 UNSAID_ATTRIBUTE = rule(
@@ -29,8 +29,9 @@ UNSAID_ATTRIBUTE = rule(
     "sysml-unsaid-attribute",
     Severity.WARNING,
     "SysML v2 text does not say '{attribute}' of {kind} ({count} left out)",
-    why="The textual notation of SysML v2 has no such property, or we do not write it yet.",
-    wrong='Package p "Plant"\n  Class a "A" isolated=true\n',
+    why="The textual notation of SysML v2 has no such property. What is text or a number is kept "
+    "as metadata; what names several elements, or one without a name, is not.",
+    wrong='Package p "Plant"\n  Class a "A" near=["b"]\n  Class b "B"\n',
     right='Package p "Plant"\n  Class a "A" abstract=true\n',
 )
 RENAMED = rule(
@@ -102,15 +103,13 @@ NAME_LEFT_OUT = rule(
     why="SysML v2 has fixed words, or nothing at all, where UML has an element with a name.",
     wrong="""
 Package p "Plant"
-  StateMachine m "Gate"
-    Region r "main"
-      State s "A"
+  Activity m "Run"
+    Control i "begin" subkind="initial"
 """,
     right="""
 Package p "Plant"
-  StateMachine m "Gate"
-    Region r ""
-      State s "A"
+  Activity m "Run"
+    Control i "" subkind="initial"
 """,
 )
 
@@ -124,8 +123,12 @@ class Losses:
         default_factory=dict
     )
 
+    told: dict[str, list[tuple[str, dict[str, str]]]] = field(default_factory=dict)
+    """Code and facts of each loss by the id of the element."""
+
     def note(self, loss: Rule, element: Element, **facts: str) -> None:
         """One more element with this loss."""
+        self.told.setdefault(element.id, []).append((loss.code, facts))
         key = (loss.code, tuple(sorted(facts.items())))
         _, first, count = self._found.get(key, (loss, element, 0))
         self._found[key] = (loss, first, count + 1)

@@ -152,6 +152,8 @@ def port(book: Book, entry: Entry) -> list[Line]:
         head.types = [one.removeprefix("~") for one in head.types or ()]
     elif not _is_port_type(book, element):
         body = _inner(element, head) + body
+    if entry.shape.keyword != "part" and element.role == "full port":
+        head.prefixes.append(f"#{book.ours(entry.parent, 'fullPort')}")
     return [Line(head.text(), body)]
 
 

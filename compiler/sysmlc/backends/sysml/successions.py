@@ -56,7 +56,8 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
         return None
     own = book.plan.entry(flow)
     name = own.name if own is not None else ""
-    body = [] if flow.kind is Kind.CONTROL_FLOW else _objects(book, entry, own, flow)
+    inner = [] if own is None else contents(book, own)
+    body = inner if flow.kind is Kind.CONTROL_FLOW else [*_objects(book, entry, flow), *inner]
     is_decision = entry.shape.keyword == "decide"
     guard = _guard(book, entry, flow)
     if guard == "else" and not name and is_decision:
@@ -67,15 +68,14 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
     return Line(f"{test}then {end}", body, depth=1 if is_decision else 0)
 
 
-def _objects(book: Book, entry: Entry, own: Entry | None, flow: Element) -> list[Line]:
+def _objects(book: Book, entry: Entry, flow: Element) -> list[Line]:
     """Metadata of a succession along which objects flow: the pins at its ends."""
     facts: dict[str, AttrValue] = {}
     for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
         end = book.graph.target(flow, edge)
         pin = book.plan.entry(end) if end is not None and end.kind is Kind.PIN else None
         facts[key] = "" if pin is None else pin.name
-    inner = [] if own is None else contents(book, own)
-    return [annotations.ours(book, entry, "ObjectFlow", facts), *inner]
+    return [annotations.ours(book, entry, "ObjectFlow", facts)]
 
 
 def _guard(book: Book, entry: Entry, flow: Element) -> str | None:
@@ -169,5 +169,6 @@ def first(book: Book, entry: Entry, initial: Element) -> list[Line]:
         name = f"succession {quoted(own.name)} " if own is not None and own.name else ""
         text = flow.attrs.get("guard")
         test = "" if text is None else f"if {condition(book, scope, flow, str(text))} "
-        lines.append(Line(f"{name}first start {test}then {end}"))
+        body = [] if own is None else contents(book, own)
+        lines.append(Line(f"{name}first start {test}then {end}", body))
     return lines

@@ -6,8 +6,6 @@ from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.words import comment_lines, quoted, string
 from sysmlc.ir import Edge, Element
 
-_NATURAL = frozenset({"", "english", "natural", "natural language", "text", "plain text", "nl"})
-
 
 def comment(book: Book, entry: Entry) -> list[Line]:
     """Documentation of its owner, or a comment about what it annotates."""
@@ -18,12 +16,22 @@ def comment(book: Book, entry: Entry) -> list[Line]:
     body = comment_lines(str(element.attrs.get("body", "")))
     name = f" {quoted(entry.name)}" if entry.name else ""
     inner = [line for one in entry.members for line in book.member(one)]
+    if body != comment_lines(_spelt(element)) or _spelt(element) != element.attrs.get("body", ""):
+        book.approximated(element, "white space around a text", "none")
+    if not about and owner is not None:
+        book.approximated(element, "a comment about nothing", "documentation of its owner")
     if about == [owner] or (not about and entry.parent is not None and element.role == ""):
         return [Line(f"doc{name}", text=body), *inner]
     names = book.names(entry.parent, element, Edge.REFERENCES)
     if names:
         return [Line(f"comment{name} about {', '.join(names)}", text=body), *inner]
     return [Line(f"comment{name}", text=body), *inner]
+
+
+def _spelt(element: Element) -> str:
+    """The text as it is read again: without what surrounds its lines."""
+    lines = str(element.attrs.get("body", "")).replace("\r\n", "\n").strip().splitlines()
+    return "\n".join(one.rstrip() for one in lines)
 
 
 def opaque_lines(book: Book, entry: Entry, element: Element) -> list[Line]:
@@ -38,6 +46,4 @@ def opaque_lines(book: Book, entry: Entry, element: Element) -> list[Line]:
 
 def representation(text: str, language: str) -> Line:
     """A text in its language."""
-    if language.lower() in _NATURAL:
-        return Line("doc", text=comment_lines(text))
     return Line(f"language {string(language)}", text=comment_lines(text))

@@ -1,9 +1,9 @@
 """Comments, documentation and metadata: what annotates an element."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import forms, nodes, values
+from sysmlc.frontends.sysml import forms, kept, nodes, values
 from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -84,9 +84,9 @@ def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
 def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
     """Metadata of ours is read with its owner; any other is an applied stereotype."""
     name = our_name(node)
-    if name == "Named" and owner is not None:
-        low.graph.rename(owner, str(dict(constants_of(node)).get("name", owner.name)))
     if name:
+        if owner is not None and name in _READ:
+            _READ[name](low, node, owner)
         return
     about = nodes.references(node, "Annotation")
     definition = nodes.target(node, "FeatureTyping")
@@ -101,6 +101,41 @@ def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.later(lambda: _instance_of(low, made, definition))
     for key, value in facts_of(node):
         give_tag(low, made, key, value)
+
+
+def _named(low: "Lowering", node: Node, owner: Element) -> None:
+    """The name in the source; none where only the text needs one."""
+    low.graph.rename(owner, str(dict(constants_of(node)).get("name", "")))
+
+
+def _kept(low: "Lowering", node: Node, owner: Element) -> None:
+    """Facts that no word of SysML v2 says."""
+    kept.read(low, dict(constants_of(node)), owner)
+
+
+def _element(low: "Lowering", node: Node, owner: Element) -> None:
+    """An element for which SysML v2 has nothing."""
+    facts = dict(constants_of(node))
+    kind = _BY_NAME.get(str(facts.get("kind")))
+    if kind is not None:
+        made = low.add(node, kind, str(facts.get("name", "")), owner)
+        kept.read(low, facts, made)
+
+
+_BY_NAME = {str(kind): kind for kind in Kind}
+
+
+def is_of_type(node: Node) -> bool:
+    """Whether metadata stands for an element that the type of its feature owns."""
+    return our_name(node) == "Element" and bool(dict(constants_of(node)).get("isOfType"))
+
+
+_READ: dict[str, Callable[["Lowering", Node, Element], None]] = {
+    "Named": _named,
+    "Kept": _kept,
+    "Element": _element,
+}
+"""Metadata of ours that is read where it stands; other is read with its owner."""
 
 
 def give_tag(low: "Lowering", made: Element, key: str, value: Node) -> None:

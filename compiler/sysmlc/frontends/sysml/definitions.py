@@ -74,7 +74,10 @@ def of_aml(node: Node) -> dict[str, AttrValue]:
     """What metadata says of an element of AutomationML."""
     one = annotations.ours(node).get("AutomationML")
     known = {} if one is None else dict(annotations.constants_of(one))
-    return {_AML[key]: value for key, value in known.items() if key in _AML}
+    found = {_AML[key]: value for key, value in known.items() if key in _AML}
+    if isinstance(found.get("semantics"), str):
+        found["semantics"] = (found["semantics"],)
+    return found
 
 
 def variant(node: Node) -> dict[str, AttrValue]:

@@ -136,7 +136,7 @@ def _is_of_itself(one: Node, feature: Node) -> bool:
     """Whether a member says something of the feature: a text, or what it realises."""
     is_realization = one.kind == "Dependency" and "Realization" in annotations.ours(one)
     is_own = is_realization and not one.name and nodes.target(one, "client") is feature
-    return is_own or nodes.is_text(one)
+    return is_own or (nodes.is_text(one) and not annotations.is_of_type(one))
 
 
 def is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
@@ -170,6 +170,8 @@ def port(low: "Lowering", node: Node, owner: Element) -> Element:
     said = annotations.said(node, "Kind", "name")
     if said == "port" or "AutomationML" in annotations.ours(node):
         given["role"] = "port"
+    elif "FullPort" in annotations.ours(node):
+        given["role"] = "full port"
     made = low.add(node, Kind.PORT, nodes.name_of(node), owner, **given)
     flowing = _flowing(node)
     if flowing is not None:
@@ -187,9 +189,10 @@ def _flowing(node: Node) -> Node | None:
 
 
 def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> None:
+    is_plain = annotations.said(node, "Kind", "name") == "port"
     low.set(
         made,
-        role="flow port",
+        role="port" if is_plain else "flow port",
         direction=flowing.facts.get("direction"),
         multiplicity=values.multiplicity(low, node),
     )

@@ -82,9 +82,9 @@ def _is_value(low: "Lowering", node: Node, made: Element, found: list[Element | 
 
 
 def _is_forward(found: list[Element | None]) -> bool:
-    """Whether a binding's first end gives the value: ``bind a = b`` mostly sets ``a``."""
+    """Whether a binding's first end gives the value: ``bind a = b`` sets ``a`` where both may."""
     first, second = (_gives(one) for one in found)
-    return first is True or second is False
+    return (first is True and second is not True) or (second is False and first is not False)
 
 
 def _gives(one: Element | None) -> bool | None:

@@ -5,7 +5,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sysmlc.depth import room_for
-from sysmlc.diagnostics import Coverage, Sink, Verdict
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.sysml.account import account
 from sysmlc.frontends.sysml.blame import blame
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
@@ -16,6 +17,7 @@ from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.strays import tell
 from sysmlc.frontends.sysml.usage import accepted, flowing
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.pins import pin_subkind
 from sysmlc.language.tree import Document, Node
 
 if TYPE_CHECKING:
@@ -41,12 +43,13 @@ def lower(
     low.last(lambda: _give_pins(low, documents))
     low.finish()
     low.end_branches()
+    _say_pins(graph)
     literals.finish(graph)
     tell(low, documents)
     blame(low, documents)
     for document in documents:
         if not document.path.startswith(SHIPPED):
-            _count(low, document, coverage)
+            account(low, document, coverage)
 
 
 def _depth(root: Node) -> int:
@@ -74,17 +77,9 @@ def _give_pin(low: Lowering, step: Element, feature: Element) -> None:
         pin_of(low, step, feature)
 
 
-def _count(low: Lowering, document: Document, coverage: Coverage) -> None:
-    """Count each node once; what has no verdict of its own shares that of its owner."""
-    counts = coverage.file(document.path)
-    found: list[tuple[Node, Verdict]] = [(document.root, Verdict.MAPPED)]
-    while found:
-        node, verdict = found.pop()
-        counts.count(node.kind, verdict)
-        for one in node.members:
-            found.append((one, low.verdicts.get(id(one)) or _inherited(verdict)))
-
-
-def _inherited(verdict: Verdict) -> Verdict:
-    """What is inside an approximated element is mapped, unless something else was said of it."""
-    return Verdict.MAPPED if verdict is Verdict.APPROXIMATED else verdict
+def _say_pins(graph: Graph) -> None:
+    """Say what the pins of calls and opaque actions are, where metadata does not."""
+    for pin in graph.of_kind(Kind.PIN):
+        owner = graph.owner(pin)
+        if owner is not None and not pin.subkind:
+            graph.set(pin, subkind=pin_subkind(owner, pin) or None)
