@@ -93,3 +93,9 @@ Activity a "Count"
 """)
     (written,) = texts(graph).values()
     assert "for each p of belt.pallets" in written
+
+
+def test_the_value_of_a_pin_has_its_unit():
+    text = 'Activity a "run"\n  Action x "x" subkind="opaque"\n    Pin p "time" value=1 {}\n'
+    assert any("time = 1 s" in line for line in lines(text.format('value_unit="s"')))
+    assert any(line.endswith("time = 1") for line in lines(text.format("")))

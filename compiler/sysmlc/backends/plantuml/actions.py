@@ -172,9 +172,10 @@ def _extra(graph: Graph, node: Element, extra: list[Element]) -> Iterator[str]:
 
 
 def _pin(graph: Graph, pin: Element) -> tuple[str, ...]:
-    """``in name : Type = value``."""
+    """``in name : Type = value unit``."""
     direction = str(pin.attrs.get("direction", ""))
     shown = pin.name or (pin.subkind if not graph.targets(pin, Edge.TYPED_BY) else "")
     value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
-    text = f"{direction} {labels.typed(graph, pin, shown)}{value}".strip()
+    unit = f" {pin.attrs['value_unit']}" if "value_unit" in pin.attrs else ""
+    text = f"{direction} {labels.typed(graph, pin, shown)}{value}{unit}".strip()
     return lines(text, _ROW)
