@@ -84,9 +84,10 @@ def tag(graph: Graph, element: Element, name: str) -> AttrValue:
         if f"tag.{name}" in application.attrs:
             return application.attrs[f"tag.{name}"]
     for application in found:
-        for key, value in application.attrs.items():
+        # Who asks for all values at once is noted as a reader of each (``ir.reads``).
+        for key in application.attrs:
             if key.lower() == f"tag.{name.lower()}":
-                return value
+                return application.attrs[key]
     return element.attrs.get(f"tag.{name}")
 
 

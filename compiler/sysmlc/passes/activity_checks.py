@@ -87,11 +87,12 @@ class _Checker:
         """For each valuation of the inputs the branches that are open; None: too many."""
         conditions = [(edge, _condition(edge)) for edge in stated]
         names = {v.name for _, c in conditions for v in variables(c)}
+        opens = [(edge, evaluate.evaluation(c)) for edge, c in conditions]
         read = {v.name: v.domain for v in self.tokens.inputs if v.name in names}
         if domains.count(read) > _MOST_VALUATIONS:
             return None
         return [
-            [edge for edge, condition in conditions if evaluate.is_true(condition, valuation)]
+            [edge for edge, is_open in opens if is_open(valuation, None)]
             for valuation in domains.valuations(read)
         ]
 

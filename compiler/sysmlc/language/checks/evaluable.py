@@ -50,8 +50,8 @@ def _check(model: Model, expression: Node, what: str) -> Iterator[Found]:
 
 def _called(model: Model, node: Node) -> str:
     """The operator or function of an expression that cannot be evaluated; else empty."""
-    operator = str(node.facts.get("operator", ""))
     if node.kind == "OperatorExpression":
+        operator = str(node.facts.get("operator", ""))
         return operator if operator in _OPERATORS else ""
     if node.kind != "InvocationExpression":
         return ""

@@ -20,6 +20,8 @@ from sysmlc.logic.expressions.expression import (
 from sysmlc.logic.expressions.expression import Literal as Constant
 
 _RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
+_BOUNDS = (("min", "max"), ("lower", "upper"), ("minimum", "maximum"))
+_TAGS = frozenset(f"tag.{name}" for pair in (("range",), *_BOUNDS) for name in pair)
 _MOMENTARY = frozenset(["precondition", "postcondition", "body"])
 """Kinds of constraints that do not hold at all times."""
 _ARITHMETIC: dict[str, Callable[..., int]] = {"+": add, "-": sub, "*": mul}
@@ -56,12 +58,15 @@ def _range(low: int, high: int) -> Domain | None:
 
 
 def _tagged_range(graph: Graph, element: Element) -> Domain | None:
-    if not query.applications(graph, element):
+    applied = query.applications(graph, element)
+    if not any(key.lower() in _TAGS for one in (*applied, element) for key in one.attrs):
+        return None
+    if not applied:
         return None
     found = _RANGE.match(str(query.tag(graph, element, "range") or ""))
     if found:
         return _range(int(found[1]), int(found[2]))
-    for least, greatest in (("min", "max"), ("lower", "upper"), ("minimum", "maximum")):
+    for least, greatest in _BOUNDS:
         low = integer(query.tag(graph, element, least))
         high = integer(query.tag(graph, element, greatest))
         if low is not None and high is not None:
