@@ -25,7 +25,8 @@ class Composite:
     """A block with parts. ``whole`` is what it promises itself, in the same variables.
 
     ``wiring`` is what connectors make true and no renaming says, as that an event of the receiver
-    occurs when the sender sends it; it restricts no part.
+    occurs when the sender sends it; it restricts no part. ``crowding`` is what has to hold for
+    nothing to be lost on the way, which nobody owes.
     """
 
     component: str
@@ -33,3 +34,4 @@ class Composite:
     parts: tuple[Part, ...]
     wiring: tuple[Conjunct, ...] = ()
     whole: Contract | None = None
+    crowding: tuple[Conjunct, ...] = ()

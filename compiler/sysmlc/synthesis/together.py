@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Sink
 from sysmlc.logic.composite import Composite
 from sysmlc.logic.contract import Conjunct
 from sysmlc.logic.printing import print_formula
@@ -16,107 +16,9 @@ from sysmlc.synthesis.bdd.manager import LimitError
 from sysmlc.synthesis.check import new_manager, said, why_not
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
+from sysmlc.synthesis.together_rules import BREAK, CIRCLE, CONTRADICT, LOST, NOT_COMPOSED, OPEN
 from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
-
-
-def _cell(feeds: str, takes: str = "assume G F ready", whole: str = "G F taken") -> str:
-    """A cell of a feeder and a picker in SysML v2, each with what is required of it."""
-    return f"""\
-package Line {{
-    private import ScalarValues::*;
-    part def Feeder {{ out attribute ready : Boolean; }}
-    part def Picker {{ in attribute ready : Boolean; out attribute taken : Boolean; }}
-    part def Cell {{
-        out attribute taken : Boolean;
-        part feeder : Feeder;
-        part picker : Picker;
-        bind feeder.ready = picker.ready;
-        bind picker.taken = taken;
-    }}
-    requirement def Feeds {{
-        subject feeder : Feeder;
-        require constraint {{ language "ltl" /* {feeds} */ }}
-    }}
-    requirement def Takes {{
-        subject picker : Picker;
-        assume constraint {{ language "ltl" /* {takes.removeprefix("assume ")} */ }}
-        require constraint {{ language "ltl" /* G F taken */ }}
-    }}
-    requirement def Works {{
-        subject cell : Cell;
-        require constraint {{ language "ltl" /* {whole} */ }}
-    }}
-}}
-"""
-
-
-OPEN = rule(
-    "SM595",
-    "part-assumption-open",
-    Severity.ERROR,
-    "part '{part}' of '{component}' assumes '{formula}', which nothing around it promises{said}",
-    why="A part keeps its contract only in an environment that keeps the part's assumptions: the "
-    "other parts, and what the block itself assumes.",
-    help="let another part promise it, let the block assume it, or let the part do without it; the "
-    "run shows what happens",
-    wrong=_cell("G F !ready"),
-    right=_cell("G F ready"),
-)
-CIRCLE = rule(
-    "SM596",
-    "parts-wait-for-one-another",
-    Severity.WARNING,
-    "part '{part}' of '{component}' assumes '{formula}', kept by others only after it{said}",
-    why="What recurs cannot be promised by two parts that each wait for the other: nobody begins.",
-    help="let one of the parts begin: promise it without that assumption",
-    wrong=_cell("G F ready")
-    .replace(
-        'require constraint { language "ltl" /* G F ready */ }',
-        'assume constraint { language "ltl" /* G F taken */ }\n'
-        '        require constraint { language "ltl" /* G F ready */ }',
-    )
-    .replace("part def Feeder { ", "part def Feeder { in attribute taken : Boolean; ")
-    .replace(
-        "bind picker.taken = taken;",
-        "bind picker.taken = taken;\n        bind picker.taken = feeder.taken;",
-    ),
-    right=_cell("G F ready"),
-)
-BREAK = rule(
-    "SM597",
-    "parts-break-whole",
-    Severity.ERROR,
-    "the parts of '{component}' together do not keep '{formula}'{said}",
-    why="What a block promises has to follow from what its parts promise together.",
-    help="let a part promise more, or the block less; the run shows what happens",
-    wrong=_cell("G F ready", whole="G (taken -> X !taken)"),
-    right=_cell("G F ready", whole="G F taken"),
-)
-CONTRADICT = rule(
-    "SM548",
-    "parts-contradict",
-    Severity.ERROR,
-    "there is no run in which all parts of '{component}' keep what they promise",
-    why="Everything follows of what cannot be: nothing can be said of parts that contradict one "
-    "another.",
-    help="change one of the promises, or what joins the parts",
-    wrong=_cell("G F ready")
-    .replace("G F ready */ }", "G !ready */ }", 1)
-    .replace("G F taken */ }", "G (ready & F taken) */ }", 1),
-    right=_cell("G F ready"),
-)
-NOT_COMPOSED = rule(
-    "SM598",
-    "parts-not-composed",
-    Severity.WARNING,
-    "the parts of '{component}' are not put together: {reason}",
-    why="Only contracts in GR(1), or that history bits bring there, are composed, within the "
-    "limits of time and memory.",
-    help="give more time (--time-limit), or say it in the patterns that are known",
-    wrong=_cell("F G ready"),
-    right=_cell("G F ready"),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +85,8 @@ def _composed(
         _report_open(composite, one, place, sink)
     for failure in found.failures:
         _report_broken(composite, failure, place, sink)
+    for loss in found.losses:
+        _report_loss(composite, loss, place, sink)
     return found
 
 
@@ -219,12 +123,22 @@ def _report_broken(composite: Composite, failure: Failure, place: Place, sink: S
     )
 
 
+def _report_loss(composite: Composite, loss: Failure, place: Place, sink: Sink) -> None:
+    sink.report(
+        LOST,
+        place(composite.origin),
+        notes=tuple(lines(loss.trace, loss.conjunct)),
+        component=composite.component,
+        said=loss.conjunct.text,
+    )
+
+
 def _witnesses(composite: Composite, found: Composition) -> Iterator[Witness]:
     parties = tuple(Party(one.name, one.contract) for one in composite.parts)
     for one in found.open:
         if one.trace is not None:
             yield _witness(composite, one.conjunct, one.trace, parties)
-    for failure in found.failures:
+    for failure in (*found.failures, *found.losses):
         yield _witness(composite, failure.conjunct, failure.trace, parties)
 
 

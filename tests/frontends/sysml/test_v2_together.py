@@ -7,11 +7,11 @@ from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
-from sysmlc.synthesis import Limits, together
+from sysmlc.synthesis import Limits, together, together_rules
 from sysmlc.synthesis.check import check
 from sysmlc.synthesis.decide import Options
 
-CODES = ("SM548", "SM595", "SM596", "SM597", "SM598")
+CODES = ("SM506", "SM548", "SM595", "SM596", "SM597", "SM598")
 
 
 def checked(text, limits=None):
@@ -32,7 +32,7 @@ def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
 
 
 def test_what_nothing_promises_is_told_with_a_run():
-    (result,), found = checked(together.OPEN.wrong)
+    (result,), found = checked(together_rules.OPEN.wrong)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.rule.code for one in found] == ["SM595", "SM597"]
     assert found[0].message == (
@@ -47,7 +47,7 @@ def test_what_nothing_promises_is_told_with_a_run():
 
 
 def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
-    for rule, words in ((together.OPEN, "do not fit"), (together.BREAK, "fit")):
+    for rule, words in ((together_rules.OPEN, "do not fit"), (together_rules.BREAK, "fit")):
         silent = rule.wrong.replace("subject cell : Cell", "subject cell : Other").replace(
             "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
         )
@@ -56,7 +56,7 @@ def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
 
 
 def test_what_takes_too_long_is_not_decided():
-    (result,), (told,) = checked(together.BREAK.right, Limits(nodes=1))
+    (result,), (told,) = checked(together_rules.BREAK.right, Limits(nodes=1))
     assert result.text() == "Line::Cell: its parts are not put together"
     assert told.message == (
         "the parts of 'Line::Cell' are not put together: the limit of 1 nodes was reached"
@@ -79,7 +79,7 @@ def test_requirements_that_lean_on_one_another():
     assert "SM599" not in told_of_requirements(rule.right)
 
 
-APART = together.OPEN.right.replace("bind feeder.ready = picker.ready;", "")
+APART = together_rules.OPEN.right.replace("bind feeder.ready = picker.ready;", "")
 
 
 def test_parts_that_share_nothing_are_not_said_to_fit():
@@ -99,9 +99,19 @@ def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter
 
 
 def test_what_no_part_speaks_of_is_not_kept():
-    nobody = together.OPEN.right.replace("bind picker.taken = taken;", "")
+    nobody = together_rules.OPEN.right.replace("bind picker.taken = taken;", "")
     (result,), found = checked(nobody)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.message for one in found] == [
         "the parts of 'Line::Cell' together do not keep 'taken' ('Works' demands it)"
     ]
+
+
+def test_two_that_send_the_same_lose_one_of_it():
+    wrong = together_rules.LOST.wrong.replace("do send off()", "do send on()")
+    _, found = checked(wrong)
+    assert [one.message for one in found] == [
+        "in 'Room::Room' 'on' by 'one' and 'on' by 'other' are sent to 'lamp' in one step: one of "
+        "them is lost"
+    ]
+    assert found[0].notes[-1] == "then again from step 4"

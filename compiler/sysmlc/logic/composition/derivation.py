@@ -10,7 +10,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.composition.members import Block, Member, behaviour, itself, read_block, required
-from sysmlc.logic.composition.messages import wiring
+from sysmlc.logic.composition.messages import crowding, wiring
 from sysmlc.logic.composition.naming import Wire, is_one_type, renamed, wires
 from sysmlc.logic.composition.structure import unclear_flows
 from sysmlc.logic.contract import Contract, Owner
@@ -156,6 +156,7 @@ def _composite(block: Block, sink: Sink) -> Composite | None:
         parts=tuple(Part(one.name, renamed(one, known), one.origin) for one in block.members),
         wiring=tuple(wiring(block, block.members, known)),
         whole=None if whole is None else renamed(whole, known),
+        crowding=tuple(crowding(block, block.members, known)),
     )
 
 

@@ -6,6 +6,7 @@ state machine has one event (UML 2.5.1 clause 14.2.3.9.1 takes them from a pool,
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
@@ -48,7 +49,39 @@ class Sending:
 
 def wiring(block: Block, members: Sequence[Member], known: Iterable[Wire]) -> Iterator[Conjunct]:
     """What occurs when something is sent, for each member that listens to others."""
-    wires = tuple(known)
+    for member, receipts in _listeners(block, members, tuple(known)):
+        yield from _occurrences(member, receipts, _is_open(block, member))
+
+
+def crowding(block: Block, members: Sequence[Member], known: Iterable[Wire]) -> Iterator[Conjunct]:
+    """That nothing is lost because two things are sent to one member in one step.
+
+    Nobody owes it: a component sends what it has to.
+    """
+    for member, receipts in _listeners(block, members, tuple(known)):
+        sent = [
+            (receipt, one)
+            for receipt, sendings in receipts
+            for one in sendings
+            if not isinstance(receipt.occurs, f.Var)
+        ]
+        for (receipt, one), (other, two) in combinations(sent, 2):
+            text = f"{_by(receipt, one)} and {_by(other, two)} are sent to '{member.name}'"
+            both = f.both(one.said, two.said)
+            yield Conjunct(f.negate(both), Class.SAFETY, receipt.origin, text)
+
+
+def _by(receipt: Receipt, sending: Sending) -> str:
+    return f"'{receipt.what}' by '{sending.member.name}'"
+
+
+_Receipts = Sequence[tuple[Receipt, list[Sending]]]
+
+
+def _listeners(
+    block: Block, members: Sequence[Member], wires: tuple[Wire, ...]
+) -> Iterator[tuple[Member, _Receipts]]:
+    """The members to which others send something, and what."""
     for member in members:
         receipts = [
             (receipt, sendings)
@@ -56,7 +89,7 @@ def wiring(block: Block, members: Sequence[Member], known: Iterable[Wire]) -> It
             if (sendings := list(_sendings(block, members, receipt, wires)))
         ]
         if receipts:
-            yield from _occurrences(member, receipts, _is_open(block, member))
+            yield member, receipts
 
 
 def _is_open(block: Block, member: Member) -> bool:
@@ -67,9 +100,7 @@ def _is_open(block: Block, member: Member) -> bool:
     return member.path != ITSELF and not ends.isdisjoint(outer)
 
 
-def _occurrences(
-    member: Member, receipts: Sequence[tuple[Receipt, list[Sending]]], is_open: bool
-) -> Iterator[Conjunct]:
+def _occurrences(member: Member, receipts: _Receipts, is_open: bool) -> Iterator[Conjunct]:
     """Nothing occurs unsent; where something is sent, something that is sent occurs."""
     sent = [f.either(*(one.said for one in sendings)) for _, sendings in receipts]
     for (receipt, sendings), said in () if is_open else zip(receipts, sent, strict=True):
@@ -83,7 +114,7 @@ def _occurrences(
 
 
 def _together(
-    member: Member, receipts: Sequence[tuple[Receipt, list[Sending]]], sent: Sequence[Formula]
+    member: Member, receipts: _Receipts, sent: Sequence[Formula]
 ) -> Iterator[tuple[list[tuple[Receipt, Formula]], str]]:
     """Receipts that exclude one another, as values of one event; the others by themselves."""
     rows = [(receipt, said) for (receipt, _), said in zip(receipts, sent, strict=True)]

@@ -56,11 +56,14 @@ def _names(conjunct: Conjunct) -> list[str]:
 
 
 def _only(composite: Composite, group: list[int], shared: Joints[str], key: str) -> Composite:
-    wires = (one for one in composite.wiring if shared.find(_names(one)[0]) == key)
+    def ours(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(one for one in conjuncts if shared.find(_names(one)[0]) == key)
+
     return replace(
         composite,
         parts=tuple(composite.parts[number] for number in group),
-        wiring=tuple(wires),
+        wiring=ours(composite.wiring),
+        crowding=ours(composite.crowding),
         whole=_whole(composite.whole, shared, key),
     )
 

@@ -26,13 +26,15 @@ class Composition:
     """What became of a composition.
 
     ``contract`` is that of the parts together; ``open`` are the assumptions of parts that nothing
-    discharges, ``failures`` what the whole promises and the parts do not keep. Where there is no
+    discharges, ``failures`` what the whole promises and the parts do not keep, ``losses`` runs in
+    which something that is sent is lost. Where there is no
     run in which all parts keep what they promise, ``conflict`` says what cannot be had together.
     """
 
     contract: Contract
     open: tuple[Open, ...] = ()
     failures: tuple[Failure, ...] = ()
+    losses: tuple[Failure, ...] = ()
     conflict: tuple[Conjunct, ...] = ()
 
 
@@ -71,7 +73,8 @@ def _composed(composite: Composite, manager: Manager) -> Composition:
     found = discharge(inside, (*seen.assumptions, *made.definitions), universe)
     runs = Entailment(universe, universe.system(found.facts))
     failures = tuple(_broken(seen.guarantees, runs))
-    return Composition(contract, found.open, failures)
+    losses = tuple(_broken(composite.crowding, runs))
+    return Composition(contract, found.open, failures, losses)
 
 
 def _contradiction(
