@@ -16,7 +16,7 @@ from measuring import Report
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.floors.outcome import Outcome, allocated
 from sysmlc.floors.robot import robot_contract
-from sysmlc.floors.strategy import ANY, answers_of, simulated, synthesise
+from sysmlc.floors.strategy import ANY, answers_of, measured, synthesise, travels
 from sysmlc.floors.study import Grid, Robot, Study, Target
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Options
@@ -123,7 +123,8 @@ def _from_one_start(report: Report, study: Study, controller: Synthesis, synthes
 def _validated(study: Study, controller: Synthesis) -> tuple[Outcome, float]:
     start = time.process_time()
     answers = answers_of(study, controller)
-    made = Outcome(study, controller, simulated(study, answers), answers)
+    times = measured(study, answers)
+    made = Outcome(study, controller, travels(study, times), answers, times)
     made = allocated(made, _nowhere, Sink())
     return made, time.process_time() - start
 

@@ -101,3 +101,25 @@ def test_help_has_examples(option):
     made = CliRunner().invoke(sysmlc, ["robots", option])
     assert "sysmlc robots hall.sysml" in made.output
     assert "Exit codes" in made.output
+
+
+def test_new_targets_take_the_robots_of_the_run_before(tmp_path, monkeypatch):
+    """Through the cache folder, as the compiler uses it; without it all is made anew."""
+    from sysmlc.floors import outcome
+
+    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
+    assert run(tmp_path, HALL).exit_code == 0
+
+    def fail(*given):
+        raise AssertionError("synthesised again")
+
+    monkeypatch.setattr(outcome, "synthesise", fail)
+    other = HALL.replace("part left : Target { :>> row = 0;", "part left : Target { :>> row = 1;")
+    made = run(tmp_path, other, "-o", str(tmp_path / "out"))
+    assert made.exit_code == 0, made.output
+    assert "done in 6 steps at most" in made.stdout
+    assert "SM573 claim-does-not-hold" in made.stderr
+    machine = (tmp_path / "out" / "robots" / "Plant.Hall.robot.machine.json").read_text()
+    assert '"sysmlc-machine/2"' in machine
+    anew = run(tmp_path, other, "--no-cache")
+    assert isinstance(anew.exception, AssertionError)

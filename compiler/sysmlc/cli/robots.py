@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sysmlc.driver import Compilation
+    from sysmlc.floors.keeping import Keeper
     from sysmlc.floors.outcome import Outcome
     from sysmlc.synthesis.decide import Options
 
@@ -38,6 +39,7 @@ Exit codes: 0 the mission is done from every start, 1 it is not,
 @options.time_limit("CPU seconds for each question about contracts; 0 is no limit.")
 @options.reporting
 @options.reading
+@options.caching
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -52,7 +54,8 @@ def command(
 
     A controller of the robots is synthesised from their contract, travel times are measured,
     targets are allocated, and robots and environment are simulated together from every admissible
-    start. Where that fails another allocation is tried; a run shows what happens.
+    start. Where that fails another allocation is tried; a run shows what happens. Controller and
+    travel times are kept: new targets on a floor that stays ask for another allocation only.
     """
     from sysmlc.cli import session
     from sysmlc.cli.progress import Progress
@@ -87,6 +90,8 @@ def _studied(
     from sysmlc.floors.report import files, summary
     from sysmlc.floors.study import Study
 
+    keeper = _keeper(settings.has_cache)
+
     def place(origin: str) -> Subject:
         element = made.graph.get(origin)
         return Subject() if element is None else made.graph.subject(element)
@@ -95,7 +100,7 @@ def _studied(
     known = made.graph.derived(Study) if code < 2 else ()
     if not known and not code:
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
-    outcomes = [studied(one, place, sink, chosen, has_relations) for one in known]
+    outcomes = [studied(one, place, sink, chosen, has_relations, keeper) for one in known]
     if output is not None:
         _write([file for one in outcomes for file in files(one)], output)
     of_model = session.findings(made, only_errors=not settings.verbose)
@@ -105,6 +110,16 @@ def _studied(
         click.echo(summary(one), err=not session.says_more(settings))
     has_errors = any(one.severity is Severity.ERROR for one in sink)
     return max(code, _code(outcomes, has_errors))
+
+
+def _keeper(has_cache: bool) -> "Keeper | None":
+    """Where what is known of floors is kept; None when nothing is to be."""
+    from sysmlc import cache
+    from sysmlc.driver.dependencies import tool_digest
+    from sysmlc.floors.keeping import Keeper
+
+    store = cache.default() if has_cache else None
+    return None if store is None else Keeper(store, tool_digest())
 
 
 def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:

@@ -48,6 +48,16 @@ def depends_on(
     return Dependencies(_digest(_others(opened, request, wanted, has_files)), tuple(inputs))
 
 
+def tool_digest() -> str:
+    """Digest of the tool itself, plug-ins included: what changes with each version of it."""
+    return _digest(_tool())
+
+
+def _tool() -> Iterator[str]:
+    yield f"{__version__} {sys.version} {sys.platform}"
+    yield from _stamps(_tool_files())
+
+
 def _digest(parts: Iterable[str]) -> str:
     text = "".join([f"{len(part)}:{part}" for part in parts])
     return sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
@@ -57,8 +67,7 @@ def _others(
     opened: Opened, request: Request, wanted: Sequence[str], has_files: bool
 ) -> Iterator[str]:
     config = request.config
-    yield f"{__version__} {sys.version} {sys.platform}"
-    yield from _stamps(_tool_files())
+    yield from _tool()
     yield repr(
         (has_files, tuple(wanted), request.strict_input, request.diagrams, len(config.models))
     )

@@ -1,28 +1,31 @@
 """The whole flow of the thesis's figure 4.3: from a study to a mission that is validated."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
 from itertools import islice
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.floors.allocate import greedy
 from sysmlc.floors.answers import Answers
 from sysmlc.floors.environment import Sharing, environment_contract
+from sysmlc.floors.keeping import Crew, Keeper
 from sysmlc.floors.optimal import Best, best, near
 from sysmlc.floors.relations import Relation, relations
 from sysmlc.floors.schedule import Schedule, in_time
 from sysmlc.floors.simulation import Validation
 from sysmlc.floors.story import Moment, lines, story
-from sysmlc.floors.strategy import answers_of, simulated, synthesise
+from sysmlc.floors.strategy import Times, answers_of, measured, synthesise, travels
 from sysmlc.floors.study import Study
 from sysmlc.floors.travel import Travel
 from sysmlc.floors.validate import validate
 from sysmlc.synthesis.decide import Options, Place, decide
 from sysmlc.synthesis.synthesise import Synthesis
-from sysmlc.synthesis.witness import lines as run_lines
 from sysmlc.values import dataclass, replace
 
 MOST_TRIED = 12
 """Allocations that are validated before it is given up."""
+SHARED = "C_E can be kept as the thesis has it"
+"""The claim that is settled by offering a cell to one robot."""
 
 SHARED_CELL = rule(
     "SM570",
@@ -97,6 +100,8 @@ class Outcome:
     travel: Travel
     answers: tuple[Answers, ...] = ()
     """Of the controller, for each robot: what was asked once is known."""
+    times: Times = field(default_factory=dict)
+    """How long a robot travels from any cell to any other."""
     relations: tuple[Relation, ...] = ()
     greedy: Schedule | None = None
     best: Best | None = None
@@ -119,15 +124,34 @@ class Outcome:
 
 
 def studied(
-    study: Study, place: Place, sink: Sink, options: Options, has_relations: bool = True
+    study: Study,
+    place: Place,
+    sink: Sink,
+    options: Options,
+    has_relations: bool = True,
+    keeper: Keeper | None = None,
 ) -> Outcome:
-    """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported."""
-    controller = synthesise(study, place, sink, options)
-    answers = answers_of(study, controller)
-    made = Outcome(study, controller, simulated(study, answers), answers)
+    """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported.
+
+    What a keeper has of this floor and its robots is taken as it is.
+    """
+    known = keeper.get(study) if keeper else None
+    crew = known or _crew(study, place, sink, options)
+    answers = answers_of(study, crew.controller)
+    made = Outcome(study, crew.controller, travels(study, crew.times), answers, crew.times)
     if has_relations:
-        made = replace(made, relations=tuple(_related(made, place, sink, options)))
+        claims = {one.claim: one for one in _related(made, crew.claims, options)}
+        _report_claims(study, claims.values(), place, sink)
+        made = replace(made, relations=tuple(one for one in claims.values() if one.claim != SHARED))
+        crew = replace(crew, claims={**crew.claims, **claims})
+    if keeper and crew != known:
+        keeper.put(study, crew)
     return allocated(made, place, sink)
+
+
+def _crew(study: Study, place: Place, sink: Sink, options: Options) -> Crew:
+    controller = synthesise(study, place, sink, options)
+    return Crew(controller, measured(study, answers_of(study, controller)))
 
 
 def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = None) -> Outcome:
@@ -137,7 +161,7 @@ def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = Non
     answers = made.answers[:1] * len(study.robots)
     if not answers or not study.targets:
         return replace(made, study=study)
-    travel = simulated(study, answers)
+    travel = travels(study, made.times)
     first, found = greedy(study, travel), best(study, travel)
     made = replace(made, study=study, travel=travel, greedy=first, best=found, tried=(), run=())
     if found is None or not in_time(study, found.schedule):
@@ -188,30 +212,32 @@ def _some_start(study: Study) -> tuple[int, ...]:
     return tuple(next(left) if one.start is None else one.start for one in study.robots)
 
 
-def _related(made: Outcome, place: Place, sink: Sink, options: Options) -> Iterator[Relation]:
+def _related(made: Outcome, known: Mapping[str, Relation], options: Options) -> Iterator[Relation]:
     study = made.study
-    _arbitrated(study, place, sink, options)
-    for one in relations(study, made.travel, options):
-        facts = {"floor": study.component, "claim": one.claim, "reason": one.reason}
-        subject = place(study.origin)
-        if one.holds is None:
-            sink.report(NOT_DECIDED, subject, notes=(), help="", **facts)
-        elif not one.holds:
-            notes = tuple(run_lines(one.trace, one.broken)) if one.trace else ()
-            sink.report(NO_RELATION, subject, notes=notes, help="", **facts)
-        yield one
+    if len(study.robots) > 1:
+        yield known[SHARED] if SHARED in known else _arbitrated(study, options)
+    yield from relations(study, made.travel, options, known)
 
 
-def _arbitrated(study: Study, place: Place, sink: Sink, options: Options) -> None:
+def _arbitrated(study: Study, options: Options) -> Relation:
     """Decide C_E as the thesis has it, for two of the robots: with more it is no easier."""
-    if len(study.robots) < 2:
-        return
     two = replace(study, robots=tuple(replace(one, start=None) for one in study.robots[:2]))
     literal = environment_contract(two, Sharing.LITERAL)
-    verdict = decide(literal, place, Sink(), options)
-    if verdict.is_realizable is False:
-        one, other = (robot.name for robot in two.robots)
-        sink.report(SHARED_CELL, place(study.origin), floor=study.component, one=one, other=other)
+    verdict = decide(literal, lambda origin: Subject(), Sink(), options)
+    return Relation(SHARED, verdict.is_realizable)
+
+
+def _report_claims(study: Study, claims: Iterable[Relation], place: Place, sink: Sink) -> None:
+    subject, floor = place(study.origin), study.component
+    for one in claims:
+        facts = {"floor": floor, "claim": one.claim, "reason": one.reason}
+        if one.claim == SHARED and one.holds is False:
+            first, other = (robot.name for robot in study.robots[:2])
+            sink.report(SHARED_CELL, subject, floor=floor, one=first, other=other)
+        elif one.claim != SHARED and one.holds is None:
+            sink.report(NOT_DECIDED, subject, notes=(), help="", **facts)
+        elif one.claim != SHARED and not one.holds:
+            sink.report(NO_RELATION, subject, notes=one.run, help="", **facts)
 
 
 def _report_no_allocation(study: Study, found: Best | None, place: Place, sink: Sink) -> None:

@@ -1,12 +1,12 @@
 """The controller of the robots: one machine, synthesised from their contract, for all of them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.floors.answers import Answers
 from sysmlc.floors.planes import Runs, but
 from sysmlc.floors.robot import robot_contract
-from sysmlc.floors.study import Robot, Study
+from sysmlc.floors.study import Robot, Study, Target
 from sysmlc.floors.travel import START, Travel, starts_of
 from sysmlc.floors.world import World
 from sysmlc.logic.contract import Contract
@@ -40,26 +40,39 @@ def answers_of(study: Study, made: Synthesis) -> tuple[Answers, ...]:
     return (Answers(made.machine, ANY, study.grid),) * len(study.robots)
 
 
-def simulated(study: Study, answers: Sequence[Answers]) -> Travel:
-    """The steps that robots travel, measured for each way with nobody else on the floor."""
+Times = Mapping[int, Mapping[int, int]]
+"""By target cell the steps from each other cell from which a robot gets there."""
+
+
+def measured(study: Study, answers: Sequence[Answers]) -> Times:
+    """How long a robot with nobody else on the floor travels from any cell to any other."""
+    cells = study.grid.cells if answers else ()
+    return {cell: _times(study, cell, answers[0]) for cell in cells}
+
+
+def travels(study: Study, times: Times) -> Travel:
+    """The steps that robots travel between their starts and targets."""
     found: dict[tuple[int, int, int], int] = {}
-    if not answers:
-        return Travel(found)
     for goal, target in enumerate(study.targets):
-        known = _times(study, target.cell, answers[0])
+        known = times.get(target.cell, {})
         for robot in range(len(study.robots)):
             places = {START: starts_of(study, robot)}
             places |= {at: (one.cell,) for at, one in enumerate(study.targets) if at != goal}
             for place, cells in places.items():
-                times = [known[cell] for cell in cells if cell in known]
-                if times and len(times) == len(cells):
-                    found[robot, place, goal] = max(times)
+                steps = [known[cell] for cell in cells if cell in known]
+                if steps and len(steps) == len(cells):
+                    found[robot, place, goal] = max(steps)
     return Travel(found, is_simulated=True)
+
+
+def simulated(study: Study, answers: Sequence[Answers]) -> Travel:
+    """The same, measured now."""
+    return travels(study, measured(study, answers))
 
 
 def _times(study: Study, cell: int, answers: Answers) -> dict[int, int]:
     """The steps to a cell from each other one from which a robot gets there."""
-    target = replace(study.targets[0], cell=cell)
+    target = Target("", "", cell)
     alone = replace(study, robots=(ANY,), targets=(target,), orders=(), deadline=None)
     cells = study.grid.cells
     starts = [0] * study.grid.size
