@@ -140,3 +140,16 @@ def test_every_pair_of_small_numbers_is_divided_towards_zero():
                 n for n in range(-9, 10) if found.bdd(f.eq(apply, Const(n))) == found.manager.true
             ]
             assert truths == expected, (op, left, right)
+
+
+@pytest.mark.parametrize("engine", ["cudd", "autoref"])
+def test_values_are_picked_in_the_order_of_declaration_whatever_the_order_of_the_diagrams(engine):
+    manager = Manager(engine)
+    manager.declare(["a", "b", "c", "d"])
+    a, b, c = map(manager.var, "abc")
+    assert manager.pick(manager.false, ["a"]) is None
+    for order in ("abcd", "dcba"):
+        manager._bdd.reorder({bit: level for level, bit in enumerate(order)})
+        assert manager.bits == tuple(order)
+        found = manager.pick((a & ~b) | (b & c) | (a & b & ~c), ["a", "b", "c", "d"])
+        assert found == {"a": False, "b": True, "c": True, "d": False}

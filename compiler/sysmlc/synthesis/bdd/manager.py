@@ -106,9 +106,10 @@ class Manager:
         self._library = library
         self._progress = progress
         self._start = time.process_time()
-        self._peak = self._nodes = 0
+        self._peak = self._nodes = self._ceiling = 0
         self._next_look = 0.0
         self._reorder_at = REORDER_AT
+        self._numbers: dict[str, int] = {}
         self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
         self._end: LimitError | KeyboardInterrupt | None = None
         # dd has no type hints that a checker could use.
@@ -121,6 +122,8 @@ class Manager:
     def declare(self, bits: Collection[str]) -> None:
         """Add bits below those that are there."""
         self._bdd.declare(*bits)
+        for bit in bits:
+            self._numbers.setdefault(bit, len(self._numbers))
 
     @property
     def bits(self) -> tuple[str, ...]:
@@ -190,12 +193,20 @@ class Manager:
         return (found.var, ~low, ~high) if found.negated else (found.var, low, high)
 
     def pick(self, node: Node, bits: Collection[str]) -> dict[str, bool] | None:
-        """Values of the bits that make it true, the same ones every time; None if there are none.
+        """Values of the bits that make it true; None if there are none.
 
-        Bits that do not matter are false. ``bits`` must contain the support.
+        They are the first in the order in which bits were declared, false before true, whatever
+        order the diagrams have come to. Bits that do not matter are false. ``bits`` must contain
+        the support.
         """
-        found = next(self._bdd.pick_iter(node, set()), None) if node != self.false else None
-        return None if found is None else {bit: found.get(bit, False) for bit in bits}
+        if node == self.false:
+            return None
+        found = dict.fromkeys(bits, False)
+        for bit in sorted(self.support(node), key=self._numbers.__getitem__):
+            low = self.assign(node, {bit: False})
+            found[bit] = low == self.false
+            node = self.assign(node, {bit: True}) if found[bit] else low
+        return found
 
     def count(self, node: Node, bits: Collection[str]) -> int:
         """Number of assignments to the bits that make it true (exact up to 2^53)."""
@@ -215,6 +226,18 @@ class Manager:
             yield
         finally:
             self._reorder_at = before
+
+    @contextmanager
+    def at_most(self, nodes: int) -> Iterator[None]:
+        """Give up with TooLargeError what needs more nodes alive at once; nothing else ends then."""
+        before, self._ceiling = self._ceiling, nodes
+        try:
+            with self.guard():
+                yield
+        finally:
+            self._ceiling = before
+            if isinstance(self._end, TooLargeError):
+                self._end = None
 
     def sift(self) -> None:
         """Look for a better order of bits now."""
@@ -247,6 +270,8 @@ class Manager:
     def _exceeded(self) -> "LimitError | None":
         used, limits = self.usage(), self.limits
         self._nodes = used.nodes
+        if self._ceiling and used.nodes > self._ceiling:
+            return TooLargeError("nodes", f"{self._ceiling:,}")
         if limits.nodes and used.nodes > limits.nodes:
             return LimitError("nodes", f"{limits.nodes:,}")
         if limits.seconds and used.seconds > limits.seconds:
