@@ -19,6 +19,7 @@ from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
 from sysmlc.passes.activity_usages import drawn_of, has_steps
+from sysmlc.passes.activity_written import report_written
 from sysmlc.values import dataclass, replace
 
 
@@ -83,9 +84,11 @@ class Activities:
         if not drawing.nodes:
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
-        inputs = Inputs(graph, Scope(graph, activity, sink), sink)
+        scope = Scope(graph, activity, sink)
+        inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, raising, sink)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
+        report_written(graph, activity, tokens, scope, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
         return activity_search.named(tokens, inputs.names)

@@ -38,6 +38,11 @@ class Scope:
         """Names that must not be given to other variables."""
         return [feature.variable for feature in self._features.values()]
 
+    def feature(self, name: str) -> Element | None:
+        """The property or parameter of a name."""
+        found = self._features.get(name) or self._features.get(name.removeprefix("self."))
+        return None if found is None else found.element
+
     def declare(self, name: str, formula: Formula) -> None:
         """Let a name stand for a Boolean input from now on."""
         self._extra[name] = formula
