@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, forms, nodes, statements, values
+from sysmlc.frontends.sysml import annotations, expressions, forms, nodes, statements, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.events import trigger
@@ -145,8 +145,7 @@ def _payload(low: "Lowering", made: Element, payload: Node) -> None:
     is_new = payload.kind in ("ConstructorExpression", "InvocationExpression")
     if created is not None and is_new:
         low.refer(Edge.CALLS, made, created)
-        given = [one for one in payload.members if one.kind in nodes.EXPRESSIONS or one.members]
-        for one in given:
+        for one in expressions.in_order(payload):
             _argument(low, made, one)
     else:
         _argument(low, made, payload)

@@ -153,8 +153,40 @@ def _call(node: Node) -> Expression:
     found = nodes.reference(node, "Membership", "FeatureTyping")
     if found is None:
         raise UnsaidError(node.kind)
-    given = [_read(nodes.value_of(one) or one) for one in arguments(node)]
+    given = [_read(nodes.value_of(one) or one) for one in _ordered(node)]
     return Call(_chain(Name(found.chain[0]), found.chain[1:]), tuple(given))
+
+
+def in_order(node: Node) -> list[Node]:
+    """Arguments in the order of what they are given to, where that is known; else as written."""
+    try:
+        return _ordered(node)
+    except UnsaidError:
+        return arguments(node)
+
+
+def _ordered(node: Node) -> list[Node]:
+    """Arguments in the order of what they are given to; named ones may stand in any order.
+
+    Raises UnsaidError where only some are named, or one before them is left out.
+    """
+    given = arguments(node)
+    formal = [nodes.target(one, "Redefinition") for one in given if one.kind == "Feature"]
+    if not any(nodes.reference(one, "Redefinition") for one in given):
+        return given
+    owner = formal[0].owner if formal and formal[0] is not None else None
+    declared = [] if owner is None else _declared(owner, node.kind == "ConstructorExpression")
+    numbers = [next((n for n, one in enumerate(declared) if one is to), -1) for to in formal]
+    if len(numbers) != len(given) or sorted(numbers) != list(range(len(given))):
+        raise UnsaidError(node.kind)
+    return [given[numbers.index(number)] for number in range(len(given))]
+
+
+def _declared(owner: Node, is_new: bool) -> list[Node]:
+    """What the arguments of a call, or of a new instance of a type, are given to, in order."""
+    found = [one for one in owner.members if one.membership.endswith("FeatureMembership")]
+    found += [one for one in owner.members if one.membership == "ParameterMembership"]
+    return [one for one in found if is_new or one.facts.get("direction") in ("in", "inout")]
 
 
 _READERS = {

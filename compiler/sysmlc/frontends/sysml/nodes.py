@@ -59,7 +59,9 @@ def quoted(node: Node, text: str) -> str:
 
 
 def arguments(node: Node) -> list[Node]:
-    """The arguments of an operator or an invocation, in order; named ones as features."""
+    """The arguments of an operator, an invocation or `new`, in order; named ones as features."""
+    if node.kind == "ConstructorExpression":
+        node = next(held(node, "ReturnParameterMembership"), node)
     return [one for one in node.members if one.membership in _ARGUMENTS]
 
 
