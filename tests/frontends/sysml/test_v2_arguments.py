@@ -1,4 +1,4 @@
-"""Arguments of calls, of new instances and of what is sent: none is lost, names have their place."""
+"""Arguments of calls, new instances and sendings: none is lost, named ones have their place."""
 
 import pytest
 from reading_v2 import read
