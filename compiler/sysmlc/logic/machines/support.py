@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.logic.samples import arrow, choice, machine
+from sysmlc.logic.samples import arrow, choice, machine, machine_of, region, state
 
 NOT_DERIVED = rule(
     "SM420",
@@ -10,10 +10,37 @@ NOT_DERIVED = rule(
     Severity.WARNING,
     "{what} of state machine '{machine}' is not derived; the component gets no contract",
     why="A contract that leaves part of the diagram out would promise what the diagram does "
-    "not say.",
+    "not say. Deferred events wait in a pool that has no end, and what is terminated has no next "
+    "step; a contract has finitely many values and runs that never end.",
     help="draw it with states and pseudostates, or leave the machine without contract",
     wrong=machine(choice("h", "terminate"), arrow("a", "h", "start")),
     right=machine(choice("h", "junction"), arrow("a", "h", "start"), arrow("h", "b")),
+)
+_HALVES = state(
+    "b",
+    region("s", state("d"), state("e"), arrow("si", "d"), arrow("d", "e", "start")),
+    region("t", state("f"), arrow("ti", "f")),
+)
+
+
+def _joining(*ways: str) -> str:
+    joined = (arrow("e", "x"), arrow("f", "x"), arrow("x", "a"))
+    return machine_of(region("r", state("a"), _HALVES, choice("x", "join"), *joined, *ways))
+
+
+JOIN_BESIDE = rule(
+    "SM507",
+    "join-beside-completion",
+    Severity.WARNING,
+    "'{state}' of state machine '{machine}' completes along '{other}' before its join can wait; "
+    "the component gets no contract",
+    why="A state completes once (UML 2.5.1, 14.2.3.8.3). The transition without a trigger beside "
+    "the join takes the completion at once, the join only if all its other states complete in the "
+    "very same step: whether anybody ever waits at it, the diagram leaves open.",
+    help="give one of the two transitions a trigger or a guard behind a choice, or join a state "
+    "that only waits",
+    wrong=_joining(arrow("i", "b"), arrow("e", "d")),
+    right=_joining(arrow("i", "b"), arrow("e", "d", "stop")),
 )
 NO_INITIAL = rule(
     "SM421",
@@ -66,8 +93,8 @@ def _with_submachines(graph: Graph, machine: Element) -> list[Element]:
     """The machine and all that states of it are, at whatever depth."""
     found = [machine]
     for one in found:
-        for state in graph.subtree(one):
-            called = submachine_of(graph, state)
+        for each in graph.subtree(one):
+            called = submachine_of(graph, each)
             if called is not None and called not in found:
                 found.append(called)
     return found

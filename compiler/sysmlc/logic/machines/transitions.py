@@ -14,7 +14,7 @@ from sysmlc.logic.machines.machine import (
     id_within,
 )
 from sysmlc.logic.machines.shape import common_state
-from sysmlc.logic.machines.support import NOT_DERIVED
+from sysmlc.logic.machines.support import JOIN_BESIDE
 from sysmlc.logic.machines.triggers import Parts, occurrence_of
 from sysmlc.logic.machines.vertices import drawn_from
 from sysmlc.logic.names import unique
@@ -152,12 +152,21 @@ def _join(graph: Graph, machine: Machine, into: list[Transition], sink: Sink) ->
     first, *others = into
     for one in into:
         beside = [each for each in machine.outgoing[one.source] if each is not one]
-        if any(not each.occurrences for each in beside):
-            element = graph[element_id(one.source)]
-            what = f"a completion transition of '{element.name}' beside its join"
-            sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine.name)
+        rival = next((each for each in beside if not each.occurrences), None)
+        if rival is not None:
+            _report_rival(graph, machine, one, rival, sink)
             return False
         machine.outgoing[one.source] = tuple(beside)
     joined = replace(first, also=tuple(others))
     machine.outgoing[first.source] = (joined, *machine.outgoing[first.source])
     return True
+
+
+def _report_rival(
+    graph: Graph, machine: Machine, one: Transition, rival: Transition, sink: Sink
+) -> None:
+    element, other = (graph[element_id(each)] for each in (one.source, rival.id))
+    target = graph.target(other, Edge.FLOW_TARGET)
+    name = other.name or f"{element.name} -> {target.name if target is not None else ''}"
+    subject = graph.subject(other)
+    sink.report(JOIN_BESIDE, subject, state=element.name, machine=machine.name, other=name)
