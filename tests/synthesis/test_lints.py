@@ -39,6 +39,16 @@ def test_every_rule_is_there():
     assert {one.code for one in RULES} == ours
 
 
+@pytest.mark.parametrize("code", ["SM537", "SM539", "SM540"])
+def test_what_is_wrong_with_a_conjunct_is_told_at_its_place(code):
+    text, sink = catalogue()[code].wrong, Sink()
+    lint(read_one(text), lambda origin: Subject(origin), sink, Manager)
+    (told,) = [one for one in sink if one.rule.code == code]
+    line, column = map(int, told.subject.name.split(":")[1:])
+    formula = text.splitlines()[line - 1][column - 1 :].split('"')[0]
+    assert f"'{formula}'" in told.message
+
+
 def test_a_dead_end_is_shown_by_a_state():
     made = contract(
         """
