@@ -3,7 +3,8 @@
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path, PurePosixPath
 
 from sysmlc.driver.manifest import MANIFEST, manifest_text
@@ -105,14 +106,26 @@ def _previous(folder: Path) -> list[str]:
         paths = {str(entry["path"]) for entry in entries}
     except (OSError, ValueError, KeyError, TypeError):
         return []
-    return sorted(path for path in paths if _is_inside(folder, path))
+    return sorted(filter(_inside(folder), paths))
 
 
-def _is_inside(folder: Path, path: str) -> bool:
-    pure = PurePosixPath(path)
-    if pure.is_absolute() or ".." in pure.parts:
-        return False
-    return (folder / path).resolve().parent.is_relative_to(folder.resolve())
+def _inside(folder: Path) -> Callable[[str], bool]:
+    """Whether a path lies in the folder; each folder in it is looked at once."""
+    whole = folder.resolve()
+
+    @cache
+    def is_inside(parent: str) -> bool:
+        return (folder / parent).resolve().is_relative_to(whole)
+
+    def is_file_inside(path: str) -> bool:
+        pure = PurePosixPath(path)
+        if pure.is_absolute() or ".." in pure.parts:
+            return False
+        if (folder / path).is_symlink():
+            return (folder / path).resolve().parent.is_relative_to(whole)
+        return is_inside(path.rpartition("/")[0])
+
+    return is_file_inside
 
 
 def _remove(folder: Path, path: str) -> str:

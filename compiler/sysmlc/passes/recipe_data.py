@@ -186,6 +186,8 @@ def _spoken(context: Context, activity: Element) -> frozenset[str]:
     """Dotted names in the values, guards and texts of an activity."""
     texts: list[object] = []
     for node in contents(context.graph, activity):
+        if node.kind is Kind.COMMENT:
+            continue
         texts += [node.attrs.get(key) for key in ("guard", "body", "default", "collection")]
         texts += [pin.attrs.get("value") for pin in context.graph.owned(node)]
     dotted = (_DOTTED.findall(text) for text in texts if isinstance(text, str) and "." in text)

@@ -76,12 +76,18 @@ def _spans(text: str) -> words.Spans | None:
 
 
 def _told(source: "Source", cache: "Cache | None", which: int) -> str:
+    return _both(source, cache)[which]
+
+
+@lru_cache(maxsize=256)
+def _both(source: "Source", cache: "Cache | None") -> tuple[str, str]:
+    """What a file says and its shape: both are asked for, before and after."""
     text = _text(source)
     if text is None:
-        return ""
-    found = _digests(source, text, cache)[which]
-    named = [str(int(name in text)) for name in FILES]
-    return "".join([found, *named]) if found else ""
+        return "", ""
+    named = "".join([str(int(name in text)) for name in FILES])
+    said, shape = _digests(source, text, cache)
+    return f"{said}{named}" if said else "", f"{shape}{named}" if shape else ""
 
 
 def _digests(source: "Source", text: str, cache: "Cache | None") -> tuple[str, str]:
