@@ -11,6 +11,7 @@ columns for every file.
 import re
 from collections.abc import Iterator
 from itertools import chain
+from typing import Any
 
 from sysmlc.frontends.caex import wellformed
 from sysmlc.frontends.caex.document import Document
@@ -123,13 +124,16 @@ def _fill(document: Document, pieces: Iterator[str], reader: Reader, ended: well
     """Fill the columns with the rows behind the root; the last piece.
 
     Text is listened to as in ``columns``: from a start tag that may have some to the next tag.
+    The numbers of rows above are objects, so that rows share them: compiled, each
+    row would have a number of its own otherwise.
     """
     tags, ends, texts = document.tags, document.ends, document.texts
     known, read = reader.known.get, reader.read
     add_tag, add_attributes, add_id = tags.append, document.attributes.append, document.ids.append
     add_parent, add_ordinal = document.parents.append, document.ordinals.append
     add_end, add_alike = ends.append, document.alike.append
-    stack, deepest = [0], DEFAULT_LIMITS.depth
+    stack: list[Any] = [0]
+    deepest = DEFAULT_LIMITS.depth
     push, pop = stack.append, stack.pop
     ordinal, row, state, piece = 0, 1, _LISTENING, ""
     for piece in pieces:

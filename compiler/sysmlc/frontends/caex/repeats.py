@@ -1,7 +1,7 @@
 """Names that should be of one element alone: of classes, libraries, attributes, aliases."""
 
 from collections.abc import Iterator
-from itertools import compress, repeat
+from itertools import compress, islice, repeat
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.frontends.caex.context import Context, path_of
@@ -36,6 +36,9 @@ REPEATED_ALIAS = rule(
 _NAMED = frozenset({*CLASS_TAGS, *LIBRARIES, "Attribute"})
 """Elements that are found by name; an internal element, interface or link has an ID for that."""
 
+_AT_ONCE = 1 << 13
+"""Rows that are looked at together; those of one element in the hierarchy are not divided."""
+
 
 def report(context: Context) -> None:
     """Tell of each row that has the name of one before it beside it."""
@@ -52,15 +55,32 @@ def report(context: Context) -> None:
 def _has_repeats(document: Document) -> bool:
     """Whether two rows beside one another may have a name: of one tag, or one by chance.
 
-    Rows that state the same are looked at once; this is done for every file that is read.
+    Rows that state the same are looked at once, and some thousands of rows at a time, so that
+    what is remembered of them stays near the processor: this is done for every file that is read.
     """
     are_named = list(map(_NAMED.__contains__, document.tags))
-    alike = list(compress(document.alike, are_named))
-    stating = set(alike)
+    stating = set(compress(document.alike, are_named))
     stated = map(document.attributes.__getitem__, stating)
     names = dict(zip(stating, map(dict.get, stated, repeat("Name")), strict=True))
-    beside = zip(compress(document.parents, are_named), map(names.get, alike), strict=True)
-    return len(set(beside)) < len(alike)
+    upper = document.children(0)
+    upper += [row for above in upper for row in document.children(above)]
+    if _is_repeated(document, names, [row for row in sorted(upper) if are_named[row]]):
+        return True
+    start = 0
+    for row in [*sorted(upper), len(are_named)]:
+        if row >= start + _AT_ONCE or row == len(are_named):
+            rows = list(compress(range(start, row), islice(are_named, start, row)))
+            if _is_repeated(document, names, rows):
+                return True
+            start = row
+    return False
+
+
+def _is_repeated(document: Document, names: dict[int, str | None], rows: list[int]) -> bool:
+    """Whether two of some rows have the parent and the name in common."""
+    parents = map(document.parents.__getitem__, rows)
+    beside = zip(parents, map(names.get, map(document.alike.__getitem__, rows)), strict=True)
+    return len(set(beside)) < len(rows)
 
 
 def _key(document: Document, row: int) -> str:

@@ -5,6 +5,9 @@ from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import ROLE_REFERENCES
 from sysmlc.ir import AttrValue, Element
 
+NO_ROWS: list[int] = []
+"""What stands for the rows of a site when they are lowered: a list of its own costs as much."""
+
 
 class Site:
     """One internal element, or the class at the top of some, and where it stands.
@@ -14,7 +17,8 @@ class Site:
     class above, ``instance`` the Instance that holds its values (empty while there are none).
     ``part_made`` and ``instance_made`` are the elements of these ids, where they were made for it.
     ``ppr`` is product, process, resource or empty. ``inner`` are the rows of the internal
-    elements in it, ``roles`` those that name a role, ``members`` all others but links.
+    elements in it, ``roles`` those that name a role, ``members`` all others but links; all but
+    ``roles`` are let go when they are lowered.
     """
 
     __slots__ = (

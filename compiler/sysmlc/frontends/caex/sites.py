@@ -7,7 +7,7 @@ from sysmlc.frontends.caex import groups, members, mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import instance, own
-from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.site import NO_ROWS, Site
 from sysmlc.frontends.caex.swift import Swift
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
@@ -118,6 +118,7 @@ class Sites:
             site = waiting.pop()
             if site.inner and not site.is_mirror:
                 placed = [self._place(row, site) for row in site.inner]
+                site.inner = NO_ROWS
                 waiting += [one for one in reversed(placed) if one is not None]
 
     def _place(self, row: int, parent: Site) -> Site | None:

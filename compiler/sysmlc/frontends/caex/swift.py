@@ -12,7 +12,7 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.plans import Known, Plan
 from sysmlc.frontends.caex.sameness import says_more
-from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.site import NO_ROWS, Site
 from sysmlc.frontends.caex.slots import Slots
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import Family
@@ -56,6 +56,7 @@ class Swift:
                 text = value_of(row)
                 if text is not None and text != known.text:
                     add(site.instance or instance(self._context, site), row, known, text)
+        site.members = NO_ROWS
 
     def _otherwise(self, site: Site, row: int) -> None:
         """A row that says more, or what no row of its class said before."""
