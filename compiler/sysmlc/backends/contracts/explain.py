@@ -36,6 +36,8 @@ _PREFIXES = {
 """What variables of diagrams begin with."""
 _UNSET = re.compile(r"!\w+$")
 _MANY = 3
+_MARKUP = re.compile(r"[<>`|\[\]]")
+"""What would not be shown as it is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,8 @@ class Page:
     guarantees: tuple[Section, ...]
     words: str = ""
     """What variables mean whose names begin alike."""
+    about: str = ""
+    """What the author says of the component."""
 
 
 def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
@@ -89,10 +93,34 @@ def _page(graph: Graph, contract: Contract) -> Page:
         *told(contract.origin),
         tuple(_variable(told, one) for one in owned["env"]),
         tuple(_variable(told, one) for one in owned["sys"]),
-        _sections(told, contract.assumptions),
-        _sections(told, contract.guarantees),
+        _sections(graph, told, contract.assumptions),
+        _sections(graph, told, contract.guarantees),
         "; ".join(_words(contract)),
+        _about(graph, contract),
     )
+
+
+def _about(graph: Graph, contract: Contract) -> str:
+    """The first paragraph of the author's comment on the component, or on what it is one of."""
+    for one in _said_of(graph, graph[contract.origin]):
+        comments = (
+            each for each in graph.sources(one, Edge.REFERENCES) if each.kind is Kind.COMMENT
+        )
+        text = next((str(each.attrs.get("body", "")) for each in comments), "")
+        paragraph = " ".join(text.strip().partition("\n\n")[0].split())
+        if paragraph and not _MARKUP.search(paragraph):
+            return paragraph
+    return ""
+
+
+def _said_of(graph: Graph, origin: Element) -> list[Element]:
+    """The component, the method of an operation, and what these alone specialise."""
+    found = [origin]
+    for one in found:
+        edge = Edge.METHOD if one.kind is Kind.OPERATION else Edge.SPECIALIZES
+        above = graph.targets(one, edge)
+        found += above if len(above) == 1 and above[0] not in found else []
+    return found
 
 
 def _words(contract: Contract) -> Iterator[str]:
@@ -107,12 +135,25 @@ def _variable(told: _Told, variable: Variable) -> Row:
     return Row(variable.name, describe(variable.domain), *told(variable.origin))
 
 
-def _sections(told: _Told, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
+def _sections(graph: Graph, told: _Told, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
     rows: dict[Class, list[Row]] = {class_: [] for class_ in Class}
     for one in conjuncts:
-        row = Row(print_formula(one.formula), one.text, *told(one.origin))
-        rows[one.class_].append(row)
+        rows[one.class_].append(_row(graph, told, one))
     return tuple(_section(c, found) for c, found in rows.items() if found)
+
+
+def _row(graph: Graph, told: _Told, one: Conjunct) -> Row:
+    """A conjunct; what a constraint demands has the author's name for it, where it has one."""
+    formula, (element, place) = print_formula(one.formula), told(one.origin)
+    said = graph.get(one.origin)
+    is_named = said is not None and said.kind is Kind.CONSTRAINT and bool(said.name)
+    if said is None or not is_named or one.text.partition("' ")[0] != f"'{said.name}":
+        return Row(formula, one.text, element, place)
+    text = f"{said.name[:1].upper()}{said.name[1:]}."
+    owner = graph.owner(said)
+    where = one.viewpoint or ("" if owner is None else owner.name)
+    kind = "requirement" if one.viewpoint else "constraint of"
+    return Row(formula, text, f"{kind} '{where}'", place)
 
 
 def _section(class_: Class, rows: list[Row]) -> Section:

@@ -56,8 +56,13 @@ def _contract_md(page: Any) -> str:
     add(
         f"# Contract of {page.component}\n"
         "\n"
-        f"From {page.element}"
     )
+    if page.about:
+        add(
+            f"{page.about}\n"
+            "\n"
+        )
+    add(f"From {page.element}")
     if page.place:
         add(f" in `{page.place}`")
     add(

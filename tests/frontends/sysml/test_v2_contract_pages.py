@@ -1,0 +1,67 @@
+"""Pages of contracts read as the author's own words: what it is, what it promises and why."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.backends.contracts.explain import explain
+from sysmlc.logic.contract import Contract
+from sysmlc.passes import pipeline
+
+LINE = """
+package Plant {
+    private import LineMachines::*;
+    private import DIN8580::*;
+    part def Line {
+        action carry : Convey;
+        action clamp : Clamping;
+        action screw : Screwing { doc /* Two turns.
+
+            The rest is for the worker. */ }
+    }
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def pages():
+    reading = read(LINE)
+    pipeline.run(reading.graph, reading.sink)
+    graph = reading.graph
+    return {one.component: explain(graph, one) for one in graph.derived(Contract)}
+
+
+def test_a_page_begins_with_what_the_library_says_of_the_action(pages):
+    lines = pages["Plant::Line.carry"].splitlines()
+    assert lines[:3] == [
+        "# Contract of Plant::Line.carry",
+        "",
+        "A belt with one piece carries it from the first place to the last, and waits there.",
+    ]
+
+
+def test_the_nearest_comment_goes_before_and_its_first_paragraph_is_enough(pages):
+    assert pages["Plant::Line.screw"].splitlines()[2] == "Two turns."
+
+
+def test_what_a_requirement_says_has_its_name(pages):
+    text = pages["Plant::Line.carry"]
+    assert "- Only a free belt is loaded. *(requirement 'ConveyContract')*\n  `loaded' ->" in text
+    assert "demands it" not in text
+
+
+def test_what_a_constraint_says_has_its_name_and_steps_have_the_diagrams(pages):
+    text = pages["Plant::Line.clamp"]
+    assert "- Asks for pick. *(constraint of 'Clamping')*\n  `asked=pick <->" in text
+    assert "- Action 'pick' runs from when all its flows have brought a token until" in text
+
+
+def test_markup_of_tools_is_not_copied():
+    reading = read(LINE.replace("Two turns.", "<p>Two turns</p>"))
+    pipeline.run(reading.graph, reading.sink)
+    (made,) = (
+        explain(reading.graph, one)
+        for one in reading.graph.derived(Contract)
+        if one.component.endswith("screw")
+    )
+    assert "<p>" not in made
+    assert made.splitlines()[2] == "A screw is turned in."
