@@ -8,7 +8,7 @@ import small_games
 from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Class
-from sysmlc.logic.formula import TRUE, Const
+from sysmlc.logic.formula import TRUE, Const, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import LimitError, Manager, make_game, solve, synthesise
 from sysmlc.synthesis.bdd.manager import TooLargeError
@@ -233,6 +233,19 @@ def test_a_counter_is_a_register():
     assert machines.controller(made, Form.LISTED).size >= 20
     values = {print_formula(move.output[0]) for moves in machine.states[1:] for move in moves}
     assert values == {"n", "n + 1", "0"}
+
+
+def test_a_register_that_counts_wrong_is_caught():
+    made = contract(COUNTING)
+    machine = machines.controller(made)
+    others = {"n + 1": Var("n"), "n": Const(0), "0": Var("n")}
+    for place, moves in enumerate(machine.states):
+        for at, move in enumerate(moves):
+            number = others[print_formula(move.output[0])] if place else Const(3)
+            spoilt = replace(move, output=(number, *move.output[1:]))
+            states = [*machine.states]
+            states[place] = (*moves[:at], spoilt, *moves[at + 1 :])
+            assert machines.said(replace(machine, states=tuple(states)), made)
 
 
 def test_what_a_counter_is_compared_with_is_kept_beside_it():

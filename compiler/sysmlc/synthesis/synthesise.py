@@ -24,6 +24,9 @@ from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.solve import solve_arena
 from sysmlc.values import dataclass
 
+MOST_NODES = 500_000
+"""Nodes of diagrams that looking for a machine may take: where they are more, there is none that
+anybody could read."""
 _LEAST = 0.01
 """CPU seconds that a check has when all that were given are used up."""
 
@@ -110,7 +113,8 @@ def made(contract: Contract, game: Game, plan: Strategy, form: Form = Form.ANY) 
     if form is Form.TABLE:
         return tabled(plan)
     try:
-        return _listed(contract, game, plan, form)
+        with game.manager.at_most(MOST_NODES):
+            return _listed(contract, game, plan, form)
     except TooLargeError:
         if form is Form.LISTED:
             raise

@@ -229,7 +229,7 @@ class Manager:
 
     @contextmanager
     def at_most(self, nodes: int) -> Iterator[None]:
-        """Give up with TooLargeError what needs more nodes alive at once; nothing else ends then."""
+        """Give up with TooLargeError what needs more nodes at once; what comes after goes on."""
         before, self._ceiling = self._ceiling, nodes
         try:
             with self.guard():

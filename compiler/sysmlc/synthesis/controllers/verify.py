@@ -5,6 +5,7 @@ a relation over a variable for its state (``closed``), and fair runs are looked 
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
@@ -13,7 +14,8 @@ from sysmlc.synthesis.algebra.systems import FairSystem, Universe
 from sysmlc.synthesis.algebra.traces import lasso, one, shortest
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.closed import Controller, memory, relation
-from sysmlc.synthesis.games.image import Product, joined
+from sysmlc.synthesis.controllers.glance import Closed, Glance
+from sysmlc.synthesis.games.image import Product
 from sysmlc.values import dataclass, replace
 
 
@@ -36,7 +38,7 @@ def faults(controller: Controller, contract: Contract, manager: Manager) -> Iter
     environment does, what should recur of the system does. Raises OutsideGr1Error, LimitError;
     SymbolError for a machine with other values than the contract's.
     """
-    with manager.guard():
+    with manager.guard(), manager.calm():
         yield from _Check(controller, contract, manager).faults()
 
 
@@ -50,42 +52,46 @@ class _Check:
         done = relation(controller, self.symbols, self.memory)
         self.first, self.moves = done.first, done.later
         assumed = self.universe.system(contract.assumptions)
-        self.allowed = assumed.parts
-        self.starts = assumed.init
-        parts = (*assumed.parts, *self.moves)
-        starts = Product(manager, self.first, ())(self.starts)
-        self.runs = Runs(FairSystem(self.symbols, starts, parts, ()))
-        self.fair = Runs(FairSystem(self.symbols, starts, parts, assumed.fairness))
+        self.allowed, self.fairness = assumed.parts, assumed.fairness
+        self.inputs = assumed.init
+        self.starts = Product(manager, self.first, ())(self.inputs)
+
+    @cached_property
+    def runs(self) -> Runs:
+        """All runs in which the assumptions about steps are kept."""
+        return Runs(self._system(()))
+
+    @cached_property
+    def fair(self) -> Runs:
+        """Those of them in which all recurs that should."""
+        return Runs(self._system(self.fairness))
+
+    def _system(self, fairness: tuple[Node, ...]) -> FairSystem:
+        return FairSystem(self.symbols, self.starts, (*self.allowed, *self.moves), fairness)
 
     def faults(self) -> Iterator[Fault]:
         """All of them, one for each conjunct at most."""
+        if self._is_plain():
+            return
         yield from self._unanswered()
-        if self._keeps_each_step():
-            guarantees = [one for one in self.contract.guarantees if one.class_ is not Class.SAFETY]
-        else:
-            guarantees = list(self.contract.guarantees)
-        for conjunct in guarantees:
+        for conjunct in self.contract.guarantees:
             broken = ~self.universe.node(conjunct)
             if broken != self.manager.false:
                 yield from _SEARCHES[conjunct.class_](self, conjunct, broken)
 
-    def _keeps_each_step(self) -> bool:
-        """Whether all guarantees for every step are kept; they are looked at together."""
-        safe = [one for one in self.contract.guarantees if one.class_ is Class.SAFETY]
-        later = self.runs.after(self.runs.reachable)
-        about_two: list[Node] = []
-        for node in map(self.universe.node, safe):
-            is_now, is_later = (
-                self.manager.support(node).isdisjoint(bits)
-                for bits in (self.runs.next_bits, self.runs.bits)
-            )
-            if is_later and self.manager.support(node):
-                if not later <= self.symbols.unprime(node):
-                    return False
-            elif not (is_now and self.runs.reachable <= node):
-                about_two.append(node)
-        groups = joined(self.manager, about_two)
-        return not any(self._is_possible(~kept, self.runs.system.parts) for kept in groups)
+    def _is_plain(self) -> bool:
+        """Whether it is seen without a look at each fault that there is none."""
+        first, safe, recurring = (
+            [self.universe.node(one) for one in self.contract.guarantees if one.class_ is class_]
+            for class_ in (Class.INIT, Class.SAFETY, Class.LIVENESS)
+        )
+        if not self._answers_first() or not all(self.starts <= node for node in first):
+            return False
+        closed = Closed(self.symbols, self.starts, self.allowed, self.moves, self.fairness)
+        seen = Glance(closed, safe, recurring)
+        if seen.is_possible(self._stuck(), self.allowed) or not seen.keeps_each_step():
+            return False
+        return not any(has_fair_run(seen, seen.reachable & ~node) for node in recurring)
 
     def _is_possible(self, step: Node, parts: Iterable[Node]) -> bool:
         """Whether a step by all parts from what is reached is one of these."""
@@ -95,12 +101,19 @@ class _Check:
         return found(self.runs.reachable) != self.manager.false
 
     def _unanswered(self) -> Iterator[Fault]:
-        answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
-        if self.starts & ~answered(self.manager.true) != self.manager.false:
+        if not self._answers_first():
             yield Fault(None)
+        yield from self._stepping(None, self._stuck(), self.allowed)
+
+    def _answers_first(self) -> bool:
+        """Whether there is an answer to all first inputs."""
+        answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
+        return self.inputs <= answered(self.manager.true)
+
+    def _stuck(self) -> Node:
+        """Steps and next inputs to which there is no answer."""
         after = self.symbols.all_bits(self._own(), primed=True)
-        stuck = ~Product(self.manager, self.moves, after)(self.manager.true)
-        yield from self._stepping(None, stuck, self.allowed)
+        return ~Product(self.manager, self.moves, after)(self.manager.true)
 
     def _own(self) -> tuple[str, ...]:
         variables = self.symbols.variables.values()
@@ -145,7 +158,7 @@ class _Check:
         return {name: value for name, value in values.items() if name != self.memory.name}
 
 
-def has_fair_run(runs: Runs, within: Node) -> bool:
+def has_fair_run(runs: Runs | Glance, within: Node) -> bool:
     """Whether some fair run goes on for ever without leaving states.
 
     Emerson and Lei's fixpoint, backwards: what is left has a past of its own without end, which in
@@ -163,7 +176,7 @@ def has_fair_run(runs: Runs, within: Node) -> bool:
     return False
 
 
-def _led_to(runs: Runs, within: Node, start: Node) -> Node:
+def _led_to(runs: Runs | Glance, within: Node, start: Node) -> Node:
     """The states that steps from the start lead to without leaving others."""
     found = front = start
     while front != runs.manager.false:
