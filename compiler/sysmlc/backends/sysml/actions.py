@@ -10,6 +10,7 @@ from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.events import trigger
 from sysmlc.backends.sysml.loops import over
 from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import is_around
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.successions import first, leaving
 from sysmlc.backends.sysml.texts import opaque_lines
@@ -99,7 +100,7 @@ def _other(book: Book, entry: Entry, element: Element) -> Line:
     for target in book.graph.targets(element, Edge.CALLS):
         other = book.plan.entry(target)
         name = book.name(entry, element, Edge.CALLS, target)
-        if name is not None and other is not None:
+        if name is not None and other is not None and is_around(book.plan, entry, other):
             mark = ":" if other.shape.is_definition else ":>"
             body.append(Line(f"ref {mark} {name}"))
     return Line(_start(book, entry, element), body + opaque_lines(book, entry, element))

@@ -40,7 +40,9 @@ def facts(book: Book, entry: Entry) -> list[Line]:
         and (name := book.name(entry.parent, element, Edge.REFERENCES, one)) is not None
     ]
     about = f" about {', '.join(names)}" if names else ""
-    name = f" {quoted(entry.name)}" if entry.name else ""
+    # What is below another comment stands beside it: two of them may have the same name.
+    is_named = bool(entry.name) and (entry.parent is None or _is_below(entry))
+    name = f" {quoted(entry.name)}" if is_named else ""
     return [Line(f"comment{name}{about}", text=body), *inner]
 
 

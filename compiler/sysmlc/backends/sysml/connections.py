@@ -5,7 +5,7 @@ from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import typing, visibility
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import chain
+from sysmlc.backends.sysml.references import chain, is_around
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
@@ -76,6 +76,9 @@ def end_chain(book: Book, entry: Entry, end: Element) -> str | None:
         return None
     path = book.graph.targets(end, Edge.PATH)
     steps = [*(one for one in path if one is not role), role]
+    first = book.plan.entry(steps[0])
+    if first is None or not is_around(book.plan, entry.parent, first):
+        return None
     return chain(book.plan, entry.parent, steps)
 
 
@@ -103,7 +106,9 @@ def item_flow(book: Book, entry: Entry) -> list[Line]:
 def _flow(book: Book, entry: Entry, name: str, item: Element | None, ends: tuple[str, str]) -> Line:
     element = entry.element
     assert element is not None
-    head = " ".join([*visibility(book, element), "flow", *([quoted(name)] if name else [])])
+    # A flow leads from a feature of one element to a feature of another; else it is a message.
+    word = "flow" if all("." in one for one in ends) else "message"
+    head = " ".join([*visibility(book, element), word, *([quoted(name)] if name else [])])
     type_ = None if item is None else book.name(entry.parent, element, Edge.CONVEYS, item)
     of = "" if type_ is None else f" of {type_}"
     return Line(f"{head}{of} from {ends[0]} to {ends[1]}")

@@ -1,10 +1,10 @@
 """Declarations: prefixes, keyword, name, types, specialisations, multiplicity, value."""
 
 from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.expressions import expression
 from sysmlc.backends.sysml.library import scalar_of
-from sysmlc.backends.sysml.relating import is_apart
+from sysmlc.backends.sysml.relating import ends_differ, is_apart, is_unlike
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.specific import feature_of, types_of
 from sysmlc.backends.sysml.words import quoted
@@ -73,7 +73,7 @@ def _generals(book: Book, entry: Entry) -> list[str]:
         other = book.plan.entry(general)
         if scalar_of(general) is not None:
             found.append(book.library(entry.parent, str(scalar_of(general))))
-        elif other is not None and other.shape.plain != entry.shape.plain and _is_odd(other, entry):
+        elif other is not None and _is_odd(book.plan, other, entry):
             book.approximated(element, f"generalization of {entry.shape.keyword}", "dependency")
             name = book.name(entry, element, Edge.SPECIALIZES, general)
             if name is not None:
@@ -85,10 +85,16 @@ def _generals(book: Book, entry: Entry) -> list[str]:
     return found
 
 
-def _is_odd(general: Entry, specific: Entry) -> bool:
+def _is_odd(plan: Plan, general: Entry, specific: Entry) -> bool:
     """Whether one kind of definition cannot specialise the other."""
+    if ends_differ(plan, general, specific):
+        return True
     pair = (specific.shape.plain, general.shape.plain)
-    return pair not in _CONFORMING and general.shape.is_definition == specific.shape.is_definition
+    return (
+        pair[0] != pair[1]
+        and pair not in _CONFORMING
+        and general.shape.is_definition == specific.shape.is_definition
+    )
 
 
 _CONFORMING = frozenset(
@@ -224,6 +230,8 @@ def _redefine(book: Book, entry: Entry, head: Head) -> None:
     is_same = False
     redefined = book.graph.targets(element, Edge.REDEFINES)
     for feature in redefined:
+        if is_unlike(book.plan, element, feature):
+            continue
         other = book.plan.entry(feature)
         name = book.redefined(entry.parent, feature)
         if name is None or other is None:

@@ -21,6 +21,7 @@ from sysmlc.backends.sysml import (
 from sysmlc.backends.sysml.account import account
 from sysmlc.backends.sysml.book import Book, Writer
 from sysmlc.backends.sysml.entry import Entry
+from sysmlc.backends.sysml.hiding import name_apart
 from sysmlc.backends.sysml.naming import name_all
 from sysmlc.backends.sysml.plan import make_plan
 from sysmlc.backends.sysml.printing import Line, printed
@@ -57,6 +58,7 @@ def _written(
     plan = make_plan(graph, losses, dropped)
     plan.applied = define(plan)
     name_all(plan)
+    name_apart(plan)
     caex = frozenset(one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
     book = Book(graph, plan, losses, WRITERS, public=public, caex=caex)
     relations.prepare(book)

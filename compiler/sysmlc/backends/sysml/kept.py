@@ -184,6 +184,8 @@ def _subkind(book: Book, _entry: Entry | None, element: Element) -> bool:
         return element.subkind == "function" or (element.subkind == "opaque" and not has_body)
     if element.kind is Kind.PACKAGE:
         return element.subkind == "model"
+    if element.kind is Kind.ACTION:
+        return element.subkind == "read"
     if element.kind is Kind.PROPERTY:
         owner = book.graph.owner(element)
         is_of_loop = owner is not None and owner.kind is Kind.STRUCTURED

@@ -35,7 +35,8 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     is_said = not is_direct and _is_said(book, source, reached)
     if not is_direct and not is_said:
         book.approximated(element, PAST_CONTROL, "bindings past it")
-    start, name = feature(book, entry.parent, source), "" if is_said else entry.name
+    is_own = is_direct or source.kind in STORES
+    start, name = feature(book, entry.parent, source), entry.name if is_own else ""
     lines: list[Line] = []
     for one in reached:
         end = feature(book, entry.parent, one)
@@ -47,7 +48,7 @@ def object_flow(book: Book, entry: Entry) -> list[Line]:
     if is_said:
         for line in lines:
             line.body.append(annotations.ours(book, entry, "Through", {}))
-    elif lines:
+    elif lines and is_own:
         lines[0].body += contents(book, entry)
     return lines
 

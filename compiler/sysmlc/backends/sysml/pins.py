@@ -5,6 +5,7 @@ from sysmlc.backends.sysml.calls import parameter_of
 from sysmlc.backends.sysml.declarations import Head, feature_head
 from sysmlc.backends.sysml.entry import Entry
 from sysmlc.backends.sysml.printing import Line
+from sysmlc.backends.sysml.references import is_around
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
@@ -49,8 +50,10 @@ def _result(book: Book, entry: Entry, element: Element) -> str:
     if action.subkind != "read":
         return ""
     feature = book.graph.target(action, Edge.CALLS)
-    found = None if feature is None else book.name(entry.parent, action, Edge.CALLS, feature)
-    return found or ""
+    other = book.plan.entry(feature)
+    if feature is None or other is None or not is_around(book.plan, entry.parent, other):
+        return ""
+    return book.name(entry.parent, action, Edge.CALLS, feature) or ""
 
 
 def object_node(book: Book, entry: Entry) -> list[Line]:

@@ -45,8 +45,8 @@ def visible(plan: Plan, space: Entry) -> dict[str, Entry]:
         for general in _direct(plan, space):
             for name, one in visible(plan, general).items():
                 known = inherited.setdefault(name, one)
-                if known is not None and known is not one and not _is_same(plan, known, one):
-                    inherited[name] = one if _is_same(plan, one, known) else None
+                if known is not None and known is not one and not is_same(plan, known, one):
+                    inherited[name] = one if is_same(plan, one, known) else None
         for name, found in inherited.items():
             if found is not None:
                 space.visible.setdefault(name, found)
@@ -136,7 +136,7 @@ def path_to(plan: Plan, scope: Entry | None, target: Entry) -> list[Entry] | Non
     for number, one in enumerate(path):
         if not one.name:
             return None
-        if _is_same(plan, lookup(plan, scope, one.name), one):
+        if is_same(plan, lookup(plan, scope, one.name), one):
             return _shown(plan, scope, path[number::-1])
     return _shown(plan, scope, path[::-1])
 
@@ -151,7 +151,7 @@ def _shown(plan: Plan, scope: Entry | None, path: list[Entry]) -> list[Entry]:
     return path
 
 
-def _is_same(plan: Plan, found: Entry | None, wanted: Entry) -> bool:
+def is_same(plan: Plan, found: Entry | None, wanted: Entry) -> bool:
     """Whether a name leads to an entry, or to one that redefines it where it is used."""
     seen = set()
     while found is not None and found is not wanted and id(found) not in seen:
@@ -168,7 +168,7 @@ def reference(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
     found = path_to(plan, scope, target)
     if found is None:
         return None
-    is_found = _is_same(plan, lookup(plan, scope, found[0].name), found[0])
+    is_found = is_same(plan, lookup(plan, scope, found[0].name), found[0])
     return ("" if is_found else "$::") + _joined(found)
 
 
@@ -177,7 +177,7 @@ def qualified(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
     found = path_to(plan, scope, target)
     if found is None:
         return None
-    is_found = _is_same(plan, lookup(plan, scope, found[0].name), found[0])
+    is_found = is_same(plan, lookup(plan, scope, found[0].name), found[0])
     return ("" if is_found else "$::") + "::".join(quoted(one.name) for one in found)
 
 
@@ -202,11 +202,27 @@ def chain(plan: Plan, scope: Entry | None, steps: Iterable[Element]) -> str | No
     if not known or len(known) != len(entries):
         return None
     for before, one in pairwise(known):
-        if not _is_same(plan, visible(plan, before).get(one.name), one):
+        if not is_same(plan, visible(plan, before).get(one.name), one):
             return None
         plan.show(one)
     first = reference(plan, scope, known[0])
     return None if first is None else ".".join([first, *(quoted(one.name) for one in known[1:])])
+
+
+def is_around(plan: Plan, scope: Entry | None, feature: Entry) -> bool:
+    """Whether a feature is one of what is around a namespace, so that it may be used there."""
+    above = feature.parent
+    if above is None or not (above.shape.is_definition or above.shape.is_usage):
+        return True
+    for one in _outwards(scope):
+        if one is above or any(general is above for general in _generals(plan, one)):
+            return True
+    return False
+
+
+def generals_of(plan: Plan, space: Entry) -> Iterator[Entry]:
+    """Namespaces whose members a namespace inherits, the nearest first."""
+    return _generals(plan, space)
 
 
 def library_name(plan: Plan, scope: Entry | None, name: str) -> str:

@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.sysml.book import Book
+from sysmlc.backends.sysml.entry import Entry, Plan
+from sysmlc.backends.sysml.references import is_around
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import generals
+from sysmlc.ir.query import bounds, conforms, generals, type_of
 
 _EDGES = frozenset(
     {
@@ -101,15 +103,73 @@ def _is_measure(one: Element, other: Element) -> bool:
 
 
 def is_apart(book: Book, feature: Element, other: Element) -> bool:
-    """Whether a feature subsets what its owner neither has nor inherits: SysML v2 cannot."""
+    """Whether a feature subsets what SysML v2 does not let it.
+
+    That is what its owner neither has nor inherits, or a feature of another kind.
+    """
     owner, above = book.graph.owner(feature), book.graph.owner(other)
+    if is_unlike(book.plan, feature, other):
+        return True
     return owner is None or not (above is owner or above in generals(book.graph, owner))
+
+
+def _is_unlike(book: Book, feature: Element, other: Element) -> bool:
+    return is_unlike(book.plan, feature, other)
+
+
+def _is_elsewhere(book: Book, action: Element, target: Element) -> bool:
+    """Whether an action is about a feature of something that is not around it."""
+    entry, other = book.plan.entry(action), book.plan.entry(target)
+    if action.kind is not Kind.ACTION or entry is None or other is None:
+        return False
+    return not is_called(action) and not is_around(book.plan, entry, other)
+
+
+def is_called(action: Element) -> bool:
+    """Whether an action calls, sends or accepts what it is about."""
+    return action.subkind.partition("-")[0] in ("call", "send", "broadcast", "accept", "start")
+
+
+def is_unlike(plan: Plan, feature: Element, other: Element) -> bool:
+    """Whether one is a port and the other a part, or may have more values than the other."""
+    entries = [plan.entry(one) for one in (feature, other)]
+    words = {one.shape.keyword for one in entries if one is not None}
+    if "port" in words and "part" in words:
+        return True
+    above, own = (plan.entry(plan.graph.owner(one)) for one in (other, feature))
+    if above is not None and own is not None and ends_differ(plan, above, own):
+        return True
+    return _most(feature) > _most(other) and Kind.PORT not in (feature.kind, other.kind)
+
+
+def ends_differ(plan: Plan, general: Entry, specific: Entry) -> bool:
+    """Whether ends of an association are of other types than those that they would redefine."""
+    graph, pair = plan.graph, (general.element, specific.element)
+    if any(one is None or one.kind is not Kind.ASSOCIATION for one in pair):
+        return False
+    ends = [[] if one is None else graph.targets(one, Edge.END) for one in pair]
+    for above, end in zip(*ends, strict=False):
+        wanted, given = type_of(graph, above), type_of(graph, end)
+        if wanted is not None and given is not None and not conforms(graph, given, wanted):
+            return True
+    return False
+
+
+def _most(feature: Element) -> float:
+    """How many values a feature may have."""
+    found = bounds(str(feature.attrs.get("multiplicity", "1")))
+    return 1 if found is None else (float("inf") if found[1] is None else found[1])
 
 
 def _always(_book: Book, _source: Element, _target: Element) -> bool:
     return True
 
 
-_UNLIKE = {Edge.SUBSETS: is_apart, Edge.APPLIES: _always}
+_UNLIKE = {
+    Edge.SUBSETS: is_apart,
+    Edge.REDEFINES: _is_unlike,
+    Edge.APPLIES: _always,
+    Edge.CALLS: _is_elsewhere,
+}
 _ASKED = (*(edge for edge in Edge if edge not in _EDGES), *_UNLIKE)
 """Edges that are not said of every kind of element."""

@@ -127,7 +127,8 @@ _PAYLOADS = frozenset({"PayloadFeature", "ReferenceUsage", "Feature"})
 
 
 def _flow(low: "Lowering", node: Node, made: Element) -> None:
-    ends = [_ported(low, end) for end in nodes.ends_of(node)[:2]]
+    found = nodes.ends_of(node) or nodes.events_of(node)
+    ends = [_ported(low, end) for end in found[:2]]
     for edge, path in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=False):
         if path:
             low.graph.connect(edge, made, path[-1])

@@ -102,7 +102,7 @@ def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
         interactions.message(low, node, owner)
     elif owner is not None and owner.kind in _STEPPED:
         objectflows.flow(low, node, owner)
-    elif nodes.is_message(node):
+    elif nodes.is_message(node) and (owner is None or not nodes.events_of(node)):
         low.unsupported(node)
     else:
         connections.item_flow(low, node, owner)
