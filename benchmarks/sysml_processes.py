@@ -1,7 +1,7 @@
 """CPU seconds of whole processes that compile SysML v2, start-up and reading of the cache included.
 
-The cache is one of its own. Before each round one line of a file is edited: what is written is
-something else (a package or a step more), a number, or a note only, which changes no words.
+The cache is one of its own. Before each round one line of a file is edited: a note only, which
+changes no words, a comment, a number, a text, a guard, which are values, or what changes the tree.
 """
 
 import os
@@ -36,9 +36,15 @@ package P {
 }
 """
 _number = count()
+_SERVICES = "services/conveyor.sysml"
+_EQUIPMENT = "equipment/equipment_interfaces.sysml"
+_PLANT = "plant/ice_lab.sysml"
 _VALUE = re.compile(r"(?<= := )\d+(?=;)")
 _COMPARED = re.compile(r"(?<=== )(?:true|false)\b")
-_TURNED = {"true": "false", "false": "true"}
+_OPERATOR = re.compile(r"(?<= )[=!]=(?= )")
+_COMMENT = re.compile(r"(?<=doc )/\*.*?\*/", re.DOTALL)
+_NODE = re.compile(r'(?<=nodeId = ")[^"]*')
+_TURNED = {"true": "false", "false": "true", "==": "!=", "!=": "=="}
 Edit = Callable[[str], str]
 
 
@@ -52,16 +58,68 @@ def number(text: str) -> str:
     return _VALUE.sub(str(1000 + next(_number)), text, count=1)
 
 
-def guard(text: str) -> str:
-    """A comparison with true or false, turned round: another one each time."""
-    found = list(_COMPARED.finditer(text))
-    one = found[next(_number) % len(found)]
-    return text[: one.start()] + _TURNED[one[0]] + text[one.end() :]
+def comment(text: str) -> str:
+    """Another comment for the second one that documents something."""
+    one = list(_COMMENT.finditer(text))[1]
+    return f"{text[: one.start()]}/* What it does, {next(_number)}. */{text[one.end() :]}"
 
 
-def step(text: str) -> str:
-    """One more step before the end of the first action."""
-    return text.replace("then done;", f"then action more{next(_number)}; then done;", 1)
+def node(text: str) -> str:
+    """Another text for the first id of a node."""
+    return _NODE.sub(f"ns=2;s=Node{next(_number)}", text, count=1)
+
+
+def _turned(pattern: re.Pattern[str]) -> Edit:
+    """What turns round one of those that are found: another one each time."""
+
+    def edit(text: str) -> str:
+        found = list(pattern.finditer(text))
+        one = found[next(_number) % len(found)]
+        return text[: one.start()] + _TURNED[one[0]] + text[one.end() :]
+
+    return edit
+
+
+def _before(mark: str, more: str) -> Edit:
+    """What puts something before the first place that has the mark; ``#`` is a new number."""
+    return lambda text: text.replace(mark, f"{more.replace('#', str(next(_number)))} {mark}", 1)
+
+
+def _replaced(old: str, new: str) -> Edit:
+    """What replaces the first match of a pattern; ``#`` is a new number."""
+    return lambda text: re.sub(old, new.replace("#", str(next(_number))), text, count=1)
+
+
+def _either(one: str, other: str) -> Edit:
+    """What replaces the first of two texts by the other, or back."""
+    return lambda text: text.replace(one, other, 1) if one in text else text.replace(other, one, 1)
+
+
+LABORATORY: dict[str, tuple[str, Edit]] = {
+    "a note": (_SERVICES, note),
+    "a comment": (_SERVICES, comment),
+    "a number": (_SERVICES, number),
+    "a node id": (_EQUIPMENT, node),
+    "a truth value in a guard": (_SERVICES, _turned(_COMPARED)),
+    "an operator in a guard": (_SERVICES, _turned(_OPERATOR)),
+    "a step more": (_SERVICES, _before("then done;", "then action more#;")),
+    "a step fewer": (_SERVICES, _replaced(r"then action more\d+;", "")),
+    "a step renamed": (_SERVICES, _replaced(r"callReleasePallet\d*", "callReleasePallet#")),
+    "a parameter more": (_SERVICES, _before("first start;", "in extra# : Integer;")),
+    "an attribute more": (_SERVICES, _before("first start;", "attribute extra# : Integer;")),
+    "another type": (_SERVICES, _either("out result : Boolean;", "out result : Integer;")),
+    "a constraint more": (
+        _SERVICES,
+        _before("first start;", "assert constraint { palletNumber > # }"),
+    ),
+    "another multiplicity": (
+        _EQUIPMENT,
+        _either("attribute lastResult : String {", "attribute lastResult : String [0..1] {"),
+    ),
+    "a part more": (_PLANT, _before("connect cell1", "part spare# : WorkCell;")),
+    "a connection more": (_PLANT, _before("connect cell1", "connect cell1 to cell2;")),
+}
+"""Edits of one line of the ICE laboratory: in which file, and how."""
 
 
 def package(text: str) -> str:
@@ -80,13 +138,13 @@ def seconds(command: list[str], folder: Path) -> float:
 
 
 def edited(
-    file: Path, arguments: list[str], folder: Path, rounds: int, *edits: Edit
+    arguments: list[str], folder: Path, rounds: int, *edits: tuple[Path, Edit]
 ) -> list[float]:
-    """The first time, with an empty cache; for each edit of ``file`` the least of ``rounds``."""
+    """The first time, with an empty cache; for each edit of a file the least of ``rounds``."""
     shutil.rmtree(folder / "cache", ignore_errors=True)
     command = [str(Path(sysconfig.get_path("scripts")) / "sysmlc"), *arguments]
     first = seconds(command, folder)
-    return [first, *(min(_after(edit, file, command, folder, rounds)) for edit in edits)]
+    return [first, *(min(_after(edit, file, command, folder, rounds)) for file, edit in edits)]
 
 
 def _after(edit: Edit, file: Path, command: list[str], folder: Path, rounds: int) -> list[float]:
@@ -104,17 +162,17 @@ def text(folder: Path, content: str, rounds: int) -> list[float]:
     """``sysmlc check`` of one file with that content."""
     path = folder / "model.sysml"
     path.write_text(content, "utf-8")
-    return edited(path, ["check", str(path)], folder, rounds, package)
+    return edited(["check", str(path)], folder, rounds, (path, package))
 
 
 def laboratory(corpus: Path, folder: Path, rounds: int) -> list[float]:
-    """``sysmlc`` of a copy of the ICE laboratory: the first time, a note, number, guard, step."""
+    """``sysmlc`` of a copy of the ICE laboratory: the first time, and each of the edits."""
     unit = folder / "ice"
     shutil.copytree(corpus / "sysml2" / "ice-lab", unit)
     (unit / "sysmlc.toml").write_text(_LEVELS, "utf-8")
-    file = unit / "services" / "conveyor.sysml"
     arguments = [str(unit), "-o", str(folder / "out")]
-    return edited(file, arguments, folder, rounds, note, number, guard, step)
+    edits = ((unit / file, edit) for file, edit in LABORATORY.values())
+    return edited(arguments, folder, rounds, *edits)
 
 
 def gather(corpus: Path, folder: Path) -> Path:
@@ -128,4 +186,4 @@ def gather(corpus: Path, folder: Path) -> Path:
 def official(unit: Path, folder: Path, rounds: int) -> list[float]:
     """``sysmlc check`` of these files as one unit: the first time, a note, a package."""
     file = min(unit.rglob("*.sysml"))
-    return edited(file, ["check", str(unit)], folder, rounds, note, package)
+    return edited(["check", str(unit)], folder, rounds, (file, note), (file, package))

@@ -336,21 +336,78 @@ def _start(found: re.Match[str]) -> int:
     return found.start()
 
 
-@pytest.mark.parametrize("seed", range(4))
+EDITS = [
+    (r"= \d\.5;", "= #.5;"),
+    (r";\n", "; // note\n"),
+    (r"/\*.*?\*/", "/* What # says. */"),
+    (r":= \d+", ":= #"),
+    (r"speed > \d", "speed > #"),
+    (r"speed (>|<=) ", "speed >= "),
+    (r"count \+ 1", "count + 1 + #"),
+    (r"(?<!then )action pick \{", "action place#; action pick {"),
+    (r"action place\d+; ", ""),
+    (r"part arm\d*", "part arm#"),
+    (r"Arm\[1\.\.2\]", "Arm[0..#]"),
+    (r"ScalarValues::Real =", "ScalarValues::Integer ="),
+    (r"attribute label", "attribute more# : Start; attribute label"),
+    (r"part lost", "part more# : Arm; part lost"),
+    (r"part lost", "part one#; part other#; connect one# to other#; part lost"),
+    (r"speed < \d+", "speed < 1#"),
+    (r"state busy;", "state busy; state tired#;"),
+    (r"enum high", "enum middle#; enum high"),
+    (r"part lost : Nowhere;", "part lost : Arm;"),
+]
+"""Edits of one line: what is replaced, and by what; ``#`` is a number."""
+
+
+def with_an_edit(text: str, chosen: random.Random) -> str:
+    old, new = chosen.choice(EDITS)
+    return re.sub(old, new.replace("#", str(chosen.randrange(3, 9))), text, count=1)
+
+
+@pytest.mark.parametrize("seed", range(10))
 def test_edits_of_every_kind_mixed(runs, seed):
     chosen = random.Random(seed)
     sysmlc("unit")
     for _ in range(4):
         path = Path("unit/line.sysml")
+        text = with_an_edit(path.read_text(), chosen)
+        path.write_text(with_an_edit(text, chosen) if chosen.random() < 0.5 else text)
+        assert_is_as_from_a_clean_build()
+
+
+ICE = [
+    (r"doc /\*.*?\*/", "doc /* What # does. */"),
+    (r":= \d+", ":= #"),
+    (r"== (?:true|false)", "== false"),
+    (r"(?<=[a-z] )==(?= [a-z])", "!="),
+    (r'nodeId = "[^"]*', 'nodeId = "ns=2;s=N#'),
+    (r"then done;", "then action more#; then done;"),
+    (r"in palletNumber : Integer;", "in palletNumber : Integer; in extra# : Integer;"),
+    (r"out result : Boolean;", "out result : Integer;"),
+    (r"first start;", "attribute more# : Boolean; first start;"),
+    (r"first start;", "assert constraint { palletNumber > # } first start;"),
+    (r"attribute (\w+) : String \{", r"attribute \1 : String [0..1] {"),
+    (r"connect cell\d", "part spare# : WorkCell; connect spare# to cell1; connect cell1"),
+    (r"default \d+ \[s\]", "default # [s]"),
+    (r":>> palletNumber = \d", ":>> palletNumber = #"),
+]
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("seed", range(3))
+def test_edits_of_the_laboratory_of_every_kind(runs, corpus, seed):
+    chosen = random.Random(seed)
+    shutil.rmtree("unit")
+    shutil.copytree(corpus / "sysml2" / "ice-lab", "unit")
+    sysmlc("unit")
+    for old, new in chosen.sample(ICE, 4):
+        every = sorted(Path("unit").rglob("*.sysml"))
+        path = chosen.choice([one for one in every if re.search(old, one.read_text(), re.DOTALL)])
         text = path.read_text()
-        edits = [
-            lambda t: t.replace("= 1.5;", f"= {chosen.randrange(9)}.5;"),
-            lambda t: t.replace(";\n", "; // note\n", 1),
-            lambda t: t.replace("part arm", "part hand"),
-            lambda t: t.replace("action pick {", "action place; action pick {"),
-            lambda t: t.replace(":= 0", f":= {chosen.randrange(20)}"),
-        ]
-        path.write_text(chosen.choice(edits)(chosen.choice(edits)(text)))
+        found = chosen.choice(list(re.finditer(old, text, re.DOTALL)))
+        said = found.expand(new.replace("#", str(chosen.randrange(3, 9))))
+        path.write_text(text[: found.start()] + said + text[found.end() :])
         assert_is_as_from_a_clean_build()
 
 
