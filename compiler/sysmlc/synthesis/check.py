@@ -1,20 +1,20 @@
 """Checks of the contracts of a model: each by itself, and behaviours against requirements."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.logic.contract import Conjunct, Contract
-from sysmlc.logic.printing import print_formula
+from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
-from sysmlc.synthesis.bdd.manager import LimitError, Manager
+from sysmlc.synthesis.bdd.manager import LimitError
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.requirements import check_viewpoints
-from sysmlc.synthesis.witness import Party, Witness, lines
+from sysmlc.synthesis.told import new_manager, report_failure, why_not
+from sysmlc.synthesis.witness import Party, Witness
 from sysmlc.values import dataclass
 
 SUFFIX = ".requirements"
@@ -126,11 +126,6 @@ def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> Non
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
 
 
-def new_manager(options: Options) -> Callable[[], Manager]:
-    """A manager within the limits for each question."""
-    return lambda: Manager(options.engine, options.limits, options.progress)
-
-
 def _failures(
     behaviour: Contract, demanded: Contract, place: Place, sink: Sink, options: Options
 ) -> tuple[Failure, ...] | None:
@@ -146,34 +141,11 @@ def _failures(
         sink.report(NOT_COMPARED, subject, component=behaviour.component, reason=reason)
         return None
     for failure in failures:
-        _report(behaviour, failure, place, sink)
+        rule = ASSUMES if failure.is_assumption else BREAKS
+        report_failure(rule, failure, behaviour.component, place(failure.conjunct.origin), sink)
     return failures
 
 
 def _witness(behaviour: Contract, failure: Failure) -> Witness:
     parties = (Party(behaviour.component, behaviour),)
     return Witness(behaviour.component, failure.conjunct, failure.trace, parties)
-
-
-def why_not(problem: Exception) -> str:
-    """Why something was not decided, with the formula that stands in the way."""
-    if isinstance(problem, OutsideGr1Error):
-        return f"'{print_formula(problem.conjunct.formula)}': {problem}"
-    return str(problem)
-
-
-def said(conjunct: Conjunct) -> str:
-    """What a conjunct says in words, in brackets."""
-    return f" ({conjunct.text.removesuffix('.')})" if conjunct.text else ""
-
-
-def _report(behaviour: Contract, failure: Failure, place: Place, sink: Sink) -> None:
-    conjunct = failure.conjunct
-    sink.report(
-        ASSUMES if failure.is_assumption else BREAKS,
-        place(conjunct.origin),
-        notes=tuple(lines(failure.trace, conjunct)),
-        component=behaviour.component,
-        formula=print_formula(conjunct.formula),
-        said=said(conjunct),
-    )

@@ -9,14 +9,13 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis.algebra.apart import apart, is_joined
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, composition
 from sysmlc.synthesis.algebra.discharge import Open
-from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import DomainError
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import LimitError
-from sysmlc.synthesis.check import new_manager, said, why_not
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.together_rules import BREAK, CIRCLE, CONTRADICT, LOST, NOT_COMPOSED, OPEN
+from sysmlc.synthesis.told import new_manager, report_failure, said, why_not
 from sysmlc.synthesis.witness import Party, Witness, lines
 from sysmlc.values import dataclass
 
@@ -84,9 +83,10 @@ def _composed(
     for one in found.open:
         _report_open(composite, one, place, sink)
     for failure in found.failures:
-        _report_broken(composite, failure, place, sink)
+        subject = place(failure.conjunct.origin or composite.origin)
+        report_failure(BREAK, failure, composite.component, subject, sink)
     for loss in found.losses:
-        _report_loss(composite, loss, place, sink)
+        report_failure(LOST, loss, composite.component, place(composite.origin), sink)
     return found
 
 
@@ -109,27 +109,6 @@ def _report_open(composite: Composite, one: Open, place: Place, sink: Sink) -> N
         component=composite.component,
         formula=print_formula(one.conjunct.formula),
         said=said(one.conjunct),
-    )
-
-
-def _report_broken(composite: Composite, failure: Failure, place: Place, sink: Sink) -> None:
-    sink.report(
-        BREAK,
-        place(failure.conjunct.origin or composite.origin),
-        notes=tuple(lines(failure.trace, failure.conjunct)),
-        component=composite.component,
-        formula=print_formula(failure.conjunct.formula),
-        said=said(failure.conjunct),
-    )
-
-
-def _report_loss(composite: Composite, loss: Failure, place: Place, sink: Sink) -> None:
-    sink.report(
-        LOST,
-        place(composite.origin),
-        notes=tuple(lines(loss.trace, loss.conjunct)),
-        component=composite.component,
-        said=loss.conjunct.text,
     )
 
 

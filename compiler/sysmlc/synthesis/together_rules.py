@@ -138,7 +138,7 @@ LOST = rule(
     "SM506",
     "sent-in-one-step",
     Severity.WARNING,
-    "in '{component}' {said} in one step: one of them is lost",
+    "in '{component}' two things are sent in one step, and one of them is lost{said}",
     why="A component takes one event in a step (UML 2.5.1, 14.2.3.9.1): of what is sent to it "
     "together one occurs, and nothing says which.",
     help="let one wait until the other was taken; the run shows how it comes about",

@@ -111,7 +111,7 @@ def test_two_that_send_the_same_lose_one_of_it():
     wrong = together_rules.LOST.wrong.replace("do send off()", "do send on()")
     _, found = checked(wrong)
     assert [one.message for one in found] == [
-        "in 'Room::Room' 'on' by 'one' and 'on' by 'other' are sent to 'lamp' in one step: one of "
-        "them is lost"
+        "in 'Room::Room' two things are sent in one step, and one of them is lost ('on' by 'one' "
+        "and 'on' by 'other' are sent to 'lamp')"
     ]
     assert found[0].notes[-1] == "then again from step 4"

@@ -66,7 +66,7 @@ def crowding(block: Block, members: Sequence[Member], known: Iterable[Wire]) -> 
             if not isinstance(receipt.occurs, f.Var)
         ]
         for (receipt, one), (other, two) in combinations(sent, 2):
-            text = f"{_by(receipt, one)} and {_by(other, two)} are sent to '{member.name}'"
+            text = f"{_by(receipt, one)} and {_by(other, two)} are sent to '{member.name}'."
             both = f.both(one.said, two.said)
             yield Conjunct(f.negate(both), Class.SAFETY, receipt.origin, text)
 
