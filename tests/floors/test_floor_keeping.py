@@ -36,7 +36,7 @@ def keeper(tmp_path):
 def made(study, keeper, has_relations=True, options=None):
     sink = Sink()
     found = studied(study, nowhere, sink, options or Options(), has_relations, keeper)
-    return found, [(one.rule.code, one.message) for one in sink]
+    return found, [(one.rule.code, one.message, one.notes) for one in sink]
 
 
 def forbid(monkeypatch):

@@ -26,26 +26,6 @@ NONE, START_WORD = "none", "start"
 TIMER = "timer"
 
 
-def place(robot: Robot) -> str:
-    """The target that a robot reached last."""
-    return f"{robot.word}_place"
-
-
-def goal(robot: Robot) -> str:
-    """The target that it is to reach next."""
-    return f"{robot.word}_goal"
-
-
-def clock(robot: Robot) -> str:
-    """The steps that it has been on its way."""
-    return f"{robot.word}_clock"
-
-
-def done(target: Target) -> str:
-    """Whether a target has been reached."""
-    return f"{target.word}_done"
-
-
 def mission_contract(study: Study, travel: Travel) -> Contract:
     """Every robot travels no longer than it is known to; all targets are reached in order, in time.
 
@@ -67,13 +47,13 @@ def _variables(study: Study, travel: Travel) -> Iterator[Variable]:
         yield Variable(TIMER, Owner.ENVIRONMENT, domain, study.origin)
     for robot in study.robots:
         places = EnumerationDomain((START_WORD, *names))
-        yield Variable(place(robot), Owner.ENVIRONMENT, places, robot.origin)
+        yield Variable(words.place(robot), Owner.ENVIRONMENT, places, robot.origin)
         longest = IntegerDomain(0, travel.longest)
-        yield Variable(clock(robot), Owner.ENVIRONMENT, longest, robot.origin)
+        yield Variable(words.clock(robot), Owner.ENVIRONMENT, longest, robot.origin)
         goals = EnumerationDomain((NONE, *names))
-        yield Variable(goal(robot), Owner.SYSTEM, goals, robot.origin)
+        yield Variable(words.goal(robot), Owner.SYSTEM, goals, robot.origin)
     for target in study.targets:
-        yield Variable(done(target), Owner.SYSTEM, BooleanDomain(), target.origin)
+        yield Variable(words.done(target), Owner.SYSTEM, BooleanDomain(), target.origin)
 
 
 def _last(study: Study) -> int:
@@ -94,7 +74,9 @@ def _assumed(study: Study, travel: Travel) -> Iterator[Conjunct]:
             yield words.each(f.implies(words.is_(TIMER, number), after), study.origin, text)
     for number, robot in enumerate(study.robots):
         text = f"'{robot.name}' starts where it is."
-        at_start = f.both(words.is_(place(robot), START_WORD), words.is_(clock(robot), 0))
+        at_start = f.both(
+            words.is_(words.place(robot), START_WORD), words.is_(words.clock(robot), 0)
+        )
         yield words.first(at_start, robot.origin, text)
         yield _idle(robot)
         for from_ in (START, *range(len(study.targets))):
@@ -104,9 +86,9 @@ def _assumed(study: Study, travel: Travel) -> Iterator[Conjunct]:
 
 def _idle(robot: Robot) -> Conjunct:
     text = f"Without a target '{robot.name}' stays where it is."
-    here = f.var(place(robot))
-    rests = f.both(f.eq(f.primed(here), here), f.primed(words.is_(clock(robot), 0)))
-    return words.each(f.implies(words.is_(goal(robot), NONE), rests), robot.origin, text)
+    here = f.var(words.place(robot))
+    rests = f.both(f.eq(f.primed(here), here), f.primed(words.is_(words.clock(robot), 0)))
+    return words.each(f.implies(words.is_(words.goal(robot), NONE), rests), robot.origin, text)
 
 
 def _travelling(study: Study, travel: Travel, number: int, from_: int, to: int) -> Conjunct:
@@ -114,16 +96,18 @@ def _travelling(study: Study, travel: Travel, number: int, from_: int, to: int) 
     robot, name = study.robots[number], study.targets[to].word
     most = travel.get(number, from_, to)
     origin = START_WORD if from_ == START else study.targets[from_].word
-    under_way = f.both(words.is_(place(robot), origin), words.is_(goal(robot), name))
-    arrives = f.primed(f.both(words.is_(place(robot), name), words.is_(clock(robot), 0)))
-    count = f.var(clock(robot))
+    under_way = f.both(words.is_(words.place(robot), origin), words.is_(words.goal(robot), name))
+    arrives = f.primed(
+        f.both(words.is_(words.place(robot), name), words.is_(words.clock(robot), 0))
+    )
+    count = f.var(words.clock(robot))
     if from_ == to:
         text = f"'{robot.name}' is in '{name}' already."
         return words.each(f.implies(under_way, arrives), robot.origin, text)
-    stays = f.primed(words.is_(place(robot), origin))
+    stays = f.primed(words.is_(words.place(robot), origin))
     if most is None:
         text = f"'{robot.name}' cannot get from '{origin}' to '{name}'."
-        never = f.both(stays, f.primed(words.is_(clock(robot), 0)))
+        never = f.both(stays, f.primed(words.is_(words.clock(robot), 0)))
         return words.each(f.implies(under_way, never), robot.origin, text)
     goes_on = f.both(
         f.compare(Op.LT, count, f.const(most - 1)),
@@ -140,10 +124,10 @@ def _travelling(study: Study, travel: Travel, number: int, from_: int, to: int) 
 def _promised(study: Study, travel: Travel) -> Iterator[Conjunct]:
     for target in study.targets:
         text = f"At first '{target.name}' has not been reached."
-        yield words.first(f.negate(f.var(done(target))), target.origin, text)
+        yield words.first(f.negate(f.var(words.done(target))), target.origin, text)
     for robot in study.robots:
         text = f"At first '{robot.name}' has no target."
-        yield words.first(words.is_(goal(robot), NONE), robot.origin, text)
+        yield words.first(words.is_(words.goal(robot), NONE), robot.origin, text)
     for number in range(len(study.targets)):
         yield from _of_target(study, number)
     yield from _orders(study)
@@ -152,14 +136,14 @@ def _promised(study: Study, travel: Travel) -> Iterator[Conjunct]:
 
 def _of_target(study: Study, number: int) -> Iterator[Conjunct]:
     target = study.targets[number]
-    is_done = f.var(done(target))
+    is_done = f.var(words.done(target))
     arrivals = [_arrival(robot, target) for robot in study.robots]
     text = f"'{target.name}' has been reached when a robot has."
     becomes = f.iff(f.primed(is_done), f.either(is_done, *arrivals))
     yield words.each(becomes, target.origin, text)
     for robot in study.robots:
-        goes = words.is_(goal(robot), target.word)
-        arrives = f.primed(words.is_(place(robot), target.word))
+        goes = words.is_(words.goal(robot), target.word)
+        arrives = f.primed(words.is_(words.place(robot), target.word))
         text = f"'{robot.name}' keeps a target until it has reached it."
         keeps = f.implies(f.both(goes, f.negate(arrives)), f.primed(goes))
         yield words.each(keeps, robot.origin, text)
@@ -168,22 +152,22 @@ def _of_target(study: Study, number: int) -> Iterator[Conjunct]:
         yield words.each(once, target.origin, text)
     for one, other in combinations(study.robots, 2):
         text = f"One robot goes to '{target.name}'."
-        both = f.both(*(words.is_(goal(robot), target.word) for robot in (one, other)))
+        both = f.both(*(words.is_(words.goal(robot), target.word) for robot in (one, other)))
         yield words.each(f.primed(f.negate(both)), target.origin, text)
 
 
 def _arrival(robot: Robot, target: Target) -> Formula:
-    goes = words.is_(goal(robot), target.word)
-    return f.both(goes, f.primed(words.is_(place(robot), target.word)))
+    goes = words.is_(words.goal(robot), target.word)
+    return f.both(goes, f.primed(words.is_(words.place(robot), target.word)))
 
 
 def _orders(study: Study) -> Iterator[Conjunct]:
     for order in study.orders:
         earlier, later = study.targets[order.earlier], study.targets[order.later]
         for robot in study.robots:
-            goes = words.is_(goal(robot), later.word)
+            goes = words.is_(words.goal(robot), later.word)
             text = f"'{later.name}' comes after '{earlier.name}'."
-            waits = f.primed(f.implies(goes, f.var(done(earlier))))
+            waits = f.primed(f.implies(goes, f.var(words.done(earlier))))
             yield words.each(waits, order.origin, text)
             if order.is_carried:
                 yield from _carrying(robot, earlier, later, order.origin)
@@ -191,20 +175,19 @@ def _orders(study: Study) -> Iterator[Conjunct]:
 
 def _carrying(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterator[Conjunct]:
     text = f"Who was in '{earlier.name}' goes on to '{later.name}', nobody else does."
-    goes = f.primed(words.is_(goal(robot), later.word))
-    is_there = f.primed(words.is_(place(robot), earlier.word))
+    goes = f.primed(words.is_(words.goal(robot), later.word))
+    is_there = f.primed(words.is_(words.place(robot), earlier.word))
     yield words.each(f.implies(goes, is_there), origin, text)
-    is_open = f.negate(f.primed(f.var(done(later))))
-    waits = f.primed(words.is_(goal(robot), NONE))
+    is_open = f.negate(f.primed(f.var(words.done(later))))
+    waits = f.primed(words.is_(words.goal(robot), NONE))
     going_on = f.implies(f.both(is_there, is_open), f.either(goes, waits))
     yield words.each(going_on, origin, text)
 
 
 def _deadlines(study: Study) -> Iterator[Conjunct]:
     for target in study.targets:
-        known = (study.deadline, target.deadline)
-        limit = min((one for one in known if one is not None), default=None)
-        is_done = f.var(done(target))
+        limit = study.limit(target)
+        is_done = f.var(words.done(target))
         if limit is None:
             text = f"'{target.name}' is reached."
             yield words.again(is_done, target.origin, text)

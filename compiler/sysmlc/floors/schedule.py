@@ -73,10 +73,5 @@ def keeps_orders(study: Study, allocation: Allocation) -> bool:
 def in_time(study: Study, schedule: Schedule) -> bool:
     """Whether all deadlines are kept if no robot has to wait for its way."""
     pairs = zip(study.targets, schedule.reached, strict=True)
-    limits = ((min_limit(study, target.deadline), step) for target, step in pairs)
+    limits = ((study.limit(target), step) for target, step in pairs)
     return all(limit is None or step <= limit for limit, step in limits)
-
-
-def min_limit(study: Study, deadline: int | None) -> int | None:
-    """The earlier one of a target's deadline and the mission's."""
-    return min((one for one in (study.deadline, deadline) if one is not None), default=None)

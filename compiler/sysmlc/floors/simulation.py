@@ -79,9 +79,8 @@ class Simulation(Generic[P]):
         study = world.study
         for number, target in enumerate(study.targets):
             left = runs.but(runs.all, world.done[number])
-            known = (study.deadline, target.deadline, STEPS)
-            limit = min(one for one in known if one is not None)
-            if left != runs.none and world.time >= limit:
+            limit = study.limit(target)
+            if left != runs.none and world.time >= min(STEPS, STEPS if limit is None else limit):
                 return Failure(left, number)
         is_endless = world.time > STEPS + len(world.near)
         return Failure(runs.but(runs.all, world.over)) if is_endless else None

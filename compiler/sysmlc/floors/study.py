@@ -138,6 +138,11 @@ class Study:
         """The targets that are reached before this one."""
         return tuple(sorted({one.earlier for one in self.orders if one.later == target}))
 
+    def limit(self, target: Target) -> int | None:
+        """The steps within which a target is to be reached: its own, and those of the mission."""
+        known = (self.deadline, target.deadline)
+        return min((one for one in known if one is not None), default=None)
+
     @property
     def carried(self) -> dict[int, int]:
         """The target that the robot goes on to, by the one that it has reached."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.floors.study import COMMANDS, STAY, WAYS, Grid, Robot, Study
+from sysmlc.floors.study import COMMANDS, STAY, WAYS, Grid, Robot, Study, Target
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -44,6 +44,26 @@ def steps(robot: Robot) -> str:
 def timer(robot: Robot) -> str:
     """How many steps it has had its target."""
     return f"{robot.word}_timer"
+
+
+def place(robot: Robot) -> str:
+    """The target that it reached last."""
+    return f"{robot.word}_place"
+
+
+def goal(robot: Robot) -> str:
+    """The target that it is to reach next."""
+    return f"{robot.word}_goal"
+
+
+def clock(robot: Robot) -> str:
+    """How many steps it has been on its way."""
+    return f"{robot.word}_clock"
+
+
+def done(target: Target) -> str:
+    """Whether a target has been reached."""
+    return f"{target.word}_done"
 
 
 def free(cell: int) -> str:
