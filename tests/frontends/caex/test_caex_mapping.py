@@ -534,6 +534,22 @@ def test_an_interface_that_says_more_in_an_instance_is_redefined_there(inside):
     assert "unsupported" not in reading.totals
 
 
+@pytest.mark.parametrize("of_class", ["", "<Description>in the class</Description>"])
+def test_what_an_instance_tells_of_an_interface_is_a_comment_of_its_own(of_class):
+    reading = Read(
+        port_of_class(of_class)
+        + plant(
+            '<InternalElement Name="c" ID="c" RefBaseSystemUnitPath="Lib/C">'
+            '<ExternalInterface Name="p" ID="2"><Description>here</Description>'
+            "</ExternalInterface></InternalElement>"
+        )
+    )
+    comments = {e.attrs["body"]: e.owner for e in reading.graph if e.kind.value == "Comment"}
+    assert comments == {"here": "c", **({"in the class": "1"} if of_class else {})}
+    sources = reading.graph.sources(reading.one("Lib::C::p", "Port"), "references")
+    assert "c" in [e.owner for e in sources]
+
+
 def test_nested_interfaces_are_ports_of_a_class_of_their_own():
     reading = Read(
         classes(

@@ -137,9 +137,10 @@ def _lead(context: Context, id: str, path: _Path) -> None:
 
 
 def _description(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
-    """What is told of an attribute in an instance alone, where no slot can carry it."""
+    """What is told of a feature in an instance alone, where no slot can carry it."""
     text = node.text("Description")
-    if node.element or not (text or "").strip() or text == known.node.text("Description"):
+    has_slot = bool(node.element) and node.tag == "Attribute"
+    if has_slot or not (text or "").strip() or text == known.node.text("Description"):
         return
     owner = instance(context, site)
     id = context.free(f"{owner}/{node.name}/Description", node)
@@ -165,6 +166,7 @@ def _interface(context: Context, site: Site, node: Node) -> None:
         one.verdict, one.element = Verdict.MAPPED, member.id
         check_class(context, one, site)
         _port_values(context, site, one, member, path)
+        _description(context, site, one, member, path)
         id = one.attributes.get("ID")
         if id:
             site.interface_ids.append((member.id, id))

@@ -33,11 +33,17 @@ def lower(context: Context, document: Document) -> None:
         element = context.graph.get(node.element)
         if element is None:
             continue
-        if element.kind is not Kind.DOCUMENT:
+        if element.kind is not Kind.DOCUMENT and not _is_of_class(element, node):
             _texts(context, node, element)
         for row in document.children(node.row):
             if document.tags[row] in _SAID:
                 _child(context, document, document.node(row), element)
+
+
+def _is_of_class(element: Element, node: Node) -> bool:
+    """Whether the row repeats the port of a class, of which it says nothing (``members``)."""
+    is_there = element.ordinal in (node.ordinal, -1)
+    return element.kind is Kind.PORT and not (is_there and element.name == node.name)
 
 
 def _holders(document: Document) -> list[int]:

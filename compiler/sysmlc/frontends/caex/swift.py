@@ -86,7 +86,7 @@ class Swift:
         port = plan.interfaces.get(values.get("Name", ""))
         if port is None:
             return self._plain.interface(site.own or own(self._context, site), row)
-        if document.ends[row] > row + 1:
+        if document.ends[row] > row + 1 or row in self._odd:
             return False
         if values.get("RefBaseClassPath") and self._is_another(site, document.node(row)):
             return False
