@@ -43,6 +43,13 @@ def test_what_is_outside_gr1_has_its_place_and_exit_code_2(here):
     assert "--> lamp.gr1.json:2:" in made.stderr
 
 
+def test_all_that_is_outside_gr1_is_named(here):
+    chase = "NAME: n;\nCONTRACT c: output boolean variable a; Assumptions: true; Guarantees: {};"
+    here.write("c.ltl", chase.format("F G a & G F a & (G F a -> F G !a)"))
+    told = re.findall(r"SM530 .*: ('.*') of 'n.c'", here.sysmlc("synth", "c.ltl").stderr)
+    assert told == ["'F G a'", "'G F a -> F G !a'"]
+
+
 def test_the_right_example_of_each_rule_is_decided(here):
     for rule in (rules.OUTSIDE_GR1, rules.UNREALIZABLE):
         here.write("right.gr1.json", rule.right)

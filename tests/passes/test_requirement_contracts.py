@@ -146,3 +146,11 @@ def test_an_operation_has_the_contract_of_its_method():
     contracts, _ = derived(model('body="level < 9"', inside=inside, more=more))
     (fill,) = [one for one in contracts if one.component == "Plant::Tank.fill"]
     assert lines(fill.guarantees) == ["init: !full", "liveness: full"]
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"), [("F G (level = 0)", ["SM503"]), ("G (filling -> F (level = 0))", [])]
+)
+def test_what_is_demanded_outside_gr1_is_told(text, codes):
+    _, sink = derived(model(f'language="LTL" body="{text}"'))
+    assert [one.rule.code for one in sink] == codes

@@ -1,6 +1,6 @@
 """Constraints written in LTL, as conjuncts of the contracts of what they constrain."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -167,6 +167,21 @@ def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: S
     if any(one.class_ is Class.OTHER and not is_reducible(one.formula) for one in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)
     return remembering(_extended(contract, conjuncts))
+
+
+def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
+    """Report each constraint of requirements that no reduction brings into GR(1)."""
+    from sysmlc.logic.reduction.reduce import is_reducible
+
+    general = [
+        one.origin
+        for contract in contracts
+        for one in (*contract.assumptions, *contract.guarantees)
+        if one.class_ is Class.OTHER and not is_reducible(one.formula)
+    ]
+    for constraint in map(graph.__getitem__, dict.fromkeys(general)):
+        name = constraint.name or "<Constraint>"
+        sink.report(OUTSIDE_GR1, graph.subject(constraint), constraint=name)
 
 
 def _scope(graph: Graph, contract: Contract) -> Scope | None:

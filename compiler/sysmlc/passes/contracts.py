@@ -22,7 +22,7 @@ from sysmlc.logic.requirements.statements import statements
 from sysmlc.logic.services import conditions
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.texts.formal import is_formal
-from sysmlc.passes.contract_formulas import add_formulas
+from sysmlc.passes.contract_formulas import add_formulas, report_general
 from sysmlc.values import dataclass, replace
 
 SAME_COMPONENT = rule(
@@ -65,7 +65,9 @@ class Contracts:
         found = [*self._of_machines(graph, sink), *_of_activities(graph)]
         found = add_formulas(graph, _told_apart(graph, found, sink), sink)
         assumed = self.assumed_low, self.assumed_high
-        found = [*found, *requirements.derive(graph, found, assumed, sink)]
+        required = list(requirements.derive(graph, found, assumed, sink))
+        report_general(graph, required, sink)
+        found = [*found, *required]
         taken = [contract.component for contract in found]
         found = _told_apart(graph, [*found, *services.derive(graph, taken, assumed, sink)], sink)
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))

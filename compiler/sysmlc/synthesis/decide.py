@@ -130,14 +130,15 @@ def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> D
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
-    conjunct = problem.conjunct
-    sink.report(
-        rules.OUTSIDE_GR1,
-        place(conjunct.origin or contract.origin),
-        component=contract.component,
-        formula=_said(conjunct),
-        why=problem.why,
-    )
+    outside = reduced(contract).outside
+    for conjunct in outside if problem.conjunct in outside else (problem.conjunct,):
+        sink.report(
+            rules.OUTSIDE_GR1,
+            place(conjunct.origin or contract.origin),
+            component=contract.component,
+            formula=_said(conjunct),
+            why=problem.why,
+        )
 
 
 def _report_limit(
