@@ -1,14 +1,10 @@
 """Relations that the specification adds to what a text says (KerML 8.4, SysML 8.4)."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import typed
 from sysmlc.language.names.contents import TYPES
+from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Node, Reference, Relation
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.model import Model
 
 _EXPRESSIONS = (
     kinds_of("InstantiationExpression")
@@ -19,7 +15,7 @@ _STEPS = kinds_of("IfActionUsage") | kinds_of("LoopActionUsage")
 _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
-def add_implied(model: "Model") -> None:
+def add_implied(model: Model) -> None:
     """Give the types and features of the documents what the text does not say of them.
 
     Expressions and multiplicities, which no one declares, are left as they are, but for the
@@ -42,7 +38,7 @@ def _is_condition(node: Node) -> bool:
     return owner is not None and owner.kind in _STEPS
 
 
-def _relations(model: "Model", node: Node) -> list[tuple[str, Node]]:
+def _relations(model: Model, node: Node) -> list[tuple[str, Node]]:
     """Kind and target of each relation that is needed beside the written ones."""
     positions = model.lookup.by_position(node)
     if node.kind not in _DECLARED:
@@ -60,7 +56,7 @@ def _relations(model: "Model", node: Node) -> list[tuple[str, Node]]:
 
 
 def _relation(
-    model: "Model", kind: str, target: Node, names: dict[Node, tuple[str, ...]]
+    model: Model, kind: str, target: Node, names: dict[Node, tuple[str, ...]]
 ) -> Relation:
     name = names.get(target)
     if name is None:

@@ -1,15 +1,11 @@
 """What may help with a name that leads nowhere: another kind, not visible, misspelt, elsewhere."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.language.metaclasses import is_a, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.lookup import Lookup
+from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Node, Relation
 from sysmlc.suggest import did_you_mean
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.model import Model
 
 _WANTED = {
     "Subclassification": "a definition",
@@ -27,7 +23,7 @@ _WANTED = {
 
 
 def advice(
-    model: "Model",
+    model: Model,
     user: tuple[Node, Relation],
     names: tuple[str, ...],
     start: contexts.Start,
@@ -69,7 +65,7 @@ _CLASSIFIERS = kinds_of("Classifier")
 
 
 def _elsewhere(
-    model: "Model", user: tuple[Node, Relation], names: tuple[str, ...], start: contexts.Start
+    model: Model, user: tuple[Node, Relation], names: tuple[str, ...], start: contexts.Start
 ) -> Node | None:
     """A package of the model or of the library that has the name, and something of that kind.
 
@@ -103,7 +99,7 @@ _OPERATORS = frozenset({"OperatorExpression"})
 
 
 def _of_library(
-    model: "Model", name: str, packages: tuple[str, ...], wanted: frozenset[str] | None
+    model: Model, name: str, packages: tuple[str, ...], wanted: frozenset[str] | None
 ) -> Node | None:
     """A package of the library that gives the name: first those through which others are seen."""
     for through in packages:

@@ -4,15 +4,11 @@ KerML 8.4.4.1 (checkFeatureEndRedefinition, checkFeatureParameterRedefinition,
 checkFeatureResultRedefinition), SysML 8.4 (subject and objective).
 """
 
-from typing import TYPE_CHECKING
-
 from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.names.asked import Asked
 from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.generals import Generals
 
 _ROLES = {
     "EndFeatureMembership": "end",
@@ -54,7 +50,7 @@ def own(scope: Node, wanted: str) -> list[Node]:
     return [member for member in scope.members if role(member) == wanted]
 
 
-def redefined(feature: Node, lookup: "Generals") -> list[Node]:
+def redefined(feature: Node, lookup: Asked) -> list[Node]:
     """What a feature without a written redefinition redefines by its position."""
     owner, wanted = feature.owner, role(feature)
     if not wanted or owner is None or owner.kind in _SKIPPED:
@@ -68,7 +64,7 @@ def redefined(feature: Node, lookup: "Generals") -> list[Node]:
     return [one for one in found if one is not feature]
 
 
-def gather(scope: Node, wanted: str, lookup: "Generals") -> list[Node]:
+def gather(scope: Node, wanted: str, lookup: Asked) -> list[Node]:
     """The features of ``scope`` with that role, those that it inherits after its own."""
     features = own(scope, wanted)
     for general in lookup.all_generals(scope):

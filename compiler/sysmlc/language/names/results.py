@@ -1,25 +1,22 @@
 """Where names after the dot of an expression are looked up: the feature or type of its result."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from sysmlc.language.names.asked import Asked
 from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.generals import Generals
 
 _FIRST_OPERATORS = frozenset({",", "??", "[", "#"})
 _CASTS = frozenset({"as", "meta"})
 
 
-def result(expression: Node, lookup: "Generals") -> Node | None:
+def result(expression: Node, lookup: Asked) -> Node | None:
     """The feature or type whose members follow a dot after ``expression``; None if unknown."""
     found = _RESULTS.get(expression.kind)
     return found(expression, lookup) if found is not None else None
 
 
-def named(expression: Node, lookup: "Generals") -> Node | None:
+def named(expression: Node, lookup: Asked) -> Node | None:
     """The element that an expression names: a referent, a target, a function or type."""
     for relation in expression.relations:
         if relation.kind == "Membership":
@@ -27,7 +24,7 @@ def named(expression: Node, lookup: "Generals") -> Node | None:
     return None
 
 
-def _referent(expression: Node, lookup: "Generals") -> Node | None:
+def _referent(expression: Node, lookup: Asked) -> Node | None:
     body = next((m for m in expression.members if m.kind == "Expression"), None)
     if body is None:
         return named(expression, lookup)
@@ -35,12 +32,12 @@ def _referent(expression: Node, lookup: "Generals") -> Node | None:
     return result(last, lookup) if last else None
 
 
-def _operand(expression: Node, index: int, lookup: "Generals") -> Node | None:
+def _operand(expression: Node, index: int, lookup: Asked) -> Node | None:
     operands = [m for m in expression.members if m.membership == "ParameterMembership"]
     return result(operands[index], lookup) if index < len(operands) else None
 
 
-def _operator(expression: Node, lookup: "Generals") -> Node | None:
+def _operator(expression: Node, lookup: Asked) -> Node | None:
     operator = expression.facts.get("operator")
     if operator in _CASTS:
         return _cast(expression, lookup)
@@ -49,7 +46,7 @@ def _operator(expression: Node, lookup: "Generals") -> Node | None:
     return _operand(expression, 0, lookup) if operator in _FIRST_OPERATORS else None
 
 
-def _cast(expression: Node, lookup: "Generals") -> Node | None:
+def _cast(expression: Node, lookup: Asked) -> Node | None:
     for member in reversed(expression.members):
         for relation in member.relations:
             if relation.kind == "FeatureTyping":
@@ -57,7 +54,7 @@ def _cast(expression: Node, lookup: "Generals") -> Node | None:
     return None
 
 
-def _invoked(expression: Node, lookup: "Generals") -> Node | None:
+def _invoked(expression: Node, lookup: Asked) -> Node | None:
     """The result parameter of a function or calculation, else the type that is instantiated."""
     invoked = named(expression, lookup)
     if invoked is None or expression.kind == "ConstructorExpression":
@@ -65,7 +62,7 @@ def _invoked(expression: Node, lookup: "Generals") -> Node | None:
     return returned(invoked, lookup, set()) or (invoked if invoked.kind not in FEATURES else None)
 
 
-def of_value(feature: Node, lookup: "Generals") -> Node | None:
+def of_value(feature: Node, lookup: Asked) -> Node | None:
     """What a feature that specialises nothing has its members from: the result of its value.
 
     KerML 8.4.4.10.2, checkFeatureValuationSpecialization; a loop variable has those of the
@@ -87,7 +84,7 @@ def of_value(feature: Node, lookup: "Generals") -> Node | None:
     return None
 
 
-def returned(function: Node, lookup: "Generals", seen: set[Node]) -> Node | None:
+def returned(function: Node, lookup: Asked, seen: set[Node]) -> Node | None:
     """The result parameter that a function or expression owns or inherits."""
     seen.add(function)
     for member in function.members:
@@ -100,15 +97,15 @@ def returned(function: Node, lookup: "Generals", seen: set[Node]) -> Node | None
     return None
 
 
-def _first(expression: Node, lookup: "Generals") -> Node | None:
+def _first(expression: Node, lookup: Asked) -> Node | None:
     return _operand(expression, 0, lookup)
 
 
-def _second(expression: Node, lookup: "Generals") -> Node | None:
+def _second(expression: Node, lookup: Asked) -> Node | None:
     return _operand(expression, 1, lookup)
 
 
-_RESULTS: dict[str, Callable[[Node, "Generals"], Node | None]] = {
+_RESULTS: dict[str, Callable[[Node, Asked], Node | None]] = {
     "FeatureReferenceExpression": _referent,
     "FeatureChainExpression": named,
     "SelectExpression": _first,

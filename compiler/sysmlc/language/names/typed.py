@@ -5,15 +5,11 @@ checkFeatureSuboccurrenceSpecialization, checkFeatureObjectSpecialization,
 checkFeatureSubobjectSpecialization, checkFeaturePortionSpecialization.
 """
 
-from typing import TYPE_CHECKING
-
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.contents import FEATURES
 from sysmlc.language.names.implied import is_part, owning_type
+from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.model import Model
 
 _BASES = (
     (kinds_of("Structure"), "Objects::objects", "Objects::Object::subobjects"),
@@ -25,7 +21,7 @@ _CLASSES = kinds_of("Class")
 _PORTIONS = "Occurrences::Occurrence::portions"
 
 
-def needed(model: "Model", node: Node) -> tuple[Node, ...]:
+def needed(model: Model, node: Node) -> tuple[Node, ...]:
     """What ``node`` specialises because of the types that its text says.
 
     Not what a feature that it specialises does for the same reason.
@@ -41,11 +37,11 @@ def needed(model: "Model", node: Node) -> tuple[Node, ...]:
     return tuple([one for one in found if one not in above])
 
 
-def _above(model: "Model", generals: tuple[Node, ...]) -> set[Node]:
+def _above(model: Model, generals: tuple[Node, ...]) -> set[Node]:
     return {one for general in generals for one in model.supers_of(general)}
 
 
-def _candidates(model: "Model", node: Node) -> tuple[Node, ...]:
+def _candidates(model: Model, node: Node) -> tuple[Node, ...]:
     known = model.by_type.get(node)
     if known is None:
         named = _names(model, node) if node.kind in FEATURES else []
@@ -55,7 +51,7 @@ def _candidates(model: "Model", node: Node) -> tuple[Node, ...]:
     return known
 
 
-def _names(model: "Model", node: Node) -> list[str]:
+def _names(model: Model, node: Node) -> list[str]:
     names = [_PORTIONS] if node.facts.get("isPortion") and _is_in(model, node, _CLASSES) else []
     stated = {one.kind for one in _stated(node)}
     for kinds, base, part in _BASES if stated else ():
@@ -71,7 +67,7 @@ def _stated(node: Node) -> list[Node]:
     return [one for one in said if one is not None]
 
 
-def _is_in(model: "Model", node: Node, kinds: frozenset[str]) -> bool:
+def _is_in(model: Model, node: Node, kinds: frozenset[str]) -> bool:
     """Whether a type of such a metaclass owns the feature, or a feature of such a type."""
     owner = owning_type(node)
     if owner is None:

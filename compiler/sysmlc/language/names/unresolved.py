@@ -1,27 +1,24 @@
 """Names that lead nowhere, told in the modeller's words, once for each use."""
 
 import re
-from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.language.names import contexts
 from sysmlc.language.names.advice import advice
 from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.lookup import Lookup
+from sysmlc.language.names.model import Model
 from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import TOO_CIRCULAR, UNRESOLVED
 from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node, Reference, Relation
-
-if TYPE_CHECKING:
-    from sysmlc.language.names.model import Model
 
 _NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"
 _LINK = re.compile(rf"{_NAME}(?:\s*::\s*{_NAME})*")
 """A qualified name, one link of a chain."""
 
 
-def report(model: "Model", document: Document, node: Node, relation: Relation, sink: Sink) -> None:
+def report(model: Model, document: Document, node: Node, relation: Relation, sink: Sink) -> None:
     """Report the first name of a chain that was not found."""
     lookup = model.lookup
     reference = relation.reference

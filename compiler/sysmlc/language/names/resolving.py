@@ -1,0 +1,85 @@
+"""Every reference of a model is resolved; what leads nowhere, or in a circle, is reported."""
+
+import gc
+import sys
+from collections.abc import Sequence
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.library import Library
+from sysmlc.language.names.adding import add_implied
+from sysmlc.language.names.model import Model, root
+from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP
+from sysmlc.language.names.unresolved import report, subject
+from sysmlc.language.tree import Document, Node, Relation
+
+_DEPTH = 20_000
+"""Names lead to names that lead to names: how deep Python may call itself meanwhile."""
+
+
+def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
+    """The model of the documents with every reference resolved; what leads nowhere is reported."""
+    model = Model(documents, library)
+    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
+    gc.disable()
+    sys.setrecursionlimit(max(depth, _DEPTH))
+    try:
+        for document in model.documents:
+            _resolve(document, model, sink)
+        add_implied(model)
+        _report_cycles(model, sink)
+        if library.is_core:
+            _report_core(model, sink)
+    finally:
+        sys.setrecursionlimit(depth)
+        if collecting:
+            gc.enable()
+    return model
+
+
+def _resolve(document: Document, model: Model, sink: Sink) -> None:
+    for node in document.root.walk():
+        for relation in node.relations:
+            if relation.reference.target is None and not relation.implied:
+                _resolve_one(document, node, relation, model, sink)
+
+
+def _resolve_one(
+    document: Document, node: Node, relation: Relation, model: Model, sink: Sink
+) -> None:
+    if relation.reference in model.lookup.abandoned:
+        return
+    try:
+        if model.lookup.target(node, relation) is None:
+            report(model, document, node, relation, sink)
+    except RecursionError:
+        model.lookup.abandon()
+        place = subject(document, node, relation.reference.start)
+        sink.report(TOO_DEEP, place, name=str(relation.reference))
+
+
+def _report_cycles(model: Model, sink: Sink) -> None:
+    told: set[Node] = set()
+    for node in model.lookup.cycles:
+        document, circle = model.document(node), model.lookup.circle(node)
+        if document in model.documents and told.isdisjoint({node, *circle}):
+            told.update((node, *circle))
+            names = " and ".join(f"'{model.name(one)}'" for one in circle)
+            place = subject(document, node, node.name_start)
+            through = f" through {names}" if names else ""
+            sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
+
+
+def _report_core(model: Model, sink: Sink) -> None:
+    """Tell once how many names the small library of our own had to serve, at the first use."""
+    roots = {document.root for document in model.library.loaded()}
+    uses = [
+        (document, node, relation.reference.start)
+        for document in model.documents
+        for node in document.root.walk()
+        for relation in node.relations
+        if not relation.implied
+        and relation.reference.target is not None
+        and root(relation.reference.target) in roots
+    ]
+    if uses:
+        sink.report(CORE, subject(*uses[0]), count=len(uses))
