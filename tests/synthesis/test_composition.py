@@ -96,6 +96,21 @@ def test_what_recurs_may_be_waited_for_by_both_when_one_of_them_has_to_begin():
     assert open_ones(composed(one=one, other=other)) == []
 
 
+def test_what_follows_once_the_one_thing_that_is_open_is_promised_is_not_told():
+    one = """
+        env power: bool
+        sys a: bool
+        assume always power'
+        promise recurs a
+    """
+    other = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
+    last = "env b: bool\nsys c: bool\nassume recurs b\npromise recurs c"
+    whole = "env power: bool\nsys c: bool\npromise recurs c"
+    found = composed(whole, one=one, other=other, last=last)
+    assert open_ones(found) == ["one: power'"]
+    assert broken(found) == ["c"]
+
+
 SAFE = """
     env {it}: bool
     sys {me}: bool
