@@ -4,7 +4,7 @@ import pytest
 from reading_v2 import FRONT, PASSES, read
 
 from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Edge, Graph
 from sysmlc.sources import Source
 
 ENGINE = """
@@ -43,6 +43,7 @@ def listed(text):
             "analysis a { subject e : Engine; objective : Mass; }",
             "the type of an objective is read as nothing",
         ),
+        ("use case u; part t { perform u; }", "the performance of what is no action"),
         ("flow def F { end a; end b; }", "flow definition is not read"),
         ("part def Q { constraint { 1 < 2 } }", "a constraint that nothing asserts is read as"),
         ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
@@ -100,3 +101,20 @@ def test_what_follows_from_an_unknown_name_is_not_told(text):
     reading = read(f"package P {{ {text} }}", passes=passes)
     errors = [one.rule.code for one in reading.sink if str(one.rule.severity) != "info"]
     assert set(errors) == {"SM205"}
+
+
+@pytest.mark.parametrize(
+    "ends",
+    ["end a ::> x; end b ::> y; end c ::> z;", "end :>> a ::> x; end b :> y; end part c ::> z;"],
+)
+def test_ends_in_the_body_of_a_connection_are_its_ends(ends):
+    reading = read(f"""
+package P {{
+    part def A;
+    connection def C {{ end a : A; end b : A; end c : A; }}
+    part def Cell {{ part x : A; part y : A; part z : A; connection k : C {{ {ends} }} }}
+}}""")
+    assert reading.codes() == []
+    made = reading.graph.targets(reading.named("P::Cell::k", "Connector"), Edge.END)
+    roles = [reading.graph.target(one, Edge.ROLE).name for one in made]
+    assert roles == ["x", "y", "z"]

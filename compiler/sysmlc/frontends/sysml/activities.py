@@ -89,6 +89,8 @@ def _performed(low: "Lowering", node: Node, owner: Element, target: Node | None)
         low.graph.connect(Edge.SUPPLIER, made, owner)
     elif known.kind is Kind.OPERATION:
         low.approximated(node, "the performance of an operation", "the operation")
+    else:
+        low.approximated(node, "the performance of what is no action", "nothing")
 
 
 # -- operations --------------------------------------------------------------------------------

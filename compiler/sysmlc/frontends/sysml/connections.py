@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def steps_of(end: Node) -> list[Node | None]:
     """Features on the way to the end of a connector or a flow, outermost first."""
     found: list[Node | None] = []
-    for one in nodes.references(end, "ReferenceSubsetting", "Subsetting", "Redefinition"):
+    named = nodes.references(end, "ReferenceSubsetting")
+    for one in named or nodes.references(end, "Subsetting", "Redefinition"):
         found += _targets(one.targets, len(one.chain))
     for member in end.members:
         inner = nodes.reference(member, "Redefinition", "ReferenceSubsetting")
@@ -52,14 +53,24 @@ def _targets(found: list[Node] | None, number: int) -> list[Node | None]:
 # -- connectors --------------------------------------------------------------------------------
 
 
+def linking(node: Node) -> list[Node]:
+    """The ends of a connection: those behind `connect`, else those of its body that name one."""
+    inside = [one for one in nodes.body_of(node) if one.facts.get("isEnd")]
+    named = [one for one in inside if nodes.reference(one, "ReferenceSubsetting", "Subsetting")]
+    return nodes.ends_of(node) or (named if len(named) > 1 else [])
+
+
 def connector(low: "Lowering", node: Node, owner: Element, role: str = "") -> Element:
     """A connection, an interface or a binding between features of a classifier."""
     made = low.add(node, Kind.CONNECTOR, nodes.name_of(node), owner, role=role, **visibility(node))
-    for end in nodes.ends_of(node):
+    ends = linking(node)
+    for end in ends:
         _end(low, end, made)
     _typed(low, node, made)
     for one in nodes.body_of(node):
-        if nodes.is_text(one):
+        if one in ends:
+            low.lower_all((text for text in one.members if nodes.is_text(text)), made)
+        elif nodes.is_text(one):
             low.lower(one, made)
         elif one.kind in _FLOWS:
             low.lower(one, owner)

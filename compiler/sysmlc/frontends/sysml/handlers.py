@@ -80,7 +80,7 @@ def _step(inside: "Handler") -> Handler:
 def _connection(low: Lowering, node: Node, owner: Element | None) -> None:
     if relations.is_derivation(node):
         relations.derivation(low, node, owner)
-    elif owner is not None and nodes.ends_of(node):
+    elif owner is not None and connections.linking(node):
         connections.connector(low, node, owner)
     elif owner is not None and owner.kind in STRUCTURAL:
         in_classifier(low, node, owner)
