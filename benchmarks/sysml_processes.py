@@ -103,7 +103,7 @@ LABORATORY: dict[str, tuple[str, Edit]] = {
     "a truth value in a guard": (_SERVICES, _turned(_COMPARED)),
     "an operator in a guard": (_SERVICES, _turned(_OPERATOR)),
     "a step more": (_SERVICES, _before("then done;", "then action more#;")),
-    "a step fewer": (_SERVICES, _replaced(r"then action more\d+;", "")),
+    "a step fewer": (_SERVICES, _replaced(r"\n *then done;", "")),
     "a step renamed": (_SERVICES, _replaced(r"callReleasePallet\d*", "callReleasePallet#")),
     "a parameter more": (_SERVICES, _before("first start;", "in extra# : Integer;")),
     "an attribute more": (_SERVICES, _before("first start;", "attribute extra# : Integer;")),
@@ -114,7 +114,7 @@ LABORATORY: dict[str, tuple[str, Edit]] = {
     ),
     "another multiplicity": (
         _EQUIPMENT,
-        _either("attribute lastResult : String {", "attribute lastResult : String [0..1] {"),
+        _replaced(r"attribute (\w+) : (\w+) \{", r"attribute \1 : \2 [0..1] {"),
     ),
     "a part more": (_PLANT, _before("connect cell1", "part spare# : WorkCell;")),
     "a connection more": (_PLANT, _before("connect cell1", "connect cell1 to cell2;")),

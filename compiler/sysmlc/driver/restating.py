@@ -9,6 +9,7 @@ from sysmlc.backends.base import InParts as FilesInParts
 from sysmlc.diagnostics import Diagnostic, Place, Sink
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import Request
+from sysmlc.driver.readers import EMIT, PASS, Reader, reader
 from sysmlc.driver.recording import Made, Recorded, digest_of_findings, made
 from sysmlc.ir import AttrValue, Graph
 from sysmlc.ir.reads import Reads, Value
@@ -16,39 +17,15 @@ from sysmlc.ir.rows import Row, graph_of
 from sysmlc.output import Output
 from sysmlc.passes.base import InParts, Pass
 from sysmlc.passes.pipeline import DERIVING, NAMES
-from sysmlc.values import dataclass, replace
+from sysmlc.values import replace
 
 _T = TypeVar("_T")
 _Derived = tuple[object, str]
 """What was derived, and a digest of what was reported."""
-_PASS, _EMIT = "pass", "emit"
 
 
 class LostError(Exception):
     """More than some files would be another one, or nobody knows what: all has to be compiled."""
-
-
-@dataclass(frozen=True, slots=True)
-class Reader:
-    """A pass or a back end (``what``) by its name, perhaps while it was at one ``part``."""
-
-    what: str
-    name: str
-    part: str = ""
-
-    @property
-    def whole(self) -> "Reader":
-        """The pass or back end with all that it does."""
-        return Reader(self.what, self.name)
-
-    @property
-    def order(self) -> int:
-        """When it runs: the front ends first, then the passes, then the back ends."""
-        return NAMES.index(self.name) if self.what == _PASS else len(NAMES) * (self.what == _EMIT)
-
-
-def _reader(text: str) -> Reader:
-    return Reader(*text.split(" ", 2)) if " " in text else Reader(text, "")
 
 
 def restated(
@@ -63,11 +40,11 @@ def restated(
     did not run again has the same questions. Raises LostError, also when findings, the paths of
     files or their traces would be others.
     """
-    readers = {_reader(who) for value in changed for who in known.readers[value]}
-    if any(who.what not in (_PASS, _EMIT) for who in readers):
+    readers = {reader(who) for value in changed for who in known.readers[value]}
+    if any(who.what not in (PASS, EMIT) for who in readers):
         raise LostError
     parts = sorted(
-        (one for one in readers if one.what == _PASS and one.part), key=lambda one: repr(one)
+        (one for one in readers if one.what == PASS and one.part), key=lambda one: repr(one)
     )
     again = _Again(known, request, inputs)
     before = [again.derived(one) for one in parts]
@@ -115,8 +92,8 @@ class _Again:
         self._reads = self._graph.reads = Reads()
         for literal in known.literals:
             self._reads.watch(self._graph[literal.id], literal)
-        self._stored = {module: {*map(_reader, by)} for module, by in known.stored.items()}
-        self._used = {module: {*map(_reader, by)} for module, by in known.used.items()}
+        self._stored = {module: {*map(reader, by)} for module, by in known.stored.items()}
+        self._used = {module: {*map(reader, by)} for module, by in known.used.items()}
         self._done: set[Reader] = set()
         self._alone: dict[str, list[object]] = {}
         self._followed: set[Reader] = set()
@@ -166,8 +143,8 @@ class _Again:
             return {who.whole}
         found: set[Reader] = set()
         for user in self._users(who.whole):
-            if user.what == _PASS:
-                part = Reader(_PASS, user.name, who.part)
+            if user.what == PASS:
+                part = Reader(PASS, user.name, who.part)
                 then = self._pass(user)
                 if not isinstance(then, InParts) or then.follows != who.name:
                     return {who.whole}
@@ -178,17 +155,38 @@ class _Again:
                 then_made = registry.load_backends([user.name])[0]
                 if not isinstance(then_made, FilesInParts) or then_made.follows != who.name:
                     return {who.whole}
-                found.add(Reader(_EMIT, user.name, f"{who.name} {who.part}"))
+                found.add(Reader(EMIT, user.name, f"{who.name} {who.part}"))
                 self._alone.setdefault(type(new[0]).__module__, []).append(new[0])
         self._followed |= found
         return found
 
     def able(self, who: Reader) -> Reader:
         """Who can run again: a part that needs what a pass derived needs all, unless it follows."""
-        if who.what != _EMIT or not who.part or who in self._followed:
+        if who.what != EMIT or not who.part or who in self._followed:
             return who
         backend = registry.load_backends([who.name])[0]
-        return who if isinstance(backend, FilesInParts) and not backend.follows else who.whole
+        if not isinstance(backend, FilesInParts) or not backend.follows:
+            return who
+        value = self._value(backend.follows, who.part.partition(" ")[2])
+        if value is None:
+            return who.whole
+        self._alone.setdefault(type(value).__module__, []).append(value)
+        self._followed.add(who)
+        return who
+
+    def _value(self, name: str, id: str) -> object:
+        """What a pass derives for one element; None where that is not all that comes of it."""
+        step, element = self._pass(Reader(PASS, name)), self._graph.get(id)
+        if not isinstance(step, InParts) or element is None:
+            return None
+        if not step.is_apart(self._graph, element):
+            return None
+        before = self._value(step.follows, id) if step.follows else None
+        who = Reader(PASS, name, id)
+        try:
+            return self.derived(who)[0] if before is None else self._from(who, before)[0]
+        except LostError:
+            return None
 
     def _from(self, who: Reader, value: object) -> _Derived:
         """What a pass derives for one element of what another pass derived for it."""
@@ -201,12 +199,12 @@ class _Again:
     def files(self, affected: set[Reader]) -> Iterator[tuple[str, str]]:
         """The texts that come out where these run again, and who asks for what they derive."""
         for name in NAMES:
-            if (step := Reader(_PASS, name)) in affected:
+            if (step := Reader(PASS, name)) in affected:
                 self._run(step)
                 affected |= self._users(step)
-        emitting = sorted({one.name for one in affected if one.what == _EMIT})
+        emitting = sorted({one.name for one in affected if one.what == EMIT})
         for name in emitting:
-            whole = Reader(_EMIT, name)
+            whole = Reader(EMIT, name)
             ours = [whole] if whole in affected else [one for one in affected if one.whole == whole]
             for one in ours:
                 yield from self._part(one) if one.part else self._emitted(one)
@@ -234,7 +232,7 @@ class _Again:
         for module, by in self._used.items():
             if who in {one.whole for one in by}:
                 for maker in sorted(self._stored.get(module, ()), key=lambda one: one.order):
-                    if maker.what == _PASS and maker.order < who.order:
+                    if maker.what == PASS and maker.order < who.order:
                         self._run(maker)
         self._expect(who)
 
@@ -250,7 +248,7 @@ class _Again:
         """Who asked for what a pass derives."""
         modules = [module for module, by in self._stored.items() if who in by]
         found = {one.whole for module in modules for one in self._used.get(module, ())}
-        if any(one.what not in (_PASS, _EMIT) for one in found):
+        if any(one.what not in (PASS, EMIT) for one in found):
             raise LostError
         return found - {who}
 

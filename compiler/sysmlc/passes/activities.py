@@ -55,7 +55,7 @@ class Activities:
 
     def is_apart(self, graph: Graph, about: Element) -> bool:
         """Activities are derived one by one."""
-        return True
+        return about.kind is Kind.ACTIVITY and not _is_drawn_elsewhere(about)
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
         """The token graph of an activity, or of an operation by one of a library; or None."""
