@@ -224,3 +224,21 @@ def test_variables_of_the_composition_are_the_parts():
         "taken": "sys",
         "ready": "sys",
     }
+
+
+def test_what_a_part_promises_of_its_inputs_does_not_prove_what_it_assumes_of_them():
+    one = "sys x: bool\nenv y: bool\nassume at first y"
+    other = "sys y: bool\nenv x: bool\nassume at first x\npromise at first !y\npromise always x | y"
+    assert "other: x" in open_ones(composed(one=one, other=other))
+
+
+def test_what_a_part_says_before_it_sees_its_inputs_it_says_as_promised():
+    """The server drops its work when the client is told; the client holds on until it is."""
+    server = (
+        "sys told: bool\nsys busy: bool\nenv asked: bool\nassume always busy -> !asked' | told'"
+    )
+    server += "\npromise at first !busy\npromise at first !told\npromise always told' <-> busy"
+    server += "\npromise always busy' <-> asked & !busy"
+    client = "sys asked: bool\nenv told: bool\npromise at first !asked"
+    client += "\npromise always told' -> !asked'"
+    assert open_ones(composed(server=server, client=client)) == []

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite, Part
-from sysmlc.logic.contract import Class, Contract, Owner
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Node
@@ -78,6 +78,11 @@ class Readings:
     links: tuple[tuple[Part, Link], ...]
     wires: tuple[frozenset[str], ...]
 
+    def seeing(self, part: Part) -> list[Conjunct]:
+        """What a part promises of outputs that it chooses when it has seen inputs of that step."""
+        own = [link for one, link in self.links if one == part and link.inputs]
+        return [one for one in part.contract.guarantees if any(_sees(one, link) for link in own)]
+
     def circular(self, parts: Sequence[Part]) -> list[Part]:
         """The parts that give in a step what, through others, depends on what they give in it."""
         among = [(part, link) for part, link in self.links if part in parts]
@@ -104,6 +109,16 @@ class Readings:
         heard = inputs.union(*(wire for wire in self.wires if wire & inputs))
         is_same_time = reader[1].is_first == giver[1].is_first
         return is_same_time and reader[0] != giver[0] and bool(heard & giver[1].outputs)
+
+
+def _sees(conjunct: Conjunct, link: Link) -> bool:
+    """Whether the conjunct says something of the outputs of a link, in the step of its inputs."""
+    used = f.variables(conjunct.formula)
+    is_alone = not any(one.primed for one in used)
+    names = {one.name for one in used if one.primed or is_alone}
+    is_first = conjunct.class_ is Class.INIT
+    is_then = is_first == link.is_first or (is_alone and not is_first)
+    return is_then and not names.isdisjoint(link.outputs)
 
 
 def readings(composite: Composite, universe: Universe) -> Readings:

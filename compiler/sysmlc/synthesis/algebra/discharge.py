@@ -74,16 +74,23 @@ class _Known:
         """What recurs when these parts keep what they promise to recur, too."""
         return Recurrence(self.runs.runs, parts, self._universe)
 
-    def can_break(self, conjunct: Conjunct) -> bool:
+    def can_break(self, conjunct: Conjunct, own: Iterable[Conjunct] = ()) -> bool:
         """Whether steps that keep all facts come to one that breaks an initial condition or a
-        condition of every step, however it may go on from there."""
-        runs, kept = self.runs.runs, self._invariant()
-        broken = ~self._universe.node(conjunct)
-        if conjunct.class_ is Class.INIT:
-            return runs.system.init & kept & broken != runs.manager.false
-        if has_primes(conjunct.formula):
-            return runs.reachable & runs.before_by(kept, broken) != runs.manager.false
-        return runs.reachable & kept & broken != runs.manager.false
+        condition of every step, however it may go on from there.
+
+        In that step whoever assumes the condition need not keep ``own``: it owes nothing then.
+        """
+        last = _Known(self._universe, (one for one in self.facts if one not in set(own)))
+        runs, then = self.runs.runs, last.runs.runs
+        broken, kept = ~self._universe.node(conjunct), last._invariant()
+        if conjunct.class_ is not Class.INIT and has_primes(conjunct.formula):
+            return runs.reachable & then.before_by(kept, broken) != runs.manager.false
+        begins = then.system.init & kept & broken != runs.manager.false
+        if begins or conjunct.class_ is Class.INIT:
+            return begins
+        return (
+            runs.reachable & then.before_by(kept & broken, runs.manager.true) != runs.manager.false
+        )
 
     def _invariant(self) -> Node:
         """What the facts say of each step alone."""
@@ -166,12 +173,22 @@ def _together(parts: Sequence[Part], reading: Readings, known: _Known) -> list[P
         kept = [
             part
             for part in chosen
-            if not any(steps.can_break(one) for one in _stepwise(part, is_assumed=True))
+            if not any(
+                _breaks_first(part, one, steps, reading) for one in _stepwise(part, is_assumed=True)
+            )
         ]
         if len(kept) == len(chosen):
             break
         chosen = kept
     return chosen
+
+
+def _breaks_first(part: Part, assumed: Conjunct, steps: _Known, reading: Readings) -> bool:
+    """Whether the others, keeping their steps, can be the first to break what a part assumes.
+
+    Outputs that the part chooses before it sees any input of the step it chooses as it has to.
+    """
+    return steps.can_break(assumed, reading.seeing(part))
 
 
 def outputs(part: Part) -> set[str]:
@@ -194,7 +211,9 @@ def _open(waiting: _Parts, stepwise: _Parts, known: _Known, reading: Readings) -
         around = known.adding((*others, *_stepwise(part, is_assumed=False)))
         for one in part.contract.assumptions:
             recurs = one.class_ is Class.LIVENESS
-            if known.gives([one]) or not (recurs or part in circular or steps.can_break(one)):
+            if known.gives([one]) or not (
+                recurs or part in circular or _breaks_first(part, one, steps, reading)
+            ):
                 continue
             trace = around.runs.violation(one)
             is_circular = trace is None
