@@ -41,7 +41,6 @@ def test_a_mission_that_is_done_ends_with_0_and_is_told_in_files(tmp_path):
         "Plant.Hall.md",
         "Plant.Hall.mission.contract.json",
         "Plant.Hall.robot.machine.json",
-        "Plant.Hall.robot.machine.puml",
         "Plant.Hall.seq.puml",
     ]
 

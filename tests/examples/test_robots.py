@@ -1,9 +1,11 @@
 """The hall of robots in both notations: its mission is validated, its outputs were read."""
 
+import json
+
 from examples.compiling import ROOT, compile_example, findings, outputs
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.floors.outcome import studied
-from sysmlc.floors.report import files
+from sysmlc.floors.report import files, summary
 from sysmlc.floors.study import Study
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
@@ -12,20 +14,39 @@ from sysmlc.synthesis.decide import Options, decide
 MODELS = [ROOT / "examples" / "robots" / name for name in ("hall.sysml", "hall.uml")]
 
 
-def study_of(model):
+def outcome_of(model):
     (study,) = compile_example(model, "ir").graph.derived(Study)
-    return study
-
-
-def test_the_mission_is_done_as_the_report_says(golden):
-    study = study_of(MODELS[0])
     sink = Sink()
     outcome = studied(study, lambda origin: Subject(), sink, Options(), has_relations=False)
     assert outcome.is_good
     assert list(sink) == []
+    return outcome
+
+
+def test_the_mission_is_done_as_the_report_says(golden):
+    outcome = outcome_of(MODELS[0])
+    assert f"    {summary(outcome)}\n" in (MODELS[0].parent / "README.md").read_text("utf-8")
     made = dict(files(outcome))
     kept = {path: text for path, text in made.items() if path.endswith((".md", ".seq.puml"))}
     golden.check("examples/robots", kept | {"files.txt": "".join(f"{one}\n" for one in made)})
+
+
+def test_both_notations_come_to_the_same():
+    """But for the ids of elements, which controllers and contracts name."""
+    first, second = (dict(files(outcome_of(model))) for model in MODELS)
+    assert sorted(first) == sorted(second)
+    for path, text in first.items():
+        if path.endswith(".json"):
+            made, other = (without_ids(json.loads(one)) for one in (text, second[path]))
+            assert made == other
+        else:
+            assert second[path] == text
+
+
+def without_ids(value):
+    if isinstance(value, dict):
+        return {key: without_ids(one) for key, one in value.items() if key != "origin"}
+    return [without_ids(one) for one in value] if isinstance(value, list) else value
 
 
 def test_all_its_contracts_can_be_kept():

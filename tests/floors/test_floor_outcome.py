@@ -1,5 +1,7 @@
 """The flow as a whole: controller, travel times, claims, other allocations, new targets."""
 
+from pathlib import Path
+
 import pytest
 from greedy_machine import greedy_answers
 from small_floors import floor
@@ -18,6 +20,8 @@ from sysmlc.floors.validate import validate
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.decide import Options, decide
 from sysmlc.values import replace
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 def nowhere(origin):
@@ -112,6 +116,7 @@ def test_what_the_thesis_claims_on_nine_cells(nine):
         "C_S refines C_R among others": False,
         "C_S refines C_E": False,
         "C_S refines C_M": False,
+        "C_E as the thesis has it discharges what C_R assumes of it": False,
         "C_E discharges what C_R assumes of it": False,
         "C_E discharges what C_R among others assumes of it": False,
     }
@@ -125,6 +130,7 @@ def test_one_robot_alone_gets_what_its_contract_assumes_of_the_environment():
     study = floor(2, None)
     found = {one.claim: one.holds for one in relations(study, shortest(study), Options())}
     assert found["C_S refines C_R"] is False
+    assert found["C_E as the thesis has it discharges what C_R assumes of it"] is True
     assert found["C_E discharges what C_R assumes of it"] is False
 
 
@@ -153,3 +159,13 @@ def test_a_schedule_is_what_a_robot_alone_does():
     schedule = scheduled(study, simulated(study, answers), ((0, 1, 2),))
     found = validate(study, ((0, 1, 2),), answers)
     assert found.reached == schedule.reached
+
+
+@pytest.mark.parametrize("claim", ["C_R", "C_R among others"])
+def test_the_page_about_robots_shows_the_runs_in_which_assumptions_are_not_kept(claim):
+    text = (DOCS / "robots.md").read_text(encoding="utf-8")
+    study = floor(3, None, None)
+    found = {one.claim: one for one in relations(study, shortest(study), Options())}
+    shown = found[f"C_E discharges what {claim} assumes of it"]
+    assert shown.reason.removeprefix("C_E does not promise: ") in " ".join(text.split())
+    assert all(f"    {line}\n" in text for line in shown.run), "\n".join(shown.run)

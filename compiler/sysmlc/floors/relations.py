@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from sysmlc.floors import words
-from sysmlc.floors.environment import environment_contract
+from sysmlc.floors.environment import Sharing, environment_contract
 from sysmlc.floors.mission import mission_contract
 from sysmlc.floors.robot import robot_contract
 from sysmlc.floors.study import Study
@@ -33,6 +33,7 @@ class Relation:
     """A run that shows why not, a line a step."""
 
 
+_ENVIRONMENTS = (Sharing.LITERAL, Sharing.ARBITRATED)
 OF_MISSION = "C_S refines C_M"
 _NONE: Mapping[str, Relation] = {}
 
@@ -49,12 +50,15 @@ def relations(
     robot = study.robots[0]
     system = system_contract(study)
     alone, shared = (robot_contract(study, robot, one) for one in (True, False))
-    environment = environment_contract(study)
+    literal, environment = (environment_contract(study, one) for one in _ENVIRONMENTS)
     asked = {
         "C_S refines C_R": partial(_refines, system, alone),
         "C_S refines C_R among others": partial(_refines, system, shared),
         "C_S refines C_E": partial(_refines, system, environment),
         OF_MISSION: partial(_refines, system, mission_contract(study, travel)),
+        "C_E as the thesis has it discharges what C_R assumes of it": partial(
+            _discharges, study, literal, alone
+        ),
         "C_E discharges what C_R assumes of it": partial(_discharges, study, environment, alone),
         "C_E discharges what C_R among others assumes of it": partial(
             _discharges, study, environment, shared

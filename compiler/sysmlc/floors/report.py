@@ -27,7 +27,9 @@ def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
         contract = outcome.controller.contract
         machine = names[contract.component]
         for file, text in files_of(machine, outcome.controller.machine, contract, "own"):
-            yield f"robots/{file}", text
+            # Conditions over all cells make arrows that nobody can read.
+            if file.endswith(".json"):
+                yield f"robots/{file}", text
     if study.targets and outcome.travel.steps:
         mission = mission_contract(study, outcome.travel)
         yield f"robots/{name}.mission.contract.json", write(mission, "contract")
