@@ -39,6 +39,13 @@ def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
     It is written again when it refers to what is private in the model, or to what turned out
     to have no place.
     """
+    book, lines = written(graph)
+    book.losses.report(sink)
+    return printed(lines), book.uses_library
+
+
+def written(graph: Graph) -> tuple[Book, list[Line]]:
+    """What the text is printed from, with the losses of each element."""
     public: frozenset[str] = frozenset()
     dropped: dict[str, str] = {}
     while True:
@@ -47,8 +54,7 @@ def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
             break
         public, dropped = public | book.plan.shown, dropped | book.dropped
     account(book, dropped)
-    book.losses.report(sink)
-    return printed(lines), book.uses_library
+    return book, lines
 
 
 def _written(

@@ -19,6 +19,8 @@ def _payload(book: Book, scope: Entry, element: Element) -> str:
     kind = element.subkind
     if kind == "time":
         when = str(element.attrs.get("when", ""))
+        if when.replace(".", "", 1).isdigit():
+            book.approximated(element, "a time without a unit", "seconds")
         if element.attrs.get("relative"):
             return f"after {duration(book, scope, element, when)}"
         return f"at {instant(book, scope, element, when)}"

@@ -66,7 +66,10 @@ def _end(book: Book, entry: Entry, element: Element, edge: Edge) -> str | None:
 
 def _say_ends(book: Book, element: Element) -> None:
     for edge in (Edge.SEND_EVENT, Edge.RECEIVE_EVENT):
-        book.said.update(one.id for one in book.graph.targets(element, edge))
+        for one in book.graph.targets(element, edge):
+            book.said.add(one.id)
+            book.approximated(one, "an event of a message", "its end")
+            book.approximated(element, "the events of a message", "its ends")
 
 
 def _facts(book: Book, entry: Entry, element: Element) -> list[Line]:

@@ -91,6 +91,8 @@ def _of_part(book: Book, part: Element, given: str) -> Iterator[str]:
         book.approximated(part, "a first or last node without a name", "start or done")
     elif part.name != given:
         yield attribute(book, "name", part.name) or ""
+    if part.kind is Kind.ACTIVITY_PARAMETER and not book.graph.targets(part, Edge.TYPED_BY):
+        book.approximated(part, "a parameter node without a type", "one of its parameter's type")
     for key in unsaid(book, None, part):
         text = attribute(book, key, part.attrs[key])
         if text is not None:
@@ -204,17 +206,32 @@ def _guard(_book: Book, _entry: Entry | None, element: Element) -> bool:
 def _direction(_book: Book, entry: Entry | None, element: Element) -> bool:
     if element.kind is Kind.PARAMETER:
         return element.attrs["direction"] == "return"
-    return _conjugated(_book, entry, element)
+    return _of_part_port(_book, entry, element)
 
 
-def _conjugated(_book: Book, entry: Entry | None, element: Element) -> bool:
+def _of_part_port(_book: Book, entry: Entry | None, element: Element) -> bool:
     is_part = entry is not None and entry.shape.keyword == "part"
     return element.kind is Kind.PORT and is_part
 
 
+def _turned(book: Book, entry: Entry | None, element: Element) -> bool:
+    """Conjugation is said with a type only."""
+    is_typed = bool(book.graph.targets(element, Edge.TYPED_BY))
+    is_part = entry is not None and entry.shape.keyword == "part"
+    return element.kind is Kind.PORT and (is_part or not is_typed)
+
+
+def _of_literals(_book: Book, _entry: Entry | None, element: Element) -> bool:
+    return element.kind is Kind.ENUMERATION_LITERAL
+
+
 def _visibility(book: Book, _entry: Entry | None, element: Element) -> bool:
     found = element.attrs["visibility"]
-    return found not in ("private", "protected", "public") or element.id in book.public
+    owner = book.graph.owner(element)
+    is_end = owner is not None and owner.kind is Kind.ASSOCIATION
+    is_bare = is_end or element.kind is Kind.PIN
+    is_said = found in ("private", "protected", "public") and element.id not in book.public
+    return is_bare or not is_said
 
 
 def _default(book: Book, entry: Entry | None, element: Element) -> bool:
@@ -259,7 +276,8 @@ _UNLIKE: dict[str, _Asked] = {
     "guard": _guard,
     "guard_literal": _on_flows,
     "direction": _direction,
-    "conjugated": _conjugated,
+    "conjugated": _turned,
+    "value": _of_literals,
     "visibility": _visibility,
     "default": _default,
     "default_instance": _always,

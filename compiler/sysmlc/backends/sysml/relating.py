@@ -165,11 +165,19 @@ def _always(_book: Book, _source: Element, _target: Element) -> bool:
     return True
 
 
+def _is_of_owner(_book: Book, source: Element, target: Element) -> bool:
+    """References that no relation says; what a constraint is about besides its owner is said."""
+    if source.kind is Kind.CONSTRAINT:
+        return target.id == source.owner
+    return source.kind not in _OF_KINDS[Edge.REFERENCES]
+
+
 _UNLIKE = {
+    Edge.REFERENCES: _is_of_owner,
     Edge.SUBSETS: is_apart,
     Edge.REDEFINES: _is_unlike,
     Edge.APPLIES: _always,
     Edge.CALLS: _is_elsewhere,
 }
-_ASKED = (*(edge for edge in Edge if edge not in _EDGES), *_UNLIKE)
+_ASKED = tuple(dict.fromkeys((*(edge for edge in Edge if edge not in _EDGES), *_UNLIKE)))
 """Edges that are not said of every kind of element."""

@@ -56,6 +56,8 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
         return None
     own = book.plan.entry(flow)
     name = own.name if own is not None else ""
+    if own is not None and own.parent is not entry.parent:
+        book.approximated(flow, "a flow that another node owns", "a succession beside its source")
     inner = [] if own is None else contents(book, own)
     body = inner if flow.kind is Kind.CONTROL_FLOW else [*_objects(book, entry, flow), *inner]
     is_decision = entry.shape.keyword == "decide"

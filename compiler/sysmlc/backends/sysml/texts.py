@@ -30,7 +30,11 @@ def comment(book: Book, entry: Entry) -> list[Line]:
 
 def _spelt(element: Element) -> str:
     """The text as it is read again: without what surrounds its lines."""
-    lines = str(element.attrs.get("body", "")).replace("\r\n", "\n").strip().splitlines()
+    return _plain(str(element.attrs.get("body", "")))
+
+
+def _plain(text: str) -> str:
+    lines = text.replace("\r\n", "\n").strip().splitlines()
     return "\n".join(one.rstrip() for one in lines)
 
 
@@ -40,6 +44,8 @@ def opaque_lines(book: Book, entry: Entry, element: Element) -> list[Line]:
     languages = element.attrs.get("languages", element.attrs.get("language", ""))
     texts = bodies if isinstance(bodies, tuple) else () if bodies is None else (bodies,)
     named = languages if isinstance(languages, tuple) else (languages,) * len(texts)
+    if any(str(one) != _plain(str(one)) for one in texts):
+        book.approximated(element, "white space around a text", "none")
     pairs = zip(texts, (*named, *([""] * len(texts))), strict=False)
     return [representation(str(text), str(language)) for text, language in pairs if text]
 

@@ -28,6 +28,8 @@ def package(low: "Lowering", node: Node, owner: Element | None) -> None:
         return
     kind, subkind = marked(node, Kind.PACKAGE)
     said = {**visibility(node), **outside(node), **of_aml(node)}
+    if inside and all(map(outside, inside)):
+        said["external"] = True
     made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **said)
     low.lower_all(node.members, made)
 

@@ -30,7 +30,8 @@ def read(low: "Lowering", facts: Mapping[str, AttrValue], owner: Element) -> Non
         low.last(lambda fact=fact: _keep(low, owner, str(fact)))  # type: ignore[misc]
 
 
-def _keep(low: "Lowering", owner: Element, fact: str) -> None:
+def _keep(low: "Lowering", owner: Element, fact: str, tries: int = 3) -> None:
+    """Give one fact; parts of behaviours may have to wait for what leads to them."""
     found = _FACT.fullmatch(fact)
     if found is None or owner.id not in low.graph:
         return
@@ -38,6 +39,8 @@ def _keep(low: "Lowering", owner: Element, fact: str) -> None:
     holder = owner if part is None else _part(low, owner, part)
     key = str(json.loads(name)) if name.startswith('"') else name
     if holder is None:
+        if tries:
+            low.last(lambda: _keep(low, owner, fact, tries - 1))
         return
     if key == "name":
         low.graph.rename(holder, str(_value(text)))
