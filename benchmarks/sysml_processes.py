@@ -65,8 +65,9 @@ def comment(text: str) -> str:
 
 
 def node(text: str) -> str:
-    """Another text for the first id of a node."""
-    return _NODE.sub(f"ns=2;s=Node{next(_number)}", text, count=1)
+    """Another text for the last id of a node; findings quote the first one."""
+    one = list(_NODE.finditer(text))[-1]
+    return f"{text[: one.start()]}ns=2;s=Node{next(_number)}{text[one.end() :]}"
 
 
 def _turned(pattern: re.Pattern[str]) -> Edit:
