@@ -7,6 +7,8 @@ exported, limits hold between operations alone.
 """
 
 import ctypes
+from collections.abc import Callable
+from functools import partial
 from itertools import count
 from types import ModuleType
 from typing import Protocol
@@ -29,23 +31,26 @@ _watched: WeakValueDictionary[int, Watched] = WeakValueDictionary()
 _numbers = count(1)
 
 
-def watch(library: ModuleType, bdd: object, watched: Watched) -> bool:
+def watch(library: ModuleType, bdd: object, watched: Watched) -> Callable[[], int] | None:
     """Have CUDD ask whether an operation of ``bdd`` is to be given up.
 
-    Returns whether that can be done. An operation that is given up raises what ``dd`` raises when
-    CUDD has no result: RuntimeError or ValueError.
+    Returns what counts the nodes alive, in no time; None if nothing of this can be done. An
+    operation that is given up raises what ``dd`` raises when CUDD has no result: RuntimeError or
+    ValueError.
     """
     manager = _manager(bdd)
     try:
-        register = ctypes.CDLL(library.__file__).Cudd_RegisterTerminationCallback
+        known = ctypes.CDLL(library.__file__)
+        register, counted = known.Cudd_RegisterTerminationCallback, known.Cudd_ReadNodeCount
     except (OSError, AttributeError):
-        return False
+        return None
     if manager is None:
-        return False
+        return None
+    counted.restype = ctypes.c_long
     number = next(_numbers)
     _watched[number] = watched
     register(ctypes.c_void_p(manager), _ASKED, ctypes.c_void_p(number))
-    return True
+    return partial(counted, ctypes.c_void_p(manager))
 
 
 def _manager(bdd: object) -> int | None:

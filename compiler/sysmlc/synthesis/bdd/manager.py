@@ -116,8 +116,8 @@ class Manager:
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
         self.true: Node = cast("Node", self._bdd.true)
         self.false: Node = cast("Node", self._bdd.false)
-        if self.engine == "cudd":
-            watch(library, self._bdd, self)
+        is_cudd = self.engine == "cudd"
+        self._alive = watch(library, self._bdd, self) if is_cudd else None
 
     def declare(self, bits: Collection[str]) -> None:
         """Add bits below those that are there."""
@@ -256,7 +256,9 @@ class Manager:
             self._progress(doing)
         if self.is_over() and self._end is not None:
             raise self._end
-        if self._nodes > self._reorder_at:
+        # Not when the clock says so: what is decided must not depend on how fast that was.
+        nodes = self._nodes if self._alive is None else self._alive()
+        if nodes > self._reorder_at:
             self.reorder_automatically(True)
 
     def is_over(self) -> bool:
