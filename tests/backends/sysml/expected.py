@@ -1,7 +1,7 @@
 """What the toolkit must find of a graph: told by the graph alone, not by the back end."""
 
 from sysmlc.ir import Edge, Kind
-from sysmlc.ir.query import type_of
+from sysmlc.ir.query import generals, type_of
 
 DEFINITIONS = {
     Kind.CLASS: "PartDefinition",
@@ -85,7 +85,7 @@ def expected(graph):
 
 
 def clashing(graph):
-    """Ids of elements with the name of something beside them, or of a package of the library."""
+    """Ids of elements with the name of something beside them or inherited, or of the library."""
     found = set()
     for owner in (None, *graph):
         beside = graph.roots() if owner is None else graph.owned(owner)
@@ -97,7 +97,20 @@ def clashing(graph):
         if owner is None:
             found.update(id for name, ids in names.items() if name in LIBRARY for id in ids)
         found.update(id for name in IN_BEHAVIOURS for id in names.get(name, ()))
+        if owner is not None:
+            inherited = _inherited(graph, owner)
+            found.update(id for name, ids in names.items() if name in inherited for id in ids)
     return found
+
+
+def _inherited(graph, owner):
+    """Names of members of what an element specialises or is typed by."""
+    first = [*generals(graph, owner)]
+    for edge in (Edge.TYPED_BY, Edge.INSTANCE_OF, Edge.REPRESENTS, Edge.REDEFINES):
+        first += graph.targets(owner, edge)
+    above = {one.id: one for one in first}
+    above |= {more.id: more for one in first for more in generals(graph, one)}
+    return {one.name for general in above.values() for one in graph.owned(general) if one.name}
 
 
 def _members(graph, beside):

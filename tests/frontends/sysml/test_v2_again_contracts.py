@@ -1,0 +1,104 @@
+"""Behaviour in SysML v2 that is written as our own text and read again: graph, text and contracts.
+
+State machines with history, regions and submachines, forks and joins, usages of library operations.
+"""
+
+import pytest
+from reading_v2 import Reading
+
+from examples.compiling import ROOT
+from sysmlc.backends.sysml.document import document
+from sysmlc.diagnostics import Sink
+from sysmlc.ir.compare import compare
+from sysmlc.logic.contract import Contract
+
+PASSES = (
+    "resolve",
+    "inherit",
+    "classify",
+    "ports",
+    "flows",
+    "behaviours",
+    "activities",
+    "contracts",
+)
+MACHINES = """
+package P {
+    private import DIN8580::*;
+    private import SysMLC::*;
+    item def Go; item def Stop; item def Back; item def Reset;
+    state def Sub {
+        entry; then idle;
+        state idle; accept Go then busy;
+        state busy; accept Stop then idle;
+    }
+    part def Gate {
+        attribute n : ScalarValues::Integer;
+        exhibit state life {
+            entry; then off;
+            state off; accept Go then on;
+            state on {
+                entry; then a;
+                state a; accept Go then b;
+                state b; accept Stop then a;
+                #deepHistory state mem;
+            }
+            transition leave first on accept Stop then off;
+            transition back first off accept Back then on.mem;
+            state both parallel {
+                state left { entry; then l1; state l1; accept Go then l2; state l2; }
+                state right { entry; then r1; state r1; accept Stop then r2; state r2; }
+            }
+            transition toBoth first off accept Reset then both;
+            transition fromBoth first both accept Back then off;
+            state sub : Sub;
+            transition toSub first on accept Reset then sub;
+            transition outSub first sub accept Back then off;
+        }
+    }
+    part def Robot { action pick : Pick; action place : Place; }
+    part def Line {
+        perform action run {
+            first start then split;
+            fork split; then a; then b;
+            action a; then meet;
+            action b; then meet;
+            join meet; then c;
+            action c; then done;
+        }
+    }
+}
+"""
+EXAMPLES = sorted((ROOT / "examples").rglob("*.sysml"))
+
+
+def contracts(reading):
+    """What each component assumes and guarantees."""
+    return {
+        one.component: (
+            [conjunct.formula for conjunct in one.assumptions],
+            [conjunct.formula for conjunct in one.guarantees],
+        )
+        for one in reading.graph.derived(Contract)
+    }
+
+
+def comes_back(text):
+    """The contracts, once graph, text and contracts are found to be the same again."""
+    once = Reading(text, passes=PASSES)
+    made, _ = document(once.graph, Sink())
+    again = Reading(made, passes=PASSES)
+    assert [str(one) for one in compare(once.graph, again.graph, ("id",))] == []
+    assert document(again.graph, Sink())[0] == made
+    assert contracts(once) == contracts(again)
+    assert [one.message for one in again.sink if one.is_error] == []
+    return contracts(once)
+
+
+def test_machines_forks_and_usages_of_operations_come_back():
+    assert len(comes_back(MACHINES)) == 4
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_in_sysml_v2_come_back(path):
+    comes_back(path.read_text())
