@@ -83,6 +83,17 @@ def test_costs_are_counted_once_and_robots_go_on_from_where_they_are():
     assert greedy(line, shortest(line)).reached == (4, 7)
 
 
+def test_costs_do_not_double_with_each_target():
+    """With line 10 as it is printed the third target would go to the robot that is far away."""
+    line = floor(12, 0, 11, targets=(1, 2, 3), rows=1)
+    assert greedy(line, shortest(line)).allocation == ((0, 1, 2), ())
+
+
+def test_what_is_carried_stays_with_its_robot_though_another_one_is_nearer():
+    line = floor(9, 0, 8, targets=(1, 7), orders=[(0, 1, True)], rows=1)
+    assert greedy(line, shortest(line)).allocation == ((0, 1), ())
+
+
 def test_travel_times_are_those_of_shortest_ways_and_a_reaction():
     study = floor(3, 0, None, targets=(8, 0), blocked=(1, 4))
     travel = shortest(study)
