@@ -8,6 +8,7 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.derivation import derive
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Class, Contract
+from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_sketch import sketch
@@ -214,3 +215,18 @@ def test_a_choice_that_the_diagram_leaves_open_stays_open():
     both = f"{joined(found.guarantees)} & (F {{}}) & G !{{}}"
     assert holds_somewhere(both.format(first, second))
     assert holds_somewhere(both.format(second, first))
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "is_kept"), [(0, 0, False), (1, 0, True), (0, 1, True), (1, 1, False)]
+)
+def test_one_token_goes_to_one_of_several_open_branches(x, y, is_kept):
+    drawn = "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [fine]"
+    found = contract(sketch(drawn))
+    names = [one.name for one in found.variables]
+    (before,) = [one for one in names if one.startswith("at_start")]
+    to_x, to_y = (next(one for one in names if one.endswith(f"_to_{to}")) for to in "xy")
+    now = dict.fromkeys(names, False) | {before: True, "ok": True, "fine": True}
+    then = dict.fromkeys(names, False) | {to_x: bool(x), to_y: bool(y)}
+    safe = [one.formula for one in found.guarantees if one.class_ is Class.SAFETY]
+    assert all(is_true(one, now, then) for one in safe) is is_kept
