@@ -51,3 +51,4 @@ def test_a_point_in_time_keeps_what_it_is_made_of():
     reading = read(AROUND % f"{member} Time::Iso8601DateTime(t); }}")
     (trigger,) = reading.graph.of_kind(Kind.TRIGGER)
     assert trigger.attrs["when"] == "Time::Iso8601DateTime(t)"
+    assert "relative" not in trigger.attrs
