@@ -125,7 +125,8 @@ def test_constraints_of_interfaces_and_of_attribute_types_are_well_formed_in_the
     text, _ = document(parse_text(WITH_CONSTRAINTS), Sink())
     lines = [line.strip() for line in text.splitlines()]
     assert lines[lines.index("ref assert constraint Allowed {") + 2] == "way > 1"
-    assert "constraint {" in lines and "assert constraint {" not in lines
+    assert "constraint {" in lines
+    assert "assert constraint {" not in lines
 
 
 @pytest.mark.corpus
