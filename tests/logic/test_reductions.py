@@ -90,11 +90,24 @@ def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
         ("G (a S b -> c)", "G (b -> c & X (c W !a))"),
         ("G (Y (a S b) -> c) & G (Y Y a -> b)", "G (b -> X (c W (c & !a))) & G (a -> X X b)"),
         ("G F (a & Y b)", "G F (b & X a)"),
+        ("G (a S false -> c) & G (Y a -> b)", "G (a -> X b)"),
     ],
 )
 def test_the_past_is_remembered(text, future):
     history = History(DOMAINS)
     assert same(parse(future), parts_of(read_past(text, DOMAINS), history), history)
+
+
+def test_the_same_past_has_one_bit_and_another_past_another_one():
+    history, a, b = History(DOMAINS), Var("a"), Var("b")
+    once = [history.previous(a), history.historically(a), history.since(a, b), history.since(b, a)]
+    # What can never begin, and what follows from a variable with a name of a bit's kind.
+    once += [history.since(a, f.FALSE), history.since(a, Var("since")), history.since(a, f.TRUE)]
+    once += [history.once(a), history.step(a)]
+    assert len(history.variables) == len(once)
+    again = [history.previous(a), history.historically(a), history.since(a, b), history.step(a)]
+    assert again == [*once[:3], once[-1]]
+    assert len(history.variables) == len(once)
 
 
 @pytest.mark.parametrize(

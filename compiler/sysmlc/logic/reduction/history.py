@@ -19,7 +19,7 @@ class History:
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._taken = set(taken)
-        self._bits: dict[tuple[Formula, Formula, bool], Var] = {}
+        self._bits: dict[tuple[str, Formula, Formula], Var] = {}
         self.variables: list[Variable] = []
         self.conjuncts: list[Conjunct] = []
 
@@ -55,7 +55,7 @@ class History:
 
     def step(self, step: Formula, origin: str = "") -> Formula:
         """The last step was one of which the formula, with primes, is true; at first false."""
-        key = (step, Var("step"), False)
+        key = ("did", step, f.FALSE)
         if key not in self._bits:
             self._bits[key] = Var(self._fresh("did"))
             self.define(self._bits[key].name, step, False, origin)
@@ -65,7 +65,7 @@ class History:
         """The bit of ``was`` (of stay), ``always_was`` (of stay) or ``since`` (stay, goal)."""
         if has_primes(stay) or has_primes(goal):
             raise ValueError("what was before cannot speak of the next step")
-        key = (stay, f.both(goal, Var(stem)), start)
+        key = (stem, stay, goal)
         if key not in self._bits:
             bit = Var(self._fresh(stem))
             told = {"was": stay, "always_was": f.both(stay, bit)}
