@@ -46,12 +46,13 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
     </InternalElement>
     <InternalElement Name="again" ID="again" RefBaseSystemUnitPath="belt"/>
     <InternalElement Name="view" ID="view">
+      <Attribute Name="seen" RefAttributeType="own/mode"/>
       <ExternalInterface Name="in" ID="view-in" RefBaseClassPath="line-in"/>
-      <RoleRequirements RefBaseRoleClassPath="%s/Facet"/>
+      <RoleRequirements RefBaseRoleClassPath="Roles/View"/>
     </InternalElement>
     <InternalElement Name="all" ID="all">
       <Attribute Name="AssociatedFacet"><Value>view</Value></Attribute>
-      <InternalElement Name="belt" ID="all-belt" RefBaseSystemUnitPath="belt"/>
+      <InternalElement Name="the belt" ID="all-belt" RefBaseSystemUnitPath="belt"/>
       <RoleRequirements RefBaseRoleClassPath="%s/Group"/>
     </InternalElement>
     <InternalLink Name="l" RefPartnerSideA="line-in" RefPartnerSideB="belt-out"/>
@@ -63,6 +64,7 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
 </InstanceHierarchy>
 <InterfaceClassLib Name="Ports"><InterfaceClass Name="Port"/></InterfaceClassLib>
 <RoleClassLib Name="Roles"><RoleClass Name="Mover"><Attribute Name="operation"/></RoleClass>
+  <RoleClass Name="View" RefBaseClassPath="%s/Facet"/>
 </RoleClassLib>
 <SystemUnitClassLib Name="Lib">
   <SystemUnitClass Name="A/B"><Attribute Name="x"/></SystemUnitClass>
@@ -90,7 +92,11 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
     </InternalElement>
     <SupportedRoleClass RefRoleClassPath="Roles/Mover"/>
     <InternalLink Name="inside" RefPartnerSideA="l-in" RefPartnerSideB="l-belt-out"/>
-    <SystemUnitClass Name="Nested" RefBaseClassPath="Line"/>
+    <SystemUnitClass Name="Nested" RefBaseClassPath="Line">
+      <InternalElement Name="line" ID="n-line" RefBaseSystemUnitPath="Lib/Line">
+        <InternalElement Name="belt" ID="n-belt"><Description>slow</Description></InternalElement>
+      </InternalElement>
+    </SystemUnitClass>
   </SystemUnitClass>
 </SystemUnitClassLib>
 <AttributeTypeLib Name="Types">

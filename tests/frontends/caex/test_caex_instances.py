@@ -282,6 +282,30 @@ def test_mirrors_of_each_other_and_of_nothing_are_errors(a, findings):
     assert reading.findings == findings
 
 
+@pytest.mark.parametrize(
+    ("reference", "findings"),
+    [
+        ("1/x", []),
+        ("1/y", ["SM138: 'm' is a mirror of '1/y', which does not exist"]),
+        ("1.x", ["SM138: 'm' is a mirror of '1.x', which does not exist"]),
+        (f"{GONE}.x", [f"SM138: 'm' is a mirror of '{GONE}.x', which does not exist"]),
+        ("L.x", ["SM131: the library 'L.x' is not in the file; 1 element refers to classes of it"]),
+    ],
+)
+def test_a_mirror_names_an_attribute_behind_a_slash(reference, findings):
+    """``ID.name`` is meant as a mirror, and found by no tool."""
+    reading = Read(
+        plant(
+            '<InternalElement Name="cell" ID="0">'
+            f'<Attribute Name="m" RefAttributeType="{reference}"/>'
+            '<InternalElement Name="a" ID="1"><Attribute Name="x"/></InternalElement>'
+            "</InternalElement>"
+        )
+    )
+    assert reading.findings == findings
+    assert len(reading.to("Plant::cell::m", "mirrors")) == (not findings)
+
+
 # -- rules 13 and 14: links --------------------------------------------------------------------
 
 
@@ -404,14 +428,21 @@ def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
     assert reading.to("Plant::g", "references") == ["Plant::a"]
 
 
-def test_a_mirror_of_an_element_that_only_repeats_a_part_mirrors_the_part():
+def test_an_element_in_a_class_that_only_repeats_a_part_keeps_what_is_said_of_it():
+    """As in a plant: an Instance with its ID, which represents the part and may be mirrored."""
     reading = Read(
         classes(
             '<SystemUnitClass Name="A"><InternalElement Name="m" ID="m"/></SystemUnitClass>'
             '<SystemUnitClass Name="B"><InternalElement Name="a" ID="a" '
-            'RefBaseSystemUnitPath="Lib/A"><InternalElement Name="m" ID="again"/>'
+            'RefBaseSystemUnitPath="Lib/A"><InternalElement Name="m" ID="again">'
+            "<Description>the left one</Description><Version>2</Version></InternalElement>"
             '</InternalElement><InternalElement Name="x" ID="x" RefBaseSystemUnitPath="again"/>'
             "</SystemUnitClass>"
         )
     )
-    assert reading.to("Lib::B::x", "mirrors") == ["Lib::A::m"]
+    again = reading.graph["again"]
+    assert (again.kind, again.attrs["version"]) == ("Instance", "2")
+    assert reading.graph["again/Description"].attrs["body"] == "the left one"
+    assert reading.to("Lib::B::a::m", "represents") == ["Lib::A::m"]
+    assert reading.to("Lib::B::x", "mirrors") == ["Lib::B::a::m"]
+    assert reading.findings == []

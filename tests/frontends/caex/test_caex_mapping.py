@@ -701,6 +701,22 @@ def test_a_facet_shows_features_of_its_element_and_a_group_the_masters_of_its_mi
     assert reading.findings == []
 
 
+def test_a_facet_or_group_realizes_the_role_that_makes_it_one():
+    body = "".join(
+        f'<InternalElement Name="{name}" ID="{name}">{playing(role)}</InternalElement>'
+        for name, role in {"v": "Roles/View", "s": "Roles/Set", "g": f"{BASE_ROLE}/Group"}.items()
+    )
+    reading = Read(
+        roles(
+            f'<RoleClass Name="View" RefBaseClassPath="{BASE_ROLE}/Facet"/>'
+            f'<RoleClass Name="Set" RefBaseClassPath="{BASE_ROLE}/Group"/>'
+        )
+        + plant(f'<InternalElement Name="cell" ID="0">{body}</InternalElement>')
+    )
+    found = [reading.to(f"Plant::cell::{name}", "realizes") for name in "vsg"]
+    assert found == [["Roles::View"], ["Roles::Set"], []]
+
+
 def showing(role, inside, beside=""):
     return Read(
         plant(
@@ -742,6 +758,50 @@ def test_a_facet_shows_mirrors_and_copies(feature):
     assert reading.findings == []
 
 
+MIRROR = '<InternalElement Name="%s" ID="m" RefBaseSystemUnitPath="a">%s</InternalElement>'
+
+
+@pytest.mark.parametrize(
+    ("role", "inside", "kept"),
+    [
+        ("Group", MIRROR % ("left", ""), ("a", "left", "m")),
+        ("Group", MIRROR % ("a", ""), ("a", "a", "m")),
+        ("Facet", '<ExternalInterface Name="i" ID="m"/>', ("i", "i", "m")),
+        ("Facet", '<Attribute Name="o" RefAttributeType="0/x"/>', ("0#class/x", "o", "")),
+    ],
+)
+def test_names_and_ids_of_mirrors_in_facets_and_groups_are_kept(role, inside, kept):
+    reading = showing(role, inside, '<InternalElement Name="a" ID="a"/>')
+    assert reading.one("Plant::cell::s").attrs["mirrors"] == (kept,)
+    assert reading.findings == []
+
+
+def test_what_has_the_name_of_what_it_shows_and_no_id_is_not_kept():
+    reading = showing("Facet", '<Attribute Name="x"/>')
+    assert "mirrors" not in reading.one("Plant::cell::s").attrs
+
+
+@pytest.mark.parametrize(
+    ("text", "findings"),
+    [
+        ("a robot", []),
+        (
+            "the left one",
+            [
+                "SM638: the description of 'Plant::cell::s::left' is left out: "
+                "in 's' it only shows another element"
+            ],
+        ),
+    ],
+)
+def test_a_description_that_only_a_mirror_has_is_told(text, findings):
+    told = "<Description>%s</Description>"
+    master = f'<InternalElement Name="a" ID="a">{told % "a robot"}</InternalElement>'
+    reading = showing("Group", MIRROR % ("left", told % text), master)
+    assert reading.findings == findings
+    assert reading.totals.get("approximated", 0) == 2 * len(findings)
+
+
 @pytest.mark.parametrize(
     ("role", "inside", "tag"),
     [
@@ -751,6 +811,7 @@ def test_a_facet_shows_mirrors_and_copies(feature):
         ("Group", playing(f"{BASE_ROLE}/Resource"), "RoleRequirements"),
         ("Facet", '<Attribute Name="new"/>', "Attribute"),
         ("Facet", '<Attribute Name="x"><Value>2</Value></Attribute>', "Attribute"),
+        ("Facet", '<Attribute Name="x" Unit="m"/>', "Attribute"),
         ("Facet", '<ExternalInterface Name="new" ID="p"/>', "ExternalInterface"),
         ("Facet", '<InternalElement Name="own" ID="own"/>', "InternalElement"),
     ],

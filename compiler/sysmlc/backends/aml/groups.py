@@ -1,6 +1,6 @@
 """Facets and groups: internal elements that only show others (IEC 62714-1)."""
 
-from sysmlc.backends.aml import header
+from sysmlc.backends.aml import header, roles
 from sysmlc.backends.aml.book import Book, File
 from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element, Kind
@@ -28,12 +28,23 @@ def write(book: Book, element: Element, file: File) -> Node:
         facet.say("Value", str(element.attrs["associated_facet"]))
     for target in book.graph.targets(element, Edge.REFERENCES):
         book.say(Edge.REFERENCES, element, target)
-        _mirror(book, element, node, target)
+        for name, id in _called(element, target):
+            _mirror(book, element, node, target, name, id)
     for one in book.owned(element):
         if one.kind is Kind.GROUP:
             node.add(write(book, one, file))
-    node.add(Node("RoleRequirements", {"RefBaseRoleClassPath": _role(book, element, file)}))
+    roles.write(book, node, file, element)
+    if all(one.tag != "RoleRequirements" for one in node.children):
+        node.add(Node("RoleRequirements", {"RefBaseRoleClassPath": _role(book, element, file)}))
     return node
+
+
+def _called(element: Element, target: Element) -> list[tuple[str, str]]:
+    """Name and ID of each mirror of a target; those of the target's name may have no ID."""
+    kept = element.attrs.get("mirrors")
+    given = [one for one in kept if isinstance(one, tuple)] if isinstance(kept, tuple) else []
+    found = [(str(name), str(id)) for known, name, id in given if known == target.id]
+    return found or [(target.name, "")]
 
 
 def _role(book: Book, element: Element, file: File) -> str:
@@ -45,10 +56,10 @@ def _role(book: Book, element: Element, file: File) -> str:
     return plain
 
 
-def _mirror(book: Book, element: Element, above: Node, target: Element) -> None:
+def _mirror(book: Book, element: Element, above: Node, target: Element, name: str, id: str) -> None:
     is_facet = element.kind is Kind.FACET
     tag, attribute = _TAGS.get(target.kind, _ELEMENT) if is_facet else _ELEMENT
-    node = above.add(Node(tag, {"Name": target.name}))
-    if tag != "Attribute":
-        node.attributes["ID"] = derived_id(element.id, f"caex mirror {target.id}")
+    node = above.add(Node(tag, {"Name": name}))
+    if id or tag != "Attribute":
+        node.attributes["ID"] = id or derived_id(element.id, f"caex mirror {target.id}")
     book.late.append((node, attribute, target))

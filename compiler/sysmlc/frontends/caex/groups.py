@@ -2,16 +2,29 @@
 
 from collections.abc import Iterator
 
-from sysmlc.diagnostics import Verdict
+from sysmlc.diagnostics import Severity, Verdict, rule
 from sysmlc.frontends.caex import mirrors
-from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import own
 from sysmlc.frontends.caex.libraries import mark
+from sysmlc.frontends.caex.sameness import says_more
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge, Kind
+from sysmlc.ir import Edge, Element, Kind
+
+DESCRIBED_MIRROR = rule(
+    "SM638",
+    "described-mirror",
+    Severity.WARNING,
+    "the description of '{element}' is left out: in '{holder}' it only shows another element",
+    why="What a facet or group holds is no element of its own. Its name and ID are kept.",
+    help="describe the element that it shows, or the facet or group",
+    wrong='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c">'
+    "<Description>the left one</Description></InternalElement>\nin a group",
+    right='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c"/>\nin a group',
+)
 
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
 
@@ -59,10 +72,18 @@ def lower(context: Context, site: Site, kind: Kind) -> None:
         path = role.attributes.get(ROLE_REFERENCES[role.tag], "")
         if context.shown.get((site.document, path)) is kind:
             role.verdict = Verdict.MAPPED
+            _realize(context, site, element, path.strip())
     for node in site.node.of("Attribute"):
         if node.name == "AssociatedFacet":
             context.graph.set(element, associated_facet=node.text("Value") or None)
             node.verdict = Verdict.MAPPED
+
+
+def _realize(context: Context, site: Site, element: Element, path: str) -> None:
+    """A role that specialises Facet or Group is one that it plays; these two say its kind."""
+    role = context.known(path, Family.ROLE, site.document)
+    if role is not None and role.path[:-1] != BASE_ROLE:
+        context.graph.connect(Edge.REALIZES, element, role.id)
 
 
 def _owner(context: Context, site: Site) -> str:
@@ -77,38 +98,58 @@ def show(context: Context, site: Site) -> None:
     """Draw the references of a Facet to features, of a Group to the masters of its mirrors."""
     element = context.graph[site.part]
     shown = _features if element.kind is Kind.FACET else _masters
-    for target in dict.fromkeys(shown(context, site)):
-        if target in context.graph:
-            context.graph.connect(Edge.REFERENCES, element, target)
+    called = []
+    for node, master in shown(context, site):
+        one = context.graph.get(master.element)
+        if one is not None:
+            node.verdict = _verdict(context, site, node, master)
+            context.graph.connect(Edge.REFERENCES, element, one)
+            id = site.document.ids[node.row]
+            if id or node.name != one.name:
+                called.append((one.id, node.name, id))
+    if called:
+        context.graph.set(element, mirrors=tuple(called))
 
 
-def _features(context: Context, site: Site) -> Iterator[str]:
-    """Features of the element around a facet: mirrored, or of the same name."""
+def _verdict(context: Context, site: Site, node: Node, master: Node) -> Verdict:
+    """Approximated, and told, where a mirror describes what its master does not."""
+    text = (node.text("Description") or "").strip()
+    if not text or text == (master.text("Description") or "").strip():
+        return Verdict.MAPPED
+    facts = {"element": path_of(node), "holder": site.name}
+    context.report(DESCRIBED_MIRROR, site.document, node, **facts)
+    return Verdict.APPROXIMATED
+
+
+def _features(context: Context, site: Site) -> Iterator[tuple[Node, Node]]:
+    """Features of the element around a facet, with what shows them: mirrored, or of its name."""
     for node in site.node.of("Attribute", "ExternalInterface"):
         if mirrors.is_mirror(context, node):
             master = mirrors.master(context, site.document, node)
-            target = master.element if master is not None else ""
         else:
-            target = _of_the_name(site, node)
-        if target:
+            master = _of_the_name(context, site, node)
+        if master is not None:
             mark(node)
-            yield target
+            yield node, master
 
 
-def _of_the_name(site: Site, node: Node) -> str:
-    """The feature of the name, unless the facet gives it another value."""
+def _of_the_name(context: Context, site: Site, node: Node) -> Node | None:
+    """The feature of the name, unless the facet says something else of it."""
     above = site.parent
     known = above.type.find(node.tag, node.name) if above is not None and above.type else None
     if above is None or known is None:
-        return ""
+        return None
     beside = (one for one in above.node.of(node.tag) if one.name == node.name)
     said = {None, known.node.text("Value"), *(one.text("Value") for one in beside)}
-    return known.id if node.text("Value") in said else ""
+    if node.text("Value") not in said:
+        return None
+    if node.tag == "Attribute" and says_more(context.types, site.document, node, known):
+        return None
+    return known.node
 
 
-def _masters(context: Context, site: Site) -> Iterator[str]:
+def _masters(context: Context, site: Site) -> Iterator[tuple[Node, Node]]:
     for node in site.node.of("InternalElement"):
         found = context.find(node.attributes.get("RefBaseSystemUnitPath", "").strip())
-        if found is not None and found[1].element:
-            node.verdict = Verdict.MAPPED
-            yield found[1].element
+        if found is not None:
+            yield node, found[1]

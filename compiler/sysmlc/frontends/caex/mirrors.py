@@ -1,9 +1,9 @@
 """Mirrors: second places of one element; the last master of a chain is what is meant."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from sysmlc.frontends.caex import rules
-from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.context import Context, reference_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.ir import Edge, Element
 
@@ -23,7 +23,14 @@ def master_id(node: Node) -> str:
 
 def is_mirror(context: Context, node: Node) -> bool:
     """Whether the node names another element and no class."""
-    return is_reference(context, master_id(node))
+    if is_reference(context, master_id(node)):
+        return True
+    return node.tag == "Attribute" and _is_dotted(context, master_id(node))
+
+
+def _is_dotted(context: Context, text: str) -> bool:
+    """Whether a text is ``ID.name``: meant as a mirror, but names are parted by ``/`` (rule 12)."""
+    return "." in text and is_reference(context, text.partition(".")[0])
 
 
 def is_reference(context: Context, id: str) -> bool:
@@ -58,12 +65,13 @@ def master(context: Context, document: Document, node: Node) -> Node | None:
 
 
 def _next(context: Context, document: Document, mirror: Node) -> Node | str:
-    """What a mirror names, or the id with which it leads nowhere."""
-    id = master_id(mirror)
-    found = context.find(id, document)
+    """What a mirror names, or the reference with which it leads nowhere."""
+    found = context.find(master_id(mirror), document)
     if found is None:
-        return id
-    return (_attribute(found[1], mirror) or id) if mirror.tag == "Attribute" else found[1]
+        return reference_of(mirror)
+    if mirror.tag == "Attribute":
+        return _attribute(found[1], mirror) or reference_of(mirror)
+    return found[1]
 
 
 def _remember(context: Context, document: Document, seen: Iterable[Node], end: Node | str) -> None:
@@ -71,17 +79,11 @@ def _remember(context: Context, document: Document, seen: Iterable[Node], end: N
     context.masters.update(((document, one), end) for one in seen)
 
 
-def draw(
-    context: Context,
-    document: Document,
-    node: Node,
-    element: Element,
-    standing: Callable[[Node], str] = lambda node: node.element,
-) -> Node | None:
-    """The edge from the mirror's element to what stands for its master; the master."""
+def draw(context: Context, document: Document, node: Node, element: Element) -> Node | None:
+    """The edge from the mirror's element to its master's; the master."""
     found = master(context, document, node)
-    if found is not None and standing(found) in context.graph:
-        context.graph.connect(Edge.MIRRORS, element.id, standing(found))
+    if found is not None and found.element in context.graph:
+        context.graph.connect(Edge.MIRRORS, element.id, found.element)
         return found
     return None
 

@@ -162,8 +162,7 @@ class Sites:
         if type is not None and type is not stated and not _specialises(stated, type):
             site.declared = type
         site.document.verdicts[site.row] = _MAPPED
-        if site.root.instance:
-            instance(self._context, site)
+        instance(self._context, site)
 
     def _add_part(self, site: Site, parent: Site) -> None:
         owner = own(self._context, parent)
@@ -215,18 +214,13 @@ class Sites:
 
     def _mirror(self, site: Site) -> None:
         element = self._context.graph[site.instance or site.part]
-        master = mirrors.draw(self._context, site.document, site.node, element, self._standing)
+        master = mirrors.draw(self._context, site.document, site.node, element)
         found = self.of(master) if master is not None else None
         site.declared = found.type if found else None
         if site.type is None and any(n.tag in _MEMBERS for n in site.node.children):
             own(self._context, site)
         if site.type is not None:
             members.lower(self._context, site)
-
-    def _standing(self, node: Node) -> str:
-        """What stands for an internal element: one that only repeats a part has the part."""
-        site = self.of(node)
-        return node.element or (site.part if site is not None else "")
 
 
 def _is_another(site: Site, known: Member) -> bool:
