@@ -20,7 +20,7 @@ OF_CIRCUMSTANCES = {
     "SM479": "the limit is an option",
     "SM702": "the diagram is very large",
     "SM703": "diagrams of authors are asked for",
-    **dict.fromkeys(("SM524", "SM525", "SM526"), "'sysmlc contracts check' composes"),
+    **dict.fromkeys(("SM508", "SM524", "SM525", "SM526"), "'sysmlc contracts check' composes"),
     **dict.fromkeys(("SM560", "SM561", "SM562"), "'sysmlc contracts check' compares"),
 }
 OURS = {"SM900", "SM901", "SM902", "SM903"}

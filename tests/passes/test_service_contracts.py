@@ -107,6 +107,21 @@ def test_ranges_alone_are_no_conditions():
     assert derived(model())[0] == []
 
 
+def test_a_bound_that_the_values_have_already_is_a_condition_all_the_same():
+    (contract,), _, _ = derived(model(("", "", "amount > 0"), ("", "", "level == amount")))
+    amount = next(one for one in contract.variables if one.name == "amount")
+    assert amount.domain == IntegerDomain(1, 4)
+    bounds = [one for one in contract.assumptions if one.origin == "k0"]
+    assert lines(bounds) == ["init: call -> amount>0", "safety: call' -> amount'>0"]
+    assert bounds[0].text == "Who asks for 'fill' sees to it that 'amount > 0' holds."
+
+
+def test_of_an_output_a_bound_is_what_is_promised():
+    text = ACTION.format(method="g").replace("f.k ", 'f.b body="0 < level"\n    Constraint f.k ')
+    (contract,) = [one for one in derived(text)[0] if one.component == "Plant::Filling"]
+    assert "safety: done' -> 0<level'" in lines(contract.guarantees)
+
+
 ACTION = """\
 Package p "Plant"
   Activity f "Filling"

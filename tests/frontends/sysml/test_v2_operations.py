@@ -225,3 +225,31 @@ def test_an_operation_of_ones_own_is_performed_as_those_of_the_library_are():
     lines = machine(able, "action swap : Swapping; bind swap.asked = asked;")
     text = lines.replace("part def Machine", f"{swap}\n    part def Machine")
     assert composed(text) == ("Cells::Machine: its 4 parts fit together", [])
+
+
+def test_an_operation_within_another_one_has_no_end_of_its_own_and_that_is_told():
+    swap = shown("    action def Swapping")
+    lines = machine(
+        [one for one in ACTIONS if one in ("pick", "place")],
+        "action twice : Twice; bind twice.asked = asked;",
+    )
+    twice = """
+    action def Twice :> Operation {
+        out attribute :>> asked : Command := Command::none;
+        first start;
+        then action swap : Swapping;
+        then action pick : Pick;
+        constraint { language "ltl" /* G (asked=pick <-> run_pick & !done_pick) */ }
+        constraint { language "ltl" /* G (asked=none | asked=pick) */ }
+    }
+"""
+    text = lines.replace("part def Machine", f"{swap}{twice}\n    part def Machine")
+    verdict, found = composed(text)
+    assert verdict == "Cells::Machine: its 4 parts fit together"
+    assert found == [
+        (
+            "SM508",
+            "nothing in 'Machine' says when step 'swap' of 'twice' is over; whoever is around the "
+            "block decides it",
+        )
+    ]

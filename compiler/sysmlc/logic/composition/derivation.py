@@ -12,6 +12,7 @@ from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.composition.members import Block, Member, behaviour, itself, read_block, required
 from sysmlc.logic.composition.messages import crowding, wiring
 from sysmlc.logic.composition.naming import Wire, is_one_type, renamed, wires
+from sysmlc.logic.composition.open_steps import report_open_steps
 from sysmlc.logic.composition.structure import unclear_flows
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.domains import describe
@@ -148,6 +149,7 @@ def _composite(block: Block, sink: Sink) -> Composite | None:
     if len(block.members) < 2 and whole is None:
         return None
     _report_flows(block, sink)
+    report_open_steps(block, sink)
     if list(_faults(block, whole, known, sink)):
         return None
     return Composite(

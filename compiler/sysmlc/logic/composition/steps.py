@@ -20,7 +20,7 @@ def ends_of_steps(graph: Graph, contract: Contract) -> dict[str, str]:
     found = {}
     for one in contract.variables:
         step = graph.get(one.origin)
-        if one.owner is Owner.ENVIRONMENT and step is not None and _tells(graph, step):
+        if one.owner is Owner.ENVIRONMENT and step is not None and tells(graph, step):
             found[joined(step.name, EXECUTED)] = one.name
     return found
 
@@ -30,7 +30,7 @@ def performed(graph: Graph, block: Element, path: str) -> Iterator[tuple[End, En
     known = [one for one in usages(graph, block, path) if one.element.kind in _ACTIONS]
     for operation in known:
         for step in graph.owned(drawn_of(graph, operation.type_)):
-            if _tells(graph, step):
+            if tells(graph, step):
                 able = [one for one in known if _is_what(graph, one, step)]
                 if len(able) == 1:
                     feature = joined(step.name, EXECUTED)
@@ -40,7 +40,7 @@ def performed(graph: Graph, block: Element, path: str) -> Iterator[tuple[End, En
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 
 
-def _tells(graph: Graph, step: Element) -> bool:
+def tells(graph: Graph, step: Element) -> bool:
     """Whether the step calls an action that tells that it is executed."""
     called = graph.target(step, Edge.CALLS) if step.kind is Kind.ACTION else None
     if called is None or called.kind is not Kind.ACTIVITY:

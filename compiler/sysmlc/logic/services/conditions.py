@@ -184,7 +184,13 @@ def _formula(context: Context, constraint: Element) -> Formula:
     domains: dict[str, Domain] = {
         one.variable: one.domain for one in context.features.values() if one.domain is not None
     }
-    return simplified(formula, domains)
+    found = simplified(formula, domains)
+    return formula if found == f.TRUE and _is_bound(read, formula) else found
+
+
+def _is_bound(read: Expression, formula: Formula) -> bool:
+    """Whether it is one bound (``h > 0``): the values have it already, but it is no range."""
+    return isinstance(read, Binary) and read.op in _ORDERS and bool(list(f.variables(formula)))
 
 
 def _unchained(read: Expression) -> Expression:
