@@ -17,6 +17,7 @@ from sysmlc.synthesis import Manager, OutsideGr1Error
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.relations import behaviour, environment, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError, Universe
+from sysmlc.synthesis.algebra.traces import lasso, one
 
 DOOR = """
     env open: bool
@@ -124,6 +125,45 @@ def test_the_random_questions_have_both_answers():
         (w.class_, a.violation(w) is None) for s in range(60) for _, _, w, a in entailments(s)
     }
     assert answers == {(c, t) for c in (Class.INIT, Class.SAFETY, Class.LIVENESS) for t in (0, 1)}
+
+
+def asked(lines):
+    """What is asked of all runs in which the conjuncts of a contract in lines hold."""
+    made = contract(lines)
+    universe = Universe((made,), Manager())
+    return Entailment(universe, universe.system((*made.assumptions, *made.guarantees)))
+
+
+def wanted(lines):
+    (found,) = contract(lines).guarantees
+    return found
+
+
+def test_what_is_wanted_at_first_is_looked_for_at_first_only():
+    turns = asked("sys x: 0..1\npromise at first x=0\npromise always x'=1-x")
+    assert turns.violation(wanted("sys x: 0..1\npromise at first x=0")) is None
+    assert turns.violation(wanted("sys x: 0..1\npromise at first x=1")) is not None
+
+
+DEAD_END = "sys a: bool\nsys b: bool\npromise always a & a'"
+"""Without ``a`` no run begins, though nothing is said about the start."""
+
+
+def test_an_example_begins_where_a_run_goes_on():
+    found = asked(DEAD_END).example()
+    assert all(one["a"] for one in found.steps)
+
+
+def test_a_way_that_no_run_goes_on_from_is_no_violation():
+    never = asked(DEAD_END)
+    assert never.violation(wanted("sys a: bool\nsys b: bool\npromise at first a")) is None
+    assert never.violation(wanted("sys a: bool\nsys b: bool\npromise always a'")) is None
+
+
+def test_from_what_has_no_run_none_is_shown():
+    runs = asked(DEAD_END).runs
+    with pytest.raises(ValueError, match="no fair run"):
+        lasso(runs, [one(runs, runs.system.init & ~runs.fair)], runs.fair)
 
 
 PAIRS = {

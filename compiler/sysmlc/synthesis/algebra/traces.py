@@ -44,6 +44,8 @@ def lasso(runs: Runs, way: list[Node], within: Node) -> Trace:
 
     From each goal to the next, then back to where that began; where no way leads back, the same
     is tried one step on. What is done in a state depends on it alone, so that it comes to an end.
+
+    Raises ValueError where a state has no fair run within ``within``.
     """
     path = list(way)
     while True:
@@ -53,7 +55,10 @@ def lasso(runs: Runs, way: list[Node], within: Node) -> Trace:
         closing = _walk(runs, path[-1], within, path[anchor], may_stay=False)
         if closing:
             return _trace(runs, path + closing[:-1], anchor)
-        path.append(one(runs, runs.after(path[-1]) & within))
+        onward = runs.after(path[-1]) & within
+        if onward == runs.manager.false:
+            raise ValueError("no fair run goes on from here")
+        path.append(one(runs, onward))
 
 
 def one(runs: Runs, states: Node) -> Node:
