@@ -114,3 +114,15 @@ def test_a_target_behind_obstacles_is_out_of_reach(tmp_path):
     made = compiled(tmp_path, text)
     (found,) = made.diagnostics
     assert (found.rule.code, found.subject.name) == ("SM569", "Plant::Hall::work::dock")
+
+
+def test_a_second_floor_of_one_name_is_told_and_not_studied(tmp_path):
+    """A mutant of a model wrote the contracts of both into one file."""
+    made = compiled(tmp_path, HALL + HALL)
+    twice = [one for one in made.diagnostics if one.rule.code == "SM577"]
+    assert [one.subject.name for one in twice] == ["Plant::Hall"]
+    assert "SM900" not in {one.rule.code for one in made.diagnostics}
+    assert len(made.graph.derived(Study)) == 1
+    other = compiled(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
+    assert "SM577" not in {one.rule.code for one in other.diagnostics}
+    assert len(other.graph.derived(Study)) == 2

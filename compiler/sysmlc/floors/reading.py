@@ -19,10 +19,12 @@ def studies(graph: Graph, sink: Sink) -> Iterator[Study]:
     """The floors of a model that robots are on; what is wrong with one is reported."""
     if not any(one.name == LIBRARY for one in graph.of_kind(Kind.PACKAGE)):
         return
+    known: set[str] = set()
     for block in graph.of_kind(Kind.CLASS):
         is_drawn = not block.attrs.get("external") and not block.attrs.get("abstract")
         if is_drawn and is_a(graph, block, "Floor"):
-            yield from _Reading(graph, block, sink).study()
+            reading = _Reading(graph, block, sink)
+            yield from reading.study() if reading.is_first(known) else ()
 
 
 def is_a(graph: Graph, element: Element, name: str) -> bool:
@@ -48,6 +50,14 @@ class _Reading:
     def __init__(self, graph: Graph, block: Element, sink: Sink) -> None:
         self.graph, self.block, self.sink = graph, block, sink
         self.is_good = True
+
+    def is_first(self, known: set[str]) -> bool:
+        """Whether no floor before has its name, which is added to them."""
+        name = query.component_name(self.graph, self.block)
+        if name in known:
+            self.fail(rules.SAME_FLOOR, self.block, name=name)
+        known.add(name)
+        return self.is_good
 
     def study(self) -> Iterator[Study]:
         """The floor as a value; nothing when it is none, or something is wrong with it."""

@@ -1,7 +1,7 @@
-"""Rules about floors, robots and missions as they are drawn (SM564 to SM569)."""
+"""Rules about floors, robots and missions as they are drawn (SM564 to SM569, SM577)."""
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.floors.samples import hall, ordered, placed
+from sysmlc.floors.samples import another, hall, ordered, placed
 
 _ONE = placed("r1", "robot", 0, 0)
 _DOCK = placed("dock", "target", 1, 2)
@@ -84,4 +84,14 @@ OUT_OF_REACH = rule(
         targets=(_DOCK,),
     ),
     right=hall(_ONE, placed("o1", "obstacle", 0, 1), targets=(_DOCK,)),
+)
+SAME_FLOOR = rule(
+    "SM577",
+    "floors-of-one-name",
+    Severity.ERROR,
+    "there is another floor '{name}': this one is not studied",
+    why="Contracts, controllers and reports are called like their floor.",
+    help="give one of the floors another name",
+    wrong=hall(_ONE) + another("Hall"),
+    right=hall(_ONE) + another("Other hall"),
 )

@@ -68,3 +68,15 @@ def hall(
     classes = "".join(one for _, one in (*robots, *targets))
     text = _HALL.replace("{parts}\n", f"{parts}\n" if parts else "")
     return _LIBRARY + text.replace("{targets}\n", wanted).replace("{classes}", classes)
+
+
+def another(name: str) -> str:
+    """A second floor behind ``hall``, with the robot ``r1`` and the mission of the first."""
+    return f"""\
+  Class hall2 "{name}" role="block"
+    -> specializes floor
+    Property h2.m "mission" aggregation="composite" role="part"
+      -> typed-by m
+    Property h2.r1 "r1" aggregation="composite" role="part"
+      -> typed-by r1
+"""
