@@ -18,8 +18,16 @@ def _is_told(graph, told, names, change):
         near = _near(graph, graph[change.old.id])
     else:
         owners = names.get(change.owner, [])
-        near = [near for one in owners for near in (*_near(graph, one), *graph.owned(one))]
+        near = [near for one in owners for near in (*_near(graph, one), *_inside(graph, one))]
     return any(one.id in told for one in near)
+
+
+def _inside(graph, owner):
+    """What an element owns, and flows that leave it: their text stands beside their source."""
+    for one in graph.owned(owner):
+        yield one
+        for node in (one, *graph.owned(one)):
+            yield from graph.sources(node, Edge.FLOW_SOURCE)
 
 
 def _near(graph, element):

@@ -9,7 +9,14 @@ from sysmlc.backends.sysml.references import chain, is_around
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import conforms, flow_directions, role_of, runs_both_ways, type_of
+from sysmlc.ir.flow_paths import flow_path
+from sysmlc.ir.query import (
+    conforms,
+    flow_directions,
+    role_of,
+    runs_both_ways,
+    type_of,
+)
 
 
 def connector(book: Book, entry: Entry) -> list[Line]:
@@ -132,7 +139,11 @@ def _pairs(book: Book, entry: Entry, flow: Element) -> list[tuple[str | None, st
         return found
     steps = [book.plan.entry(one) for one in (source, target)]
     if all(one is not None and one.shape.is_usage for one in steps):
-        chains = [chain(book.plan, entry.parent, [one]) for one in (source, target)]
+        ways = [
+            [*flow_path(graph, flow, Edge.FLOW_SOURCE), source],
+            [*flow_path(graph, flow, Edge.FLOW_TARGET), target],
+        ]
+        chains = [chain(book.plan, entry.parent, way) for way in ways]
         return [(chains[0], chains[1])]
     return []
 

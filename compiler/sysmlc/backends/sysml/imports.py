@@ -25,6 +25,8 @@ def import_(book: Book, entry: Entry) -> list[Line]:
         if name is None:
             book.lost(element, "references")
             continue
+        if target.attrs.get("external") and book.plan.entry(target) is None:
+            book.approximated(element, "an import of primitive types", "one of those of SysML v2")
         is_package = target.kind in (Kind.PACKAGE, Kind.PROFILE) and element.subkind != "element"
         lines.append(Line(f"{word} import {name}{'::*' if is_package else ''}"))
     return lines

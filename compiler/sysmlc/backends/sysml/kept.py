@@ -9,6 +9,7 @@ from sysmlc.backends.sysml.relating import unsaid_edges
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.values import literal
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.branches import is_joined
 from sysmlc.ir.pins import pin_subkind
 from sysmlc.logic.expressions.expression import (
     ExpressionError,
@@ -28,7 +29,7 @@ _ATTRIBUTES = """
     when when_language when_bodies when_languages condition condition_language condition_bodies
     condition_languages relative port path represents data_type unit default_value category
     semantics version change_mode copyright ppr interface_ids associated_facet tag data_type
-    decision_input_flow stereotype namespace lineage on diagram arguments
+    stereotype namespace lineage on diagram arguments
     message_kind description usage property_specific payload initial value_unit variation variant
     portion individual
 """
@@ -37,7 +38,7 @@ _SAID = frozenset(_ATTRIBUTES.split())
 _OF_LOOPS = ("mode", "collection")
 _COMPOSITE = frozenset({"part", "item", "occurrence", "constraint"})
 """Keywords of features that are composite unless they are references."""
-_SUBKINDS = frozenset({Kind.DATA_TYPE, Kind.PIN, Kind.ACTIVITY_PARAMETER})
+_SUBKINDS = frozenset({Kind.DATA_TYPE, Kind.ACTIVITY_PARAMETER})
 """Kinds whose subkind neither a keyword nor the metadata ``Kind`` says."""
 
 
@@ -186,16 +187,36 @@ def _subkind(book: Book, _entry: Entry | None, element: Element) -> bool:
         return element.subkind == "function" or (element.subkind == "opaque" and not has_body)
     if element.kind is Kind.PACKAGE:
         return element.subkind == "model"
-    if element.kind is Kind.ACTION:
-        return element.subkind == "read"
     if element.kind is Kind.PROPERTY:
         owner = book.graph.owner(element)
         is_of_loop = owner is not None and owner.kind is Kind.STRUCTURED
         return is_of_loop and element.subkind == "variable" and element.owner not in book.loops
-    if element.kind is Kind.PIN:
-        owner = book.graph.owner(element)
-        return owner is None or element.subkind != pin_subkind(owner, element)
-    return element.kind in _SUBKINDS
+    asked = _SUBKINDS_OF.get(element.kind)
+    return element.kind in _SUBKINDS if asked is None else asked(book, element)
+
+
+def _of_call(book: Book, action: Element) -> bool:
+    """Reading a feature, and calling an operation that no file of the model has."""
+    called = book.graph.target(action, Edge.CALLS)
+    is_unknown = called is not None and bool(called.attrs.get("external"))
+    return action.subkind == "read" or (action.subkind == "call-operation" and is_unknown)
+
+
+def _of_end(book: Book, node: Element) -> bool:
+    """The end of a flow where ``done`` is that of the behaviour."""
+    is_end = node.subkind == "flow-final" and book.plan.entry(node) is None
+    return is_end and is_joined(book.graph, node)
+
+
+def _of_pin(book: Book, pin: Element) -> bool:
+    """What a pin is where its action does not say it, or is told by metadata itself."""
+    owner = book.graph.owner(pin)
+    if owner is None or (owner.kind is Kind.ACTION and owner.subkind == "read"):
+        return True
+    return pin.subkind != pin_subkind(owner, pin)
+
+
+_SUBKINDS_OF = {Kind.ACTION: _of_call, Kind.CONTROL: _of_end, Kind.PIN: _of_pin}
 
 
 def _guard(_book: Book, _entry: Entry | None, element: Element) -> bool:
@@ -241,8 +262,10 @@ def _default(book: Book, entry: Entry | None, element: Element) -> bool:
         return True
     if "default_instance" in element.attrs:
         return True
-    if not isinstance(given, str) or "default_language" in element.attrs:
+    if not isinstance(given, str):
         return False
+    if "default_language" in element.attrs:
+        return not given
     return not literal(book, entry.parent, element, given).startswith('"')
 
 
@@ -250,11 +273,24 @@ def _always(_book: Book, _entry: Entry | None, _element: Element) -> bool:
     return True
 
 
+def _of_no_text(_book: Book, _entry: Entry | None, element: Element) -> bool:
+    """The language of a default that has no text."""
+    return element.attrs.get("default") == ""
+
+
+def _of_chains(book: Book, _entry: Entry | None, element: Element) -> bool:
+    """The way to an end, but for item flows that say it as the chain of features at the end."""
+    is_flow = element.kind is Kind.ITEM_FLOW
+    return not is_flow or bool(book.graph.targets(element, Edge.REALIZING))
+
+
 def _body(book: Book, entry: Entry | None, element: Element) -> bool:
     """The text of a constraint whose expression is spelt otherwise, or has a language."""
     if element.kind is not Kind.CONSTRAINT:
         return False
     text = str(element.attrs["body"])
+    if not text:
+        return True
     try:
         is_same = print_expression(parse_expression(text)) == text
     except ExpressionError:
@@ -263,7 +299,9 @@ def _body(book: Book, entry: Entry | None, element: Element) -> bool:
 
 
 def _language(_book: Book, _entry: Entry | None, element: Element) -> bool:
-    return element.kind is Kind.CONSTRAINT
+    if element.kind is not Kind.ACTIVITY:
+        return element.kind is Kind.CONSTRAINT
+    return not (element.attrs.get("body") or element.attrs.get("bodies"))
 
 
 def _on_flows(_book: Book, _entry: Entry | None, element: Element) -> bool:
@@ -281,6 +319,10 @@ _UNLIKE: dict[str, _Asked] = {
     "visibility": _visibility,
     "default": _default,
     "default_instance": _always,
+    "decision_input_flow": _always,
+    "source_path": _of_chains,
+    "target_path": _of_chains,
+    "default_language": _of_no_text,
     "body": _body,
     "language": _language,
 }

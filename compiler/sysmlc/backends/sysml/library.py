@@ -182,4 +182,9 @@ def quantity_of(graph: Graph, type_: Element) -> str | None:
     if known is not None:
         return known[0]
     kind = quantity_kind_of(graph, type_)
-    return None if kind is None else _QUANTITIES.get(kind.name.lower())
+    return None if kind is None else quantity_of_kind(kind)
+
+
+def quantity_of_kind(kind: Element) -> str | None:
+    """Value type of ISQ for a quantity kind."""
+    return _QUANTITIES.get(kind.name.lower())

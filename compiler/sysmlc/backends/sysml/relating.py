@@ -30,13 +30,11 @@ _EDGES = frozenset(
         Edge.ENTRY,
         Edge.DO,
         Edge.EXIT,
-        Edge.METHOD,
         Edge.CALLS,
         Edge.IN_PARTITION,
         Edge.INSTANCE_OF,
         Edge.CLIENT,
         Edge.SUPPLIER,
-        Edge.CLASSIFIER_BEHAVIOR,
         Edge.INCLUDES,
         Edge.APPLIES,
         Edge.SUBJECT,
@@ -168,11 +166,33 @@ def _always(_book: Book, _source: Element, _target: Element) -> bool:
 def _is_of_owner(_book: Book, source: Element, target: Element) -> bool:
     """References that no relation says; what a constraint is about besides its owner is said."""
     if source.kind is Kind.CONSTRAINT:
-        return target.id == source.owner
+        return target.id == source.owner or not source.name
     return source.kind not in _OF_KINDS[Edge.REFERENCES]
 
 
+def differs_in_parameters(book: Book, operation: Element, method: Element) -> bool:
+    """Whether an operation states no parameters and would inherit those of its method."""
+    has_own, has = (
+        any(one.kind is Kind.PARAMETER for one in book.graph.owned(two))
+        for two in (operation, method)
+    )
+    return has and not has_own
+
+
+def _is_apart_from_method(book: Book, operation: Element, method: Element) -> bool:
+    entries = (book.plan.entry(operation), book.plan.entry(method))
+    return entries[0] is not entries[1] and differs_in_parameters(book, operation, method)
+
+
+def _is_of_other_kind(book: Book, _owner: Element, behaviour: Element) -> bool:
+    """Whether a classifier behaviour is neither an action nor a state, which are performed."""
+    entry = book.plan.entry(behaviour)
+    return entry is not None and entry.shape.plain not in ("action", "state")
+
+
 _UNLIKE = {
+    Edge.METHOD: _is_apart_from_method,
+    Edge.CLASSIFIER_BEHAVIOR: _is_of_other_kind,
     Edge.REFERENCES: _is_of_owner,
     Edge.SUBSETS: is_apart,
     Edge.REDEFINES: _is_unlike,

@@ -25,6 +25,8 @@ _KEYWORDS = {
     "connection-point": "connectionPoint",
     "terminate": "termination",
 }
+_POINTS = ("entry-point", "exit-point", "connection-point")
+"""Pseudostates that states and state machines own themselves (UML 2.5.1, 14.2.4)."""
 _WIDTH = 80
 
 
@@ -57,6 +59,9 @@ def pseudostate(book: Book, entry: Entry) -> list[Line]:
     assert element is not None
     keyword = _KEYWORDS.get(element.subkind, "choice")
     mark = f"#{book.ours(entry.parent, keyword)}"
+    owner = book.graph.owner(element)
+    if owner is not None and owner.kind is Kind.STATE and element.subkind not in _POINTS:
+        book.approximated(element, "a pseudostate that no region owns", "one of the only region")
     body = contents(book, entry)
     for one in book.graph.targets(element, Edge.REFERENCES):
         name = book.name(entry, element, Edge.REFERENCES, one)

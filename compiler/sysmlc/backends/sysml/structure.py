@@ -5,9 +5,15 @@ from sysmlc.backends.sysml.actors import actor_of
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.declarations import Head, definition_head, feature_head, typing
 from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.library import quantity_of, scalar_of, unit_name
+from sysmlc.backends.sysml.library import (
+    quantity_of,
+    quantity_of_kind,
+    scalar_of,
+    unit_name,
+)
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import qualified, visible
+from sysmlc.backends.sysml.relating import differs_in_parameters
 from sysmlc.backends.sysml.texts import opaque_lines
 from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
@@ -70,6 +76,7 @@ def value_type(book: Book, entry: Entry) -> list[Line]:
     head = definition_head(book, entry, is_quantity=quantity is not None)
     body = contents(book, entry)
     if quantity is not None:
+        _note_quantity(book, element, quantity)
         kept = _non_scalar(book, entry, element)
         generals = book.graph.targets(element, Edge.SPECIALIZES)
         if not any(_has_quantity(book, one) for one in generals):
@@ -81,6 +88,14 @@ def value_type(book: Book, entry: Entry) -> list[Line]:
     elif unit_of(book.graph, element) is not None:
         body.insert(0, _unit(book, entry, unit_of(book.graph, element)))
     return [Line(head.text(), body)]
+
+
+def _note_quantity(book: Book, element: Element, quantity: str) -> None:
+    """Note a quantity kind that is not that of the unit: ISQ gives a unit of one kind only."""
+    kind = quantity_kind_of(book.graph, element)
+    own = None if kind is None else quantity_of_kind(kind)
+    if own is not None and own != quantity:
+        book.approximated(element, "a quantity kind that has other units", "that of the unit")
 
 
 def _non_scalar(book: Book, entry: Entry, element: Element) -> list[str]:
@@ -189,6 +204,8 @@ def operation(book: Book, entry: Entry) -> list[Line]:
         if other is entry:
             book.said.add(method.id)
             body += opaque_lines(book, entry, method)
+            continue
+        if differs_in_parameters(book, element, method):
             continue
         name = book.name(entry.parent, element, Edge.METHOD, method)
         if name is not None and other is not None:

@@ -12,6 +12,7 @@ from sysmlc.backends.sysml.values import literal
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
+WAITING = "a step that waits for several flows, one of them with a guard,"
 STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 
 
@@ -62,12 +63,24 @@ def succession(book: Book, entry: Entry, flow: Element) -> Line | None:
     body = inner if flow.kind is Kind.CONTROL_FLOW else [*_objects(book, entry, flow), *inner]
     is_decision = entry.shape.keyword == "decide"
     guard = _guard(book, entry, flow)
+    if guard is not None:
+        _note_waiting(book, target)
     if guard == "else" and not name and is_decision:
         return Line(f"else {end}", body, depth=1)
     test = "" if guard in (None, "else") else f"if {guard} "
     if name:
         return Line(f"succession {quoted(name)} first {quoted(entry.name)} {test}then {end}", body)
     return Line(f"{test}then {end}", body, depth=1 if is_decision else 0)
+
+
+def _note_waiting(book: Book, step: Element | None) -> None:
+    """Note a step that waits for all of several flows: not for those whose guard does not hold."""
+    if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
+        return
+    into = [f for f in book.graph.sources(step, Edge.FLOW_TARGET) if f.kind is Kind.CONTROL_FLOW]
+    told = (facts.get("said") for _, facts in book.losses.told.get(step.id, ()))
+    if len(into) > 1 and WAITING not in told:
+        book.approximated(step, WAITING, "one that waits for those whose guards hold")
 
 
 def _objects(book: Book, entry: Entry, flow: Element) -> list[Line]:

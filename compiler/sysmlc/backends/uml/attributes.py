@@ -23,6 +23,7 @@ _OF_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distributi
     description definition_uri domain"""
 _OF_TAGS = frozenset(_OF_TAGS_NAMES.split())
 """What passes work out from tags of applications, or slots of units."""
+_PATHS = ("source_path", "target_path")
 _KEPT = frozenset({"unit", "language", "unresolved"})
 """What UML says in other words, and AutomationML in these too."""
 _ONE = ("multiplicity", "1")
@@ -58,11 +59,11 @@ def _is_said_otherwise(book: Book, element: Element, key: str) -> bool:
         return True
     if key == "unit" and element.role == "value type":
         return True
-    return key in _OF_TAGS and _has_meaning(book, element)
+    return key in _OF_TAGS and _has_meaning(book, element, key)
 
 
-def _has_meaning(book: Book, element: Element) -> bool:
-    is_flow = element.kind in (Kind.ITEM_FLOW, Kind.CONNECTOR)
+def _has_meaning(book: Book, element: Element, key: str) -> bool:
+    is_flow = element.kind in (Kind.ITEM_FLOW, Kind.CONNECTOR) and key not in _PATHS
     is_unit = element.role in ("unit", "quantity kind")
     return is_flow or is_unit or any(applications(book.graph, element))
 

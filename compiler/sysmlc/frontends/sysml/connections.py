@@ -8,7 +8,7 @@ from sysmlc.frontends.sysml.features import property_
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.query import type_of
+from sysmlc.ir.query import generals, type_of
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -156,6 +156,27 @@ def _flow(low: "Lowering", node: Node, made: Element) -> None:
         if other.kind is Kind.CONNECTOR and wanted == _paths(low, other):
             low.graph.connect(Edge.REALIZING, made, other)
             return
+    _say_paths(low, made, owner, ends)
+
+
+def _say_paths(low: "Lowering", made: Element, owner: Element, ends: list[list[Element]]) -> None:
+    """Say through which parts the ends are, where the features at the ends do not say it."""
+    for key, (*path, _) in zip(("source_path", "target_path"), ends, strict=True):
+        if path and (len(path) > 1 or _has_like(low, owner, path[0])):
+            low.set(made, **{key: tuple(one.id for one in path)})
+
+
+def _has_like(low: "Lowering", owner: Element, part: Element) -> bool:
+    """Whether another part has the features of a part, too."""
+    type_ = type_of(low.graph, part)
+    for above in (owner, *generals(low.graph, owner)):
+        for other in low.graph.owned(above):
+            like = None if other is part else type_of(low.graph, other)
+            if like is not None and type_ in (like, *generals(low.graph, like)):
+                return True
+            if like is not None and type_ is not None and like in generals(low.graph, type_):
+                return True
+    return False
 
 
 def _ported(low: "Lowering", end: Node) -> list[Element]:

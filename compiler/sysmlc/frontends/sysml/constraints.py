@@ -30,8 +30,8 @@ def constraint(low: "Lowering", node: Node, owner: Element | None) -> None:
         return
     marks = annotations.ours(node)
     subkind = next((_SUBKINDS[one] for one in marks if one in _SUBKINDS), "")
-    _, other = marked(node, Kind.CONSTRAINT)
-    made = low.add(node, Kind.CONSTRAINT, nodes.name_of(node), owner, subkind=subkind or other)
+    other = annotations.said(node, "Kind", "name") or marked(node, Kind.CONSTRAINT)[1]
+    made = low.add(node, Kind.CONSTRAINT, nodes.name_of(node), owner, subkind=subkind or str(other))
     low.set(made, **visibility(node))
     if result is not None:
         low.later(lambda: _body(low, node, made, result))

@@ -21,10 +21,10 @@ def in_behaviour(low: "Lowering", node: Node, owner: Element) -> Element:
     if "direction" in node.facts or is_result:
         is_step = owner.kind in (Kind.ACTION, Kind.STRUCTURED)
         return pin(low, node, owner) if is_step else parameter(low, node, owner)
-    kind, _ = marked(node, _kind(low, node, owner))
-    if kind in _BUFFERS:
-        name = nodes.name_of(node)
-        made = low.add(node, kind, name, owner, **visibility(node))
+    kind, subkind = marked(node, _kind(low, node, owner))
+    if kind in _BUFFERS or subkind == "expansion":
+        kind, name = kind if kind in _BUFFERS else Kind.OBJECT_NODE, nodes.name_of(node)
+        made = low.add(node, kind, name, owner, subkind=subkind, **visibility(node))
         describe(low, node, made)
         return made
     return property_(low, node, owner)

@@ -176,8 +176,14 @@ def held(low: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
         _own(low, node, owner, edge)
 
 
+_NO_EFFECT = "an action without effect"
+
+
 def _own(low: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
     only = nodes.body_of(node)
+    if node.kind == "TerminateActionUsage":
+        # It ends the state itself or what it names; the effect has no words.
+        low.approximated(node, "a terminate action of a state or a transition", _NO_EFFECT)
     if len(only) == 1 and only[0].kind in _STATES and not node.name:
         made = machine(low, only[0], owner)
     elif node.kind == "SendActionUsage" or node.kind == "AcceptActionUsage":

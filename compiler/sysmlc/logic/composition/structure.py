@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.flow_paths import flow_path
 from sysmlc.values import dataclass
 
 ITSELF = ""
@@ -112,10 +113,16 @@ def _along(graph: Graph, block: Element, steps: list[Element], path: str) -> Ite
 
 def _flow(graph: Graph, block: Element, flow: Element, path: str) -> Iterator[Link]:
     """A flow that no connector realises leads between features: of the parts that have them."""
-    sides = []
+    sides: list[list[End]] = []
     for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
         feature = graph.target(flow, edge)
-        sides.append([] if feature is None else list(_holders(graph, block, feature, path)))
+        parts = flow_path(graph, flow, edge)
+        if feature is None:
+            sides.append([])
+        elif parts:
+            sides.append(list(_along(graph, block, [*parts, feature], path)))
+        else:
+            sides.append(list(_holders(graph, block, feature, path)))
     if all(len(side) == 1 for side in sides):
         yield sides[0], sides[1]
 
@@ -140,6 +147,8 @@ def unclear_flows(graph: Graph, block: Element) -> Iterator[tuple[Element, Eleme
                 continue
             for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
                 feature = graph.target(one, edge)
+                if flow_path(graph, one, edge):
+                    continue
                 count = 0 if feature is None else len(list(_holders(graph, block, feature, "")))
                 if feature is not None and count > 1:
                     yield one, feature, count

@@ -1,0 +1,190 @@
+"""What real models lost on the way to the text and back: it comes back now, or is told."""
+
+import pytest
+from test_v2_kept import again, graph_of
+
+from sysmlc.backends.sysml.document import written
+
+METHOD = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Operation gate.check "check"
+      -> method run
+  Activity run "Run"
+    Parameter run.a "a" direction="in"
+"""
+CONSTRAINT = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.x "x" role="value" aggregation="composite"
+      -> typed-by real
+    Constraint gate.c "" body="x >= 0" language="OCL"
+      -> references gate.x
+  DataType real "Length" role="value type"
+"""
+EMPTY_BODY = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Constraint gate.c "c" body=""
+"""
+ABOUT_MESSAGES = """
+Package p "Plant"
+  Constraint c "c" subkind="interaction"
+"""
+CONVERSATION = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Interaction gate.talk "Talk"
+    -> classifier-behavior gate.talk
+"""
+END_OF_FLOW = """
+Package p "Plant"
+  Activity run "Run"
+    Structured run.s "handler" subkind="structured"
+      Action run.s.a "a" subkind="opaque"
+      Control run.s.e "end" subkind="flow-final"
+      ControlFlow run.s.f ""
+        -> flow-source run.s.a
+        -> flow-target run.s.e
+"""
+READING = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.x "x" role="reference"
+      -> typed-by gate
+  Activity run "Run"
+    Action run.a "read x" subkind="read"
+      -> calls gate.x
+      Pin run.a.r "result" direction="out" subkind="result"
+"""
+NO_TEXT = """
+Package p "Plant"
+  Activity run "Run"
+    Parameter run.a "a" direction="in" default="" default_language="UML"
+"""
+NO_BODY = """
+Package p "Plant"
+  Activity run "Run" subkind="function" language="Natural language"
+"""
+EXPANSION = """
+Package p "Plant"
+  Activity run "Run"
+    Structured run.s "each" subkind="expansion" mode="parallel"
+    ObjectNode run.o "in" subkind="expansion"
+      -> typed-by box
+  DataType box "Box" role="value type"
+"""
+INPUT_FLOW = """
+Package p "Plant"
+  Activity run "Run"
+    Action run.a "a" subkind="opaque"
+      Pin run.a.o "o" direction="out" subkind="output-value"
+    Control run.d "d" subkind="decision" decision_input_flow="run.f"
+    ObjectFlow run.f "given"
+      -> flow-source run.a.o
+      -> flow-target run.d
+    Action run.b "b" subkind="opaque"
+    ControlFlow run.g ""
+      -> flow-source run.d
+      -> flow-target run.b
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        METHOD,
+        CONSTRAINT,
+        EMPTY_BODY,
+        ABOUT_MESSAGES,
+        CONVERSATION,
+        END_OF_FLOW,
+        READING,
+        NO_TEXT,
+        NO_BODY,
+        EXPANSION,
+    ],
+)
+def test_it_comes_back(text):
+    _, differences = again(text)
+    assert differences == []
+
+
+def test_the_flow_that_a_decision_is_made_over_is_kept_by_its_name():
+    found, differences = again(INPUT_FLOW)
+    assert [one for one in differences if "decision input flow" in one] == []
+    (decision,) = [one for one in found if one.name == "d"]
+    assert found[str(decision.attrs["decision_input_flow"])].name == "given"
+
+
+def told(text):
+    """The ids of elements of which a loss is told, with what is said of them."""
+    book, _ = written(graph_of(text))
+    found = book.losses.told.items()
+    return {id_: [facts.get("said", code) for code, facts in losses] for id_, losses in found}
+
+
+WAITING = """
+Package p "Plant"
+  Activity run "Run"
+    Action run.a "a" subkind="opaque"
+    Action run.b "b" subkind="opaque"
+    Action run.c "c" subkind="opaque"
+    ControlFlow run.f "f" {guard}
+      -> flow-source run.a
+      -> flow-target run.c
+    ControlFlow run.g "g"
+      -> flow-source run.b
+      -> flow-target run.c
+"""
+
+
+def test_a_step_that_waits_for_a_guarded_flow_is_told():
+    said = "a step that waits for several flows, one of them with a guard,"
+    assert told(WAITING.format(guard='guard="1 < 2"')) == {"run.c": [said]}
+    assert told(WAITING.format(guard="")) == {}
+
+
+FORK = """
+Package p "Plant"
+  StateMachine m "M"
+    Region m.r ""
+      State m.r.s "S"
+        Pseudostate m.r.s.f "f" subkind="{subkind}"
+"""
+
+
+def test_a_fork_that_a_state_owns_without_a_region_is_told():
+    said = "a pseudostate that no region owns"
+    assert told(FORK.format(subkind="fork"))["m.r.s.f"] == [said]
+    assert "m.r.s.f" not in told(FORK.format(subkind="exit-point"))
+
+
+IMPORT = """
+Package p "Plant"
+  Import p.i "" subkind="package"
+    -> references {target}
+Package q "Other"
+Package types "PrimitiveTypes" external=true
+"""
+
+
+def test_an_import_of_primitive_types_of_uml_is_told():
+    assert told(IMPORT.format(target="types")) == {"p.i": ["an import of primitive types"]}
+    assert "p.i" not in told(IMPORT.format(target="q"))
+
+
+DEGREES = """
+Package p "Plant"
+  DataType t "Temperature" role="value type"
+    -> references t.u
+    -> references t.q
+    Unit t.u "degree" symbol="{symbol}" external=true library=true
+    QuantityKind t.q "thermodynamic temperature" external=true library=true
+"""
+
+
+def test_a_quantity_kind_with_another_unit_is_told():
+    said = "a quantity kind that has other units"
+    assert told(DEGREES.format(symbol="°C")) == {"t": [said]}
+    assert told(DEGREES.format(symbol="K")) == {}
