@@ -1,0 +1,168 @@
+"""Contracts of models in SysML v1 as XMI, from the file to the verdict and the controller."""
+
+import pytest
+
+from sysmlc.driver import registry
+from sysmlc.passes import pipeline
+
+MODEL = """\
+<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001" xmi:version="20131001"
+  xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"
+  xmlns:Blocks="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Blocks"
+  xmlns:PortsAndFlows="http://www.eclipse.org/papyrus/sysml/1.6/SysML/PortsAndFlows"
+  xmlns:Requirements="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Requirements">
+<uml:Model xmi:id="m" name="Plant">
+{}
+</xmi:XMI>
+"""
+DOOR = """\
+<packagedElement xmi:type="uml:PrimitiveType" xmi:id="bool" name="Boolean"/>
+<packagedElement xmi:type="uml:Signal" xmi:id="open" name="open"/>
+<packagedElement xmi:type="uml:SignalEvent" xmi:id="eo" signal="open"/>
+<packagedElement xmi:type="uml:Signal" xmi:id="close" name="close"/>
+<packagedElement xmi:type="uml:SignalEvent" xmi:id="ec" signal="close"/>
+<packagedElement xmi:type="uml:Class" xmi:id="door" name="Door" classifierBehavior="sm">
+ <ownedBehavior xmi:type="uml:StateMachine" xmi:id="sm" name="Behaviour">
+  <region xmi:id="r" name="state">
+   <subvertex xmi:type="uml:Pseudostate" xmi:id="i"/>
+   <subvertex xmi:type="uml:State" xmi:id="sc" name="Closed"/>
+   <subvertex xmi:type="uml:State" xmi:id="so" name="Opened"/>
+   <transition xmi:id="t0" source="i" target="sc"/>
+   <transition xmi:id="t1" source="sc" target="so">
+    <trigger xmi:id="g1" event="eo"/>
+</transition>
+   <transition xmi:id="t2" source="so" target="sc">
+    <trigger xmi:id="g2" event="ec"/>
+</transition>
+  </region>
+ </ownedBehavior>
+</packagedElement>
+<packagedElement xmi:type="uml:Class" xmi:id="req" name="Obeys">
+ <ownedRule xmi:type="uml:Constraint" xmi:id="rule" name="closes" constrainedElement="req">
+  <specification xmi:type="uml:OpaqueExpression" xmi:id="sp">
+   <language>LTL</language>
+   <body>{rule}</body></specification>
+ </ownedRule>
+</packagedElement>
+<packagedElement xmi:type="uml:Abstraction" xmi:id="sat" client="door" supplier="req"/>
+</uml:Model>
+<Blocks:Block xmi:id="b1" base_Class="door"/>
+<Requirements:Requirement xmi:id="b2" base_NamedElement="req" base_Class="req" id="R1" text="x"/>
+<Requirements:Satisfy xmi:id="b3" base_DirectedRelationship="sat" base_Abstraction="sat"/>
+"""
+CELL = """\
+<packagedElement xmi:type="uml:PrimitiveType" xmi:id="bool" name="Boolean"/>
+<packagedElement xmi:type="uml:Class" xmi:id="fe" name="Feeder">
+ <ownedAttribute xmi:type="uml:Port" xmi:id="fe.p" name="ready" type="bool"
+    aggregation="composite"/>
+</packagedElement>
+<packagedElement xmi:type="uml:Class" xmi:id="r1" name="FeederReq">
+ <ownedRule xmi:type="uml:Constraint" xmi:id="c1" name="c1" constrainedElement="r1">
+  <specification xmi:type="uml:OpaqueExpression" xmi:id="c1.s">
+   <language>LTL</language>
+   <body>{rule}</body>
+  </specification>
+ </ownedRule>
+</packagedElement>
+<packagedElement xmi:type="uml:Abstraction" xmi:id="fe.s" client="fe" supplier="r1"/>
+<packagedElement xmi:type="uml:Class" xmi:id="pi" name="Picker">
+ <ownedAttribute xmi:type="uml:Port" xmi:id="pi.p" name="ready" type="bool"
+    aggregation="composite"/>
+<ownedAttribute xmi:type="uml:Port" xmi:id="pi.t" name="taken" type="bool"
+    aggregation="composite"/>
+</packagedElement>
+<packagedElement xmi:type="uml:Class" xmi:id="r2" name="PickerReq">
+ <ownedRule xmi:type="uml:Constraint" xmi:id="c2" name="c2" constrainedElement="r2">
+  <specification xmi:type="uml:OpaqueExpression" xmi:id="c2.s">
+   <language>LTL assume</language>
+   <body>G F ready</body>
+  </specification>
+ </ownedRule>
+ <ownedRule xmi:type="uml:Constraint" xmi:id="c3" name="c3" constrainedElement="r2">
+  <specification xmi:type="uml:OpaqueExpression" xmi:id="c3.s">
+   <language>LTL</language>
+   <body>G F taken</body>
+  </specification>
+ </ownedRule>
+</packagedElement>
+<packagedElement xmi:type="uml:Abstraction" xmi:id="pi.s" client="pi" supplier="r2"/>
+<packagedElement xmi:type="uml:Class" xmi:id="cell" name="Cell">
+ <ownedAttribute xmi:type="uml:Property" xmi:id="cell.f" name="feeder" type="fe"
+    aggregation="composite"/>
+ <ownedAttribute xmi:type="uml:Property" xmi:id="cell.p" name="picker" type="pi"
+    aggregation="composite"/>
+ <ownedConnector xmi:type="uml:Connector" xmi:id="k" name="k">
+  <end xmi:type="uml:ConnectorEnd" xmi:id="k1" partWithPort="cell.f" role="fe.p"/>
+  <end xmi:type="uml:ConnectorEnd" xmi:id="k2" partWithPort="cell.p" role="pi.p"/>
+ </ownedConnector>
+</packagedElement>
+<packagedElement xmi:type="uml:InformationFlow" xmi:id="flow" name="flow"
+    informationSource="fe.p" informationTarget="pi.p" conveyed="bool" realizingConnector="k"/>
+</uml:Model>
+<Blocks:Block xmi:id="s1" base_Class="fe"/>
+<Blocks:Block xmi:id="s2" base_Class="pi"/>
+<Blocks:Block xmi:id="s3" base_Class="cell"/>
+<PortsAndFlows:FlowPort xmi:id="q1" base_Port="fe.p" direction="out"/>
+<PortsAndFlows:FlowPort xmi:id="q2" base_Port="pi.p" direction="in"/>
+<PortsAndFlows:FlowPort xmi:id="q3" base_Port="pi.t" direction="out"/>
+<PortsAndFlows:ItemFlow xmi:id="q4" base_InformationFlow="flow"/>
+<Requirements:Requirement xmi:id="x1" base_NamedElement="r1" base_Class="r1" id="R1"/>
+<Requirements:Requirement xmi:id="x2" base_NamedElement="r2" base_Class="r2" id="R2"/>
+<Requirements:Satisfy xmi:id="y1" base_Abstraction="fe.s" base_DirectedRelationship="fe.s"/>
+<Requirements:Satisfy xmi:id="y2" base_Abstraction="pi.s" base_DirectedRelationship="pi.s"/>
+"""
+CLOSES = "G (state=Opened &amp; event=close -> X state=Closed)"
+STAYS_OPEN = "G (state=Opened -> X state=Opened)"
+
+
+@pytest.fixture(autouse=True)
+def all_passes(here, monkeypatch):
+    every = [pipeline.load(name) for name in pipeline.NAMES]
+    monkeypatch.setattr(registry, "passes", lambda options: every)
+
+
+@pytest.fixture
+def checked(here):
+    """The verdicts on a model, and what is told beside suspicions."""
+
+    def run(text, rule):
+        here.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
+        made = here.sysmlc("contracts", "check", "plant.uml")
+        errors = [line for line in made.stderr.splitlines() if line.startswith("error")]
+        return made.exit_code, made.stdout.splitlines(), errors
+
+    return run
+
+
+def test_a_state_machine_is_compared_with_the_requirement_that_its_block_satisfies(checked):
+    kept = ["Plant::Door: realizable, keeps its requirements"]
+    broken = ["Plant::Door: realizable, breaks its requirements"]
+    alone = ["Plant::Door.requirements: realizable"]
+    assert checked(DOOR, CLOSES) == (0, [*kept, *alone], [])
+    code, said, (error,) = checked(DOOR, STAYS_OPEN)
+    assert (code, said) == (1, [*broken, *alone])
+    assert error.endswith("('closes' of 'Obeys' demands it)")
+
+
+def test_two_blocks_are_composed_along_the_connector_of_their_ports(checked):
+    parts = ["Plant::Feeder: realizable", "Plant::Picker: realizable"]
+    assert checked(CELL, "G F ready") == (0, [*parts, "Plant::Cell: its 2 parts fit together"], [])
+    code, said, (error,) = checked(CELL, "G (ready -> X !ready)")
+    assert (code, said) == (1, [*parts, "Plant::Cell: its 2 parts do not fit together"])
+    assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which nothing around" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "component", "machine"),
+    [
+        (DOOR, CLOSES, "Plant::Door", "2 states, 4 moves, checked"),
+        (CELL, "G F ready", "Plant::Picker", "2 states, 3 moves, checked"),
+    ],
+)
+def test_a_controller_is_made_of_each_contract(here, text, rule, component, machine):
+    here.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
+    made = here.sysmlc("synth", "plant.uml", "-c", component, "-o", "out")
+    assert made.exit_code == 0
+    assert made.stdout.startswith(f"{component}: realizable (")
+    assert made.stdout.endswith(f"machine: {machine}\n")
+    assert (here.folder / "out" / f"{component.replace('::', '.')}.machine.json").is_file()
