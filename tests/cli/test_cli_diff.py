@@ -177,6 +177,60 @@ def test_markdown_is_a_table_for_each_owner(plants):
     assert done.stdout == MARKDOWN
 
 
+def test_names_with_the_signs_of_markdown_are_shown_as_they_are(here):
+    """In a heading a bar is a bar; a fence is longer than what it holds (CommonMark 6.1)."""
+    here.write("a.ir", 'Package p "P|q``"\n  Class c "C|d"\n')
+    here.write("b.ir", 'Package p "P|q``"\n')
+    done = here.sysmlc("diff", "a.ir", "b.ir", "--format", "markdown").stdout
+    assert "\n#### ``` P|q`` ```\n" in done
+    assert "\n| `-` | class `C\\|d` | removed |  |  |\n" in done
+
+
+V2 = """\
+package Plant {
+  part def Motor { port p; attribute speed = 1.5; }
+  part def Servo :> Motor;
+  part def Belt;
+  part def Gate {
+    part m : Motor;
+    port q;
+    port r;
+    connection c connect q to m.p;
+  }
+}
+"""
+V2_NEW = (
+    V2.replace("part def Belt", "item def Pallet;\n  part def Conveyor")
+    .replace("m : Motor", "m : Servo")
+    .replace("connect q", "connect r")
+    .replace(" attribute speed = 1.5;", "")
+)
+V2_TOLD = """\
+Plant
+  ~ block Conveyor: renamed, was Belt
+  + signal Pallet: added
+
+Plant::Gate
+  ~ connector c: rewired, ends: q -- m.p => r -- m.p
+  ~ property m: retyped, type: Motor => Servo
+
+Plant::Motor
+  - property speed: removed
+
+1 added, 1 removed, 1 renamed, 1 retyped, 1 rewired
+"""
+
+
+def test_texts_of_v2_and_the_xmi_made_of_them_differ_alike(plants):
+    """Renamed, retyped, rewired ..., whether ids come from names (v2) or are kept (XMI)."""
+    plants.write("old.sysml", V2)
+    plants.write("new.sysml", V2_NEW)
+    for name in ("old", "new"):
+        assert plants.sysmlc(f"{name}.sysml", "-o", name, "--emit", "uml").exit_code == 0
+    assert plants.sysmlc("diff", "old.sysml", "new.sysml").stdout == V2_TOLD
+    assert plants.sysmlc("diff", "old/uml/old.uml", "new/uml/new.uml").stdout == V2_TOLD
+
+
 def test_json_has_a_schema_and_the_places_of_both(plants):
     done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "json")
     made = json.loads(done.stdout)

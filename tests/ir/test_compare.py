@@ -330,3 +330,29 @@ Class k "Cell"
 """
     assert told(wires.format("a", "b"), wires.format("b", "a"), "id") == []
     assert told(wires.format("a", "b"), wires.format("b", "b"), "id") != []
+
+
+def test_another_subject_of_a_requirement_is_told():
+    model = """\
+Class gate "Gate" role="block"
+Class belt "Belt" role="block"
+Class fast "Fast" role="requirement"
+  -> subject gate
+"""
+    assert changed(model, ("subject gate", "subject belt")) == [
+        ": changed requirement Fast, subject: Gate => Belt"
+    ]
+
+
+def test_an_import_is_told_by_what_it_imports():
+    model = """\
+Package plant "Plant"
+  Import i visibility="private"
+    -> references pumps
+Package pumps "Pumps"
+Package valves "Valves"
+"""
+    imported = "Pumps; visibility: private", "Valves; visibility: private"
+    assert changed(model, ("references pumps", "references valves")) == [
+        ": changed package Plant, import: {} => {}".format(*imported)
+    ]

@@ -1,6 +1,7 @@
 """The forms in which ``sysmlc diff`` shows differences: text, Markdown, JSON."""
 
 import json
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
@@ -87,7 +88,7 @@ def markdown(changes: Sequence[Change]) -> str:
     for owner, group in _by_owner(changes):
         rows = [f"| {' | '.join(_cells(change))} |" for change in group]
         head = ["| | element | change | before | after |", "|---|---|---|---|---|"]
-        blocks += [f"#### {_code(owner)}", "\n".join([*head, *rows])]
+        blocks += [f"#### {_span(owner)}", "\n".join([*head, *rows])]
     return "\n\n".join(blocks) + "\n"
 
 
@@ -102,12 +103,17 @@ def _cells(change: Change) -> tuple[str, ...]:
 
 
 def _code(content: str) -> str:
-    """A code span; in a table also a bar in it must be escaped (GitHub Flavored Markdown)."""
+    """A code span in a table, where also a bar in it must be escaped (GitHub Flavored Markdown)."""
+    return _span(content).replace("|", "\\|")
+
+
+def _span(content: str) -> str:
+    """A code span: its fence is longer than any run of such signs in it (CommonMark 6.1)."""
     if not content:
         return ""
-    fence = "``" if "`" in content else "`"
-    gap = " " if "`" in content else ""
-    return f"{fence}{gap}{content}{gap}{fence}".replace("|", "\\|").replace("\n", " ")
+    longest = max(map(len, re.findall("`+", content)), default=0)
+    fence, gap = "`" * (longest + 1), " " if longest else ""
+    return f"{fence}{gap}{content}{gap}{fence}".replace("\n", " ")
 
 
 def _escaped(content: str) -> str:

@@ -68,8 +68,9 @@ WORDS = frozenset(
 )
 """Attributes that never hold ids, whatever the ids of a model look like."""
 
-PASSED_OVER = frozenset({Edge.OWNS, Edge.FEATURE, Edge.SUBJECT, Edge.END})
-"""Edges that follow from other edges, or that the ends of a relation stand for."""
+PASSED_OVER = frozenset({Edge.OWNS, Edge.FEATURE, Edge.END})
+"""Edges that follow from other edges, or that the ends of a relation stand for; the subject of
+an application is what it is told of."""
 
 ENDS = (Edge.CLIENT, Edge.SUPPLIER, Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 """Edges of which two make one relation: they are compared together."""

@@ -12,7 +12,7 @@ from sysmlc.ir.compare.content import (
 )
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.kinds import Edge
+from sysmlc.ir.kinds import Edge, Kind
 
 _COMPARED = tuple(edge for edge in Edge if edge not in PASSED_OVER)
 
@@ -51,8 +51,12 @@ class Side:
 
     def _edges(self) -> dict[str, dict[Edge, list[Element]]]:
         found: dict[str, dict[Edge, list[Element]]] = {}
+        applied = {one.id for one in self.graph.of_kind(Kind.APPLICATION)}
         for edge in _COMPARED:
+            passed = applied if edge is Edge.SUBJECT else ()
             for _, source, target in self.graph.edges(edge):
+                if source in passed:
+                    continue
                 found.setdefault(source, {}).setdefault(edge, []).append(self.graph[target])
         return found
 

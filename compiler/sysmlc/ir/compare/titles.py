@@ -151,7 +151,9 @@ def told(side: Side, detail: Element) -> str:
     body = detail.attrs.get("body")
     if isinstance(body, str):
         return _single_line(body)
-    said = [
+    is_import = detail.kind is Kind.IMPORT
+    led = side.out.get(detail.id, {}).get(Edge.REFERENCES, ()) if is_import else ()
+    said = [whole(side, one) for one in led] + [
         f"{name.replace('_', ' ')}: {shown(side, value)}"
         for name, value in sorted(detail.attrs.items())
         if name not in NOT_CONTENT
