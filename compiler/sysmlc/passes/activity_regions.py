@@ -133,3 +133,17 @@ def interruptible_regions(
         )
         for region in regions
     ]
+
+
+def is_entered_later(graph: Graph, members: list[Element]) -> bool:
+    """Whether a token enters an interruptible region later than its activity starts, or again."""
+    pins = (pin for one in members for pin in graph.owned(one) if pin.kind is Kind.PIN)
+    around = dict.fromkeys(one.id for one in (*members, *pins))
+    sources = (
+        source
+        for id in around
+        for flow in graph.sources(graph[id], Edge.FLOW_TARGET)
+        if flow.kind in FLOWS
+        for source in graph.targets(flow, Edge.FLOW_SOURCE)
+    )
+    return any(one.id not in around and one.subkind != "initial" for one in sources)

@@ -19,8 +19,8 @@ from sysmlc.passes.activity_flows import add_flow, add_rest
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_nodes import add_node
 from sysmlc.passes.activity_raising import Raising
-from sysmlc.passes.activity_regions import FLOWS, interruptible_regions
-from sysmlc.passes.activity_structured import add_order, add_start
+from sysmlc.passes.activity_regions import FLOWS, interruptible_regions, is_entered_later
+from sysmlc.passes.activity_structured import ACCEPTS, add_order, add_start
 from sysmlc.values import replace
 
 
@@ -41,6 +41,7 @@ def build(
         add_rest(draft, node)
         add_start(draft, node)
     _check_events(draft)
+    _check_listening(draft)
     return _result(draft)
 
 
@@ -50,6 +51,15 @@ def _check_events(draft: Draft) -> None:
             names = " and ".join(draft.drawing.labels[node.id] for node in takers)
             subject = draft.graph.subject(takers[0])
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
+
+
+def _check_listening(draft: Draft) -> None:
+    graph, drawing = draft.graph, draft.drawing
+    for region, members in interruptible_regions(graph, drawing.activity, drawing.nodes):
+        open_ = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
+        for node in open_ if is_entered_later(graph, members) else ():
+            label, name = drawing.labels[node.id], region.name or "the region"
+            draft.sink.report(rules.LISTENS_EARLY, graph.subject(node), node=label, region=name)
 
 
 def _result(draft: Draft) -> TokenGraph:
