@@ -21,7 +21,7 @@ UNSAID_EDGE = rule(
     Severity.WARNING,
     "SysML v2 text does not say '{edge}' from {kind} to {target} ({count} left out)",
     why="The textual notation of SysML v2 knows no such relation between such elements.",
-    wrong='Package p "Plant"\n  Class a "A"\n    -> mirrors t\n    TemplateParameter t "T"\n',
+    wrong='Package p "Plant"\n  Class a "A"\n    -> mirrors t\n    TemplateParameter t\n',
     right='Package p "Plant"\n  Class a "A"\n    -> specializes b\n  Class b "B"\n',
 )
 UNSAID_ATTRIBUTE = rule(
