@@ -80,6 +80,24 @@ def test_ids_of_interfaces_that_are_read_are_not_told_as_lost():
     assert [found.message for found in sink if found.rule.code == "SM481"] == []
 
 
+def test_an_id_of_an_interface_is_said_once_beside_other_members():
+    """A part of a class has a class of its own then; the port came into it a second time."""
+    units = """<SystemUnitClass Name="Motor"/>
+    <SystemUnitClass Name="Driven" RefBaseClassPath="Units/Belt">
+     <InternalElement Name="motor" ID="dm" RefBaseSystemUnitPath="Units/Motor"/>
+    </SystemUnitClass>
+    <SystemUnitClass Name="Line">
+     <InternalElement Name="belt" ID="l" RefBaseSystemUnitPath="Units/Driven">
+      <InternalElement Name="motor" ID="lm" RefBaseSystemUnitPath="Units/Motor"/>
+      <InternalElement Name="guard" ID="lg"/>
+      <ExternalInterface Name="in" ID="l.in" RefBaseClassPath="Wires/Wire"/>
+     </InternalElement></SystemUnitClass></SystemUnitClassLib>"""
+    text = PLANT.replace("{unit}", "m/s").replace("</SystemUnitClassLib>", units)
+    once = read_back(plant(text.encode()))
+    assert [one.attrs["interface_ids"][0][1] for one in once if one.attrs.get("interface_ids")]
+    assert [str(one) for one in compare(once, read_back(once), ("id",))] == []
+
+
 def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():
     again = read_back(plant(PLANT.replace("{unit}", "rpm").encode()))
     (speed,) = [one for one in again.of_kind(Kind.PROPERTY) if one.name == "speed"]

@@ -109,7 +109,7 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
     for one in nodes.body_of(node):
         if _is_of_itself(one, node):
             low.lower(one, made)
-        elif own is not None:
+        elif own is not None and id(one) not in low.repeated:
             low.lower(one, own)
 
 
