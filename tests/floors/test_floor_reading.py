@@ -126,3 +126,12 @@ def test_a_second_floor_of_one_name_is_told_and_not_studied(tmp_path):
     other = compiled(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
     assert "SM577" not in {one.rule.code for one in other.diagnostics}
     assert len(other.graph.derived(Study)) == 2
+
+
+@pytest.mark.parametrize("count", ["200", "99999999999999999999"])
+def test_more_robots_than_contracts_can_list_are_refused(count, tmp_path):
+    """A mutant of a model with the second number had no end."""
+    made = compiled(tmp_path, HALL.replace("spare : Robot[2]", f"spare : Robot[{count}]"))
+    (found,) = made.diagnostics
+    assert found.rule.code == "SM566"
+    assert "too many robots, more than 28 on 12 cells" in found.message

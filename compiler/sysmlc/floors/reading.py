@@ -1,6 +1,7 @@
 """Studies of a model: what specialises the definitions of the library ``Floors``."""
 
 from collections.abc import Iterable, Iterator
+from math import isqrt
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.floors import rules
@@ -13,6 +14,8 @@ from sysmlc.values import dataclass, replace
 LIBRARY = "Floors"
 MOST_CELLS = 400
 """Cells of a floor: contracts list them one by one."""
+MOST_MEETINGS = 10_000
+"""Pairs of robots times cells: contracts say of each pair that it is not in one cell."""
 
 
 def studies(graph: Graph, sink: Sink) -> Iterator[Study]:
@@ -61,14 +64,27 @@ class _Reading:
 
     def study(self) -> Iterator[Study]:
         """The floor as a value; nothing when it is none, or something is wrong with it."""
-        robots = [one for one in self._parts(self.block, "Robot") for _ in range(self._count(one))]
         grid = Grid(self._size("columns"), self._size("rows"))
+        robots = self._all_robots(grid)
         if robots and self.is_good:
             made = self._mission(self._floor(grid, robots))
             if made is not None:
                 self._check_ways(made)
             if made is not None and self.is_good:
                 yield made
+
+    def _all_robots(self, grid: Grid) -> list[Element]:
+        """The parts that are robots, each as often as it says."""
+        found: list[Element] = []
+        most = isqrt(MOST_MEETINGS // grid.size)
+        for part in self._parts(self.block, "Robot"):
+            count = self._count(part)
+            if len(found) + count > most:
+                problem = f"gives too many robots, more than {most} on {grid.size} cells"
+                self._refuse(part, part, "multiplicity", problem)
+                return found
+            found += [part] * count
+        return found
 
     def _floor(self, grid: Grid, robots: list[Element]) -> Study:
         """Robots and obstacles."""
