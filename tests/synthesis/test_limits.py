@@ -76,12 +76,17 @@ def test_comparing_contracts_keeps_limits_too() -> None:
 
 @pytest.fixture
 def pressed_soon() -> Iterator[None]:
-    """Ctrl-C after some CPU time, wherever the program then is."""
+    """Ctrl-C after some CPU time, wherever the program then is, however the tests were started.
+
+    Who starts them in the background may have had Ctrl-C ignored.
+    """
+    heard = signal.signal(signal.SIGINT, signal.default_int_handler)
     before = signal.signal(signal.SIGVTALRM, lambda number, frame: signal.raise_signal(2))
     signal.setitimer(signal.ITIMER_VIRTUAL, 0.3)
     yield
     signal.setitimer(signal.ITIMER_VIRTUAL, 0)
     signal.signal(signal.SIGVTALRM, before)
+    signal.signal(signal.SIGINT, heard)
 
 
 @pytest.mark.usefixtures("pressed_soon")
