@@ -78,11 +78,12 @@ def test_comparing_contracts_keeps_limits_too() -> None:
 def pressed_soon() -> Iterator[None]:
     """Ctrl-C after some CPU time, wherever the program then is, however the tests were started.
 
-    Who starts them in the background may have had Ctrl-C ignored.
+    Who starts them in the background may have had Ctrl-C ignored. It is pressed again now and then:
+    one that comes while the collector runs is lost.
     """
     heard = signal.signal(signal.SIGINT, signal.default_int_handler)
     before = signal.signal(signal.SIGVTALRM, lambda number, frame: signal.raise_signal(2))
-    signal.setitimer(signal.ITIMER_VIRTUAL, 0.3)
+    signal.setitimer(signal.ITIMER_VIRTUAL, 0.3, 3.0)
     yield
     signal.setitimer(signal.ITIMER_VIRTUAL, 0)
     signal.signal(signal.SIGVTALRM, before)
