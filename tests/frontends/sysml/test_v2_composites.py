@@ -296,3 +296,82 @@ def test_what_is_missing_in_a_machine_is_told(missing, assumed):
     found, verdict = told(LOADER.replace(missing, ";" if "{" in missing else " "))
     assert any(assumed in message for message in found)
     assert verdict == "Cells::Loader: its 4 parts do not fit together"
+
+
+DRAWN = """
+        action fetch { first start; then action grip; then gate;
+            decide gate; if ready then end; if not ready then again;
+            action again; then end; merge end; then done; }
+        action put { first start; then gate;
+            decide gate; if ready then drop; if not ready then end;
+            action drop; then end; merge end; then done; }
+"""
+OWN = """
+package Cells {
+    private import ScalarValues::*;
+    action def Fetch { first start; then action grip; then done; }
+    action def Put { first start; then action drop; then done; }
+    part def Cell {
+        in attribute ready : Boolean;
+        INSIDE
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("inside", [DRAWN, "action fetch : Fetch; action put : Put;"])
+def test_a_block_that_has_only_actions_of_its_own_is_made_up_of_them(inside):
+    found, codes = composites(OWN.replace("INSIDE", inside))
+    assert [one.name for one in found["Cells::Cell"].parts] == ["fetch", "put"]
+    assert codes == []
+
+
+def test_what_actions_read_of_their_block_is_one_variable():
+    fetch, put = composites(OWN.replace("INSIDE", DRAWN))[0]["Cells::Cell"].parts
+    assert [one for one in variables(fetch.contract) if one.startswith("env")] == [
+        "env fetch.done_grip",
+        "env fetch.done_again",
+        "env ready",
+    ]
+    assert [one for one in variables(put.contract) if one.startswith("env")] == [
+        "env put.done_drop",
+        "env ready",
+    ]
+
+
+OPERATIONS = """\
+Package p "Cells"
+  Package l "Library"
+    Activity f "Fetch"
+      Control fi subkind="initial"
+      Action fa "grip" subkind="opaque"
+      ControlFlow ff
+        -> flow-source fi
+        -> flow-target fa
+  Class c "Cell" role="block"
+    Operation c.f "fetch"
+      -> method f
+    Operation c.p "put"
+      -> method u
+    Activity u "Put"
+      Control ui subkind="initial"
+      Action ua "drop" subkind="opaque"
+      ControlFlow uf
+        -> flow-source ui
+        -> flow-target ua
+"""
+
+
+def test_operations_are_composed_by_their_methods():
+    graph, sink = parse_text(OPERATIONS), Sink()
+    pipeline.run(graph, sink)
+    (cell,) = compose(graph, graph.derived(Contract), sink)
+    assert cell.component == "Cells::Cell"
+    assert [one.name for one in cell.parts] == ["fetch", "put"]
+
+
+def test_an_action_that_another_one_calls_takes_part_only_by_it():
+    calls = "action put : Put; action sub { first start; then action grip; then done; }"
+    calls += "action all { first start; then action it : sub; then done; }"
+    found, _ = composites(OWN.replace("INSIDE", calls))
+    assert [one.name for one in found["Cells::Cell"].parts] == ["put", "all"]

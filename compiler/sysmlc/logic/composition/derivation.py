@@ -12,7 +12,7 @@ from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.composition.members import Block, Member, behaviour, itself, read_block, required
 from sysmlc.logic.composition.messages import crowding, wiring
 from sysmlc.logic.composition.naming import Wire, is_one_type, renamed, wires
-from sysmlc.logic.composition.open_steps import report_open_steps
+from sysmlc.logic.composition.open_steps import OpenStep, open_steps, report_open_steps
 from sysmlc.logic.composition.structure import unclear_flows
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.domains import describe
@@ -105,11 +105,17 @@ def compose(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator
     graph; composites come in the order of their components.
     """
     known = {one.origin: one for one in contracts}
+    waiting: list[OpenStep] = []
     for element in _blocks(graph, known):
         block = read_block(graph, element, known)
-        composite = _composite(block, sink)
+        whole = _take_part(block) if block.members else None
+        if len(block.members) + (whole is not None) < 2:
+            continue
+        waiting += open_steps(block)
+        composite = _composite(block, whole, sink)
         if composite is not None:
             yield composite
+    report_open_steps(graph, waiting, sink)
 
 
 def _blocks(graph: Graph, known: Mapping[str, Contract]) -> list[Element]:
@@ -135,21 +141,15 @@ def _owners(graph: Graph, one: Element) -> Iterator[Element]:
     owner = graph.owner(one) if one.kind is Kind.ACTIVITY else None
     if owner is not None:
         yield owner
-    usages = [one] if one.kind is Kind.OPERATION else graph.sources(one, Edge.TYPED_BY)
-    for usage in usages:
+    usages = [*graph.sources(one, Edge.TYPED_BY), *graph.sources(one, Edge.METHOD)]
+    for usage in [one] if one.kind is Kind.OPERATION else usages:
         if usage.kind in (Kind.PROPERTY, Kind.PORT, Kind.OPERATION):
             yield from graph.sources(usage, Edge.FEATURE)
 
 
-def _composite(block: Block, sink: Sink) -> Composite | None:
-    if not block.members:
-        return None
-    whole = _take_part(block)
+def _composite(block: Block, whole: Member | None, sink: Sink) -> Composite | None:
     known = wires(block, [*block.members, *([whole] if whole else [])])
-    if len(block.members) < 2 and whole is None:
-        return None
     _report_flows(block, sink)
-    report_open_steps(block, sink)
     if list(_faults(block, whole, known, sink)):
         return None
     return Composite(

@@ -11,7 +11,7 @@ from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import context_classifier
 from sysmlc.logic.requirements.statements import definition_of
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 Slot = tuple[str, str]
@@ -75,7 +75,8 @@ def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
         block.names[usage.path] = list(variables)
         contract = contract_of(block, usage)
         if contract is not None:
-            block.members.append(_member(block, usage.path, usage.element, contract, variables))
+            made = _member(block, usage.path, usage.element, contract, variables)
+            block.members.append(_with_shared(block, element, path, made))
         elif usage.type_.id not in around and usage.element.kind not in _ACTIONS:
             _open(block, usage.type_, usage.path, around | {usage.type_.id})
     for side, other in links(block.graph, element, path):
@@ -129,6 +130,23 @@ def _member(
         block.names[path] = list(dict.fromkeys((*block.names[path], *steps)))
         found |= steps
     return Member(path, path or element.name, element.id, contract, found)
+
+
+def _with_shared(block: Block, around: Element, path: str, member: Member) -> Member:
+    """An action that is drawn in its block reads the block's own features: they are one."""
+    graph = block.graph
+    drawn = definition_of(graph, graph[member.contract.origin])
+    if drawn.kind is not Kind.ACTIVITY:
+        return member
+    family = (around, *query.generals(graph, around))
+    context = context_classifier(graph, drawn)
+    known = {one.name for one in member.contract.variables} - set(member.features.values())
+    names = variables_of(graph, context) if context in family else {}
+    found = {name: variable for name, variable in names.items() if variable in known}
+    for name in found:
+        block.features.unite((path, name), (member.path, name))
+    block.names[member.path] = list(dict.fromkeys((*block.names[member.path], *found)))
+    return replace(member, features={**member.features, **found})
 
 
 def _join(block: Block, one: End, other: End) -> None:

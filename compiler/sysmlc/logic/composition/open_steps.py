@@ -1,13 +1,14 @@
 """Steps of operations that are operations again: nothing in the block says when they are over."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.composition.members import Block, Member
 from sysmlc.logic.composition.steps import tells
 from sysmlc.logic.composition.structure import drawn_of
 from sysmlc.logic.contract import Owner
+from sysmlc.values import dataclass
 
 _CELL = """\
 Package p "Cells"
@@ -46,18 +47,39 @@ OPEN_STEP = rule(
 )
 
 
-def report_open_steps(block: Block, sink: Sink) -> None:
-    """Tell of the steps of the block's operations that are operations without an end to see."""
+@dataclass(frozen=True, slots=True)
+class OpenStep:
+    """A step of an operation (path from a block) that is an operation without an end to see."""
+
+    block: Element
+    operation: str
+    step: Element
+    called: Element
+
+
+def open_steps(block: Block) -> Iterator[OpenStep]:
+    """The steps of the operations in a block that are operations without an end to see."""
     for member in block.members:
         for step, called in _open(block, member):
-            sink.report(
-                OPEN_STEP,
-                block.graph.subject(step),
-                block=block.element.name,
-                step=step.name,
-                operation=member.name,
-                called=called.name,
-            )
+            yield OpenStep(block.element, member.name, step, called)
+
+
+def report_open_steps(graph: Graph, found: Iterable[OpenStep], sink: Sink) -> None:
+    """Tell of each step once: at the block that has its operation, not at those around it."""
+    nearest: dict[str, OpenStep] = {}
+    for one in found:
+        known = nearest.setdefault(one.step.id, one)
+        if one.operation.count(".") < known.operation.count("."):
+            nearest[one.step.id] = one
+    for one in nearest.values():
+        sink.report(
+            OPEN_STEP,
+            graph.subject(one.step),
+            block=one.block.name,
+            step=one.step.name,
+            operation=one.operation,
+            called=one.called.name,
+        )
 
 
 def _open(block: Block, member: Member) -> Iterator[tuple[Element, Element]]:

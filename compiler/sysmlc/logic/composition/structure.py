@@ -45,7 +45,7 @@ def _type(graph: Graph, feature: Element) -> Element | None:
     if feature.kind is Kind.OPERATION:
         return graph.target(feature, Edge.METHOD)
     if feature.kind is Kind.ACTIVITY:
-        return feature if _is_usage(graph, feature) else None
+        return feature if _is_usage(graph, feature) or _is_own(graph, feature) else None
     is_part = feature.role == "part" and feature.kind in (Kind.PROPERTY, Kind.PORT)
     return query.type_of(graph, feature) if is_part else None
 
@@ -53,6 +53,13 @@ def _type(graph: Graph, feature: Element) -> Element | None:
 def _is_usage(graph: Graph, action: Element) -> bool:
     """Whether an action says no more than what it specialises: it has no steps of its own."""
     return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
+
+
+def _is_own(graph: Graph, action: Element) -> bool:
+    """Whether an action drawn in a block is performed for itself, not as what another one is."""
+    taken = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD, Edge.CALLS)
+    is_taken = any(True for edge in taken for _ in graph.sources(action, edge))
+    return _is_drawn(graph, action) and not is_taken
 
 
 def drawn_of(graph: Graph, action: Element) -> Element:
