@@ -246,3 +246,14 @@ def test_few_nodes_are_a_limit_for_machines_too(here):
     assert made.exit_code == 2
     assert "the limit of 30 nodes was reached" in made.stderr
     assert here.files() == []
+
+
+def test_a_formula_of_spot_has_its_owners_from_the_file_beside_it(here):
+    here.write("lamp.spot.ltl", "G (press <-> X lamp)\n")
+    made = here.sysmlc("synth", "lamp.spot.ltl", "--realizable")
+    assert made.exit_code == 2
+    assert "(lines below it, or in the .part file beside it)" in made.stderr
+    here.write("lamp.spot.part", ".inputs press\n.outputs lamp\n")
+    assert here.sysmlc("synth", "lamp.spot.ltl", "--realizable").exit_code == 0
+    here.write("lamp.spot.part", ".inputs lamp\n.outputs press\n")
+    assert here.sysmlc("synth", "lamp.spot.ltl", "--realizable").exit_code == 1

@@ -106,7 +106,7 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
         fail(f"'{language}' is no form that is read; known are {known}")
     try:
         source = Source(file.as_posix(), file.read_bytes())
-        text = source.data.decode("utf-8-sig")
+        text = source.data.decode("utf-8-sig") + _parts_beside(file, source.data)
     except OSError as problem:
         fail(f"cannot read '{file}': {problem.strerror}")
     except UnicodeDecodeError:
@@ -117,6 +117,17 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     contracts = tuple(one if one.component else replace(one, component=name) for one in read)
     is_whole = not sink.has_errors()
     return ContractFile(contracts, (), sink, _from_text, (), (source,), Path.cwd(), is_whole)
+
+
+def _parts_beside(file: Path, formula: bytes) -> str:
+    """What the ``.part`` file beside a formula says of who decides, unless the formula says it.
+
+    Raises OSError and UnicodeDecodeError.
+    """
+    parts = file.with_suffix(".part")
+    if file.suffix != ".ltl" or re.search(rb"^\s*\.(in|out)puts\b", formula, re.MULTILINE):
+        return ""
+    return "\n" + parts.read_text("utf-8-sig") if parts.is_file() else ""
 
 
 def _from_text(origin: str) -> "Subject":

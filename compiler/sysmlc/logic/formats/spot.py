@@ -112,7 +112,8 @@ class Atoms(Reader):
     def word(self, token: Token) -> Part:
         if token.text in self.variables:
             return Part(Var(token.text), TRUTH, token.at)
-        reason = f"'{token.text}' is among neither the .inputs nor the .outputs"
+        where = "lines below it, or in the .part file beside it"
+        reason = f"'{token.text}' is among neither the .inputs nor the .outputs ({where})"
         raise FormulaError(reason, token.at)
 
 
