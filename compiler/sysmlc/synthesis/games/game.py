@@ -96,7 +96,9 @@ def make_game(contract: Contract, manager: Manager) -> Game:
         _check(conjunct, names, is_assumption=True)
     for conjunct in contract.guarantees:
         _check(conjunct, names, is_assumption=False)
-    with manager.guard():
+    # An order that suits the parts of a relation can be hopeless for the game: the one that the
+    # variables come in is kept until there is more to look at.
+    with manager.guard(), manager.calm():
         return _translated(contract, Symbols(manager, contract.variables, _together(contract)))
 
 

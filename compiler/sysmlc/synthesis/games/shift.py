@@ -146,7 +146,7 @@ def _is_function(
     if _some_allowed(manager, stuck, choice) != manager.false:
         return False
     doubtful = manager.false
-    for bit in own:
+    for bit in sorted(own):
         on = manager.and_exist(relation & care, manager.var(bit), own)
         doubtful = doubtful | (on & manager.and_exist(relation & care, ~manager.var(bit), own))
     return _some_allowed(manager, doubtful, choice) == manager.false

@@ -5,7 +5,7 @@ goal, leaves every turn of the arena what it is. From states that the exchange m
 the states that reach the one goal are then the image of those that reach the other.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Arena
@@ -53,10 +53,10 @@ def _exchange(arena: Arena, one: Node, other: Node) -> Exchange | None:
 
 def _is_kept(arena: Arena, exchange: Exchange) -> bool:
     """Whether the arena is the same after the exchange."""
-    lists: list[Iterable[Node]] = [arena.goals, arena.fairness, [arena.states]]
+    lists: list[Sequence[Node]] = [arena.goals, arena.fairness, [arena.states]]
     lists += [turn.parts for turn in arena.turns]
     are_parts = all(
-        {image(arena, node, exchange) for node in nodes} == set(nodes) for nodes in map(set, lists)
+        {image(arena, node, exchange) for node in nodes} == set(nodes) for nodes in lists
     )
     turns = [{exchange.get(bit, bit) for bit in turn.bits} for turn in arena.turns]
     return are_parts and turns == [set(turn.bits) for turn in arena.turns]
