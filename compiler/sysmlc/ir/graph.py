@@ -195,13 +195,16 @@ class Graph:
         made.attrs = attrs.copy() if attrs else {}
         self._fresh.append(made)
         if owner is not None:
-            known = self._owned.get(owner)
+            owned = self._owned
+            known = owned.get(owner)
             if known is None:
-                self._owned[owner] = made
+                owned[owner] = made
             elif isinstance(known, list) and len(known) < MANY:
                 known.append(made)
+            elif isinstance(known, Element):
+                owned[owner] = [known, made]
             else:
-                put_new(self._owned, owner, made)
+                put_new(owned, owner, made)
         return made
 
     def connect(self, edge: Edge, source: Element | str, target: Element | str) -> None:

@@ -4,8 +4,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from html import unescape
-from itertools import compress, islice
-from operator import eq, ne
+from itertools import compress
+from operator import gt, not_
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
@@ -14,7 +14,7 @@ from sysmlc.frontends.caex import fitting, measures, repeats, rules, strange
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Missing
-from sysmlc.frontends.caex.vocabulary import FOLDED, LIBRARIES, ROLE_REFERENCES, STANDARD
+from sysmlc.frontends.caex.vocabulary import FOLDED, LIBRARIES, ROLE_REFERENCES, SIGNS, STANDARD
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.caex import ORDER
@@ -64,7 +64,7 @@ def _count(document: Document, counts: FileCoverage) -> None:
     """Count every element once; what is folded shares the verdict of its parent."""
     verdicts, columns = document.verdicts, [document.texts[tag] for tag in FOLDED]
     if verdicts.count(Verdict.MAPPED) == len(verdicts):
-        numbers = Counter(document.tags)
+        numbers = _tags(document)
         numbers.update(dict(zip(FOLDED, map(len, columns), strict=True)))
         for tag, number in numbers.items():
             if number:
@@ -78,9 +78,18 @@ def _count(document: Document, counts: FileCoverage) -> None:
             counts.count(tag, verdict or Verdict.UNSUPPORTED, number)
 
 
+def _tags(document: Document) -> Counter[str]:
+    """How many rows have which tag."""
+    signs = document.signs
+    numbers = Counter({tag: signs.count(sign) for tag, sign in SIGNS.items()})
+    if 0 in signs:
+        numbers.update(compress(document.tags, map(not_, signs)))
+    return numbers
+
+
 def _unordered(document: Document) -> list[int]:
     """Rows with a child that stands after one that the schema has behind it."""
-    if ORDER.keys() >= set(document.tags[1:]):
+    if 0 not in document.signs:
         return _unordered_neighbours(document)
     ranks = [ORDER.get(tag, -1) for tag in document.tags]
     highest: dict[int, int] = {}
@@ -97,25 +106,16 @@ def _unordered(document: Document) -> list[int]:
 
 def _unordered_neighbours(document: Document) -> list[int]:
     """The same where every child has a place in the order: then two neighbours are wrong."""
-    tags, parents, found = document.tags, document.parents, set()
-    are_beside = map(eq, parents, islice(parents, 1, None))
-    pairs = set(compress(zip(tags, islice(tags, 1, None), strict=False), are_beside))
-    wrong = {(one, other) for one, other in pairs if ORDER.get(one, -1) > ORDER[other]}
-    if wrong:
-        rows = range(len(tags) - 1)
-        alike = (row for row in rows if parents[row] == parents[row + 1])
-        found = {parents[row] for row in alike if (tags[row], tags[row + 1]) in wrong}
-    for row, after in _behind_content(document):
-        if parents[row] == parents[after] and ORDER.get(tags[row], -1) > ORDER[tags[after]]:
+    signs, parents, ends = document.signs, document.parents, document.ends
+    less = compress(range(len(signs) - 1), map(gt, signs, signs[1:]))
+    found = {parents[row] for row in less if parents[row] == parents[row + 1]}
+    holding = set(parents)
+    holding.discard(-1)
+    for row in holding:
+        after = ends[row]
+        if after < len(ends) and signs[row] > signs[after] and parents[row] == parents[after]:
             found.add(parents[row])
     return sorted(found)
-
-
-def _behind_content(document: Document) -> Iterator[tuple[int, int]]:
-    """Rows with others inside, and for each the row behind these."""
-    ends, rows = document.ends, range(len(document.ends))
-    hold_others = map(ne, ends, range(1, len(ends) + 1))
-    return ((row, ends[row]) for row in compress(rows, hold_others) if ends[row] < len(ends))
 
 
 def _misplaced(parent: Node) -> Iterator[tuple[Node, Node]]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Place, Verdict
-from sysmlc.frontends.caex.vocabulary import FOLDED
+from sysmlc.frontends.caex.vocabulary import FOLDED, SIGNS
 
 
 class Node:
@@ -112,7 +112,8 @@ class Document:
     ``has_changes`` tells whether some row may have a ChangeMode, ``has_stray`` whether text
     may stand where CAEX has none. ``shapes`` are the pairs of a tag and the names of its attributes
     that occur, where they are known (else it is empty). ``elements`` are ids of what
-    the rows became in the graph.
+    the rows became in the graph. ``signs`` are the tags as numbers (``vocabulary.SIGNS``):
+    bytes are looked through in a tenth of the time of a list.
 
     ``ids`` are the IDs, empty where there is none. ``alike`` is the first row with the same tag
     and attributes, but for the ID; such rows may share ``attributes``, where the ID is empty then.
@@ -132,6 +133,7 @@ class Document:
         "ordinals",
         "parents",
         "shapes",
+        "signs",
         "tags",
         "texts",
         "verdicts",
@@ -148,6 +150,7 @@ class Document:
         self.attributes: list[dict[str, str]] = []
         self.parents: list[int] = []
         self.ends: list[int] = []
+        self.signs = b""
         self.ids: list[str] = []
         self.alike: list[int] = []
         self.ordinals: list[int] = []
@@ -185,6 +188,14 @@ class Document:
             rows.append(row)
             row = ends[row]
         return rows
+
+    def tagged(self, tag: str, start: int, end: int) -> Iterator[int]:
+        """Rows from ``start`` to ``end`` with a tag of CAEX."""
+        sign, find = SIGNS[tag], self.signs.find
+        row = find(sign, start, end)
+        while row >= 0:
+            yield row
+            row = find(sign, row + 1, end)
 
     def place(self, node: Node) -> Place:
         """Place of a node."""

@@ -56,10 +56,8 @@ class Identifiers:
 
     def without(self, document: Document, tag: str) -> list[int]:
         """Rows of a file with this tag that have no ID."""
-        tags = document.tags
-        if all(compress(document.ids, map(tag.__eq__, tags))):
-            return []
-        return [row for row, id in enumerate(document.ids) if not id and tags[row] == tag]
+        ids = document.ids
+        return [row for row in document.tagged(tag, 0, len(ids)) if not ids[row]]
 
     def find(self, id: str, document: Document | None = None) -> Place | None:
         """The node with the ID: literally, else without regard to braces, case and alias.

@@ -53,21 +53,16 @@ class Links:
             self._context.graph.connect_each(edge, sources, targets)
 
     def _lower_below(self, top: int, document: Document) -> None:
-        tags = document.tags
-        for row in range(top, document.ends[top]):
-            if tags[row] == "InternalLink":
-                self._link(row, document)
-
-    def _link(self, row: int, document: Document) -> None:
-        document.verdicts[row] = _MAPPED
-        holder = self._sites.rows(document).get(document.parents[row])
-        values, direct = document.attributes[row], self._sides.direct
-        one = direct(values.get("RefPartnerSideA", ""))
-        other = direct(values.get("RefPartnerSideB", ""))
-        if holder is None or one is None or other is None:
-            self._general(document.node(row), document, holder)
-        else:
-            self._between(row, document, holder, [one, other])
+        sites, direct = self._sites.rows(document), self._sides.direct
+        for row in document.tagged("InternalLink", top, document.ends[top]):
+            document.verdicts[row] = _MAPPED
+            holder, values = sites.get(document.parents[row]), document.attributes[row]
+            one = direct(values.get("RefPartnerSideA", ""))
+            other = direct(values.get("RefPartnerSideB", ""))
+            if holder is None or one is None or other is None:
+                self._general(document.node(row), document, holder)
+            else:
+                self._between(row, document, holder, [one, other])
 
     def _general(self, node: Node, document: Document, holder: Site | None) -> None:
         """A link whose sides are not both IDs of interfaces."""
@@ -110,7 +105,8 @@ class Links:
             owner = self._context.graph[owner].owner
         connector = self._context.add_at(_CONNECTOR, document, row, owner)
         self._add_ends(connector, ends, crosses)
-        self._note(top, owner, ends)
+        if not top.instance:
+            self._note(top, owner, ends)
 
     def _note(self, top: Site, owner: str | None, ends: list[End]) -> None:
         """Remember the link of a class: its instances repeat it."""

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator
 from html import escape
-from itertools import compress
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
@@ -48,7 +47,10 @@ def _is_of_class(element: Element, node: Node) -> bool:
 
 def _holders(document: Document) -> list[int]:
     """Rows that something is said about: few of a large file."""
-    rows = set(compress(document.parents, map(_SAID.__contains__, document.tags)))
+    parents = document.parents
+    rows: set[int] = set()
+    for tag in _SAID:
+        rows.update(parents[row] for row in document.tagged(tag, 0, len(parents)))
     if document.has_changes:
         rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
     rows.update(document.texts["Description"], document.texts["Version"])

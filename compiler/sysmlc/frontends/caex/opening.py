@@ -2,6 +2,7 @@
 
 from sysmlc.frontends.caex import columns, pieces
 from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.vocabulary import SIGNS
 from sysmlc.sources import Source, SourceError
 
 
@@ -13,6 +14,7 @@ def read(source: Source, is_built_in: bool = False) -> Document:
     if document.tags[0] != "CAEXFile":
         raise SourceError("its root element is no CAEXFile", source.name, 0)
     rows = len(document.tags)
+    document.signs = bytes(map(SIGNS.__getitem__, document.tags))
     document.verdicts = [None] * rows
     document.elements = [""] * rows
     return document

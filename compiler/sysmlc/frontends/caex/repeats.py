@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.frontends.caex.context import Context, path_of
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.strange import is_free
-from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
+from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES, SIGNS
 
 REPEATED_NAME = rule(
     "SM635",
@@ -36,6 +36,9 @@ REPEATED_ALIAS = rule(
 _NAMED = frozenset({*CLASS_TAGS, *LIBRARIES, "Attribute"})
 """Elements that are found by name; an internal element, interface or link has an ID for that."""
 
+_ARE_NAMED = bytes(sign in {SIGNS[tag] for tag in _NAMED} for sign in range(256))
+"""Signs of rows as 1 for those that are found by name, 0 for all others."""
+
 _AT_ONCE = 1 << 13
 """Rows that are looked at together; those of one element in the hierarchy are not divided."""
 
@@ -58,7 +61,7 @@ def _has_repeats(document: Document) -> bool:
     Rows that state the same are looked at once, and some thousands of rows at a time, so that
     what is remembered of them stays near the processor: this is done for every file that is read.
     """
-    are_named = list(map(_NAMED.__contains__, document.tags))
+    are_named = document.signs.translate(_ARE_NAMED)
     stating = set(compress(document.alike, are_named))
     stated = map(document.attributes.__getitem__, stating)
     names = dict(zip(stating, map(dict.get, stated, repeat("Name")), strict=True))

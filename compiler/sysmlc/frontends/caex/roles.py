@@ -18,11 +18,14 @@ PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
 
 
 def lower(context: Context, sites: Sites) -> None:
-    """Draw the realizations: once each, and not again where the class realises the role."""
+    """Draw the realizations: once each, and not again where the class realises the role.
+
+    Classes are the first among the sites: instances need not repeat what they realise.
+    """
     played = _Played()
     clients: list[str] = []
     realized: list[Element | None] = []
-    for site in sorted(sites, key=lambda site: bool(site.root.instance)):
+    for site in sites:
         if site.type is None:
             continue
         inherited, site.ppr = played.above(site)

@@ -32,6 +32,8 @@ class Sides:
     def __init__(self, context: Context, sites: Sites) -> None:
         self._context = context
         self._sites = sites
+        self._spot = context.ids.spot
+        self._rows = sites.rows
         self._direct: dict[str, End] = {}
         self._named: dict[Node, dict[str, Node]] = {}
         self._below: dict[Node, dict[str, list[Node]]] = {}
@@ -41,17 +43,18 @@ class Sides:
         known = self._direct.get(text)
         if known is not None:
             return known
-        place = self._context.ids.spot(text)
+        place = self._spot(text)
         if place is None:
             return None
         document, row = place
-        tags, port = document.tags, document.elements[row]
-        above = document.parents[row]
+        tags, port, rows = document.tags, document.elements[row], self._rows(document)
         if not port or tags[row] != "ExternalInterface":
             return None
-        while tags[above] == "ExternalInterface":
+        above = document.parents[row]
+        site = rows.get(above)
+        while site is None and tags[above] == "ExternalInterface":
             above = document.parents[above]
-        site = self._sites.rows(document).get(above)
+            site = rows.get(above)
         if site is None:
             return None
         found = self._direct[text] = End(port, site)

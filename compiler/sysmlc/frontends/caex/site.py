@@ -32,6 +32,7 @@ class Site:
         "is_known",
         "is_mirror",
         "members",
+        "name",
         "own",
         "parent",
         "part",
@@ -45,7 +46,8 @@ class Site:
         self.document = document
         self.row = row
         self.parent = parent
-        self._root: Site | None = None if parent is None else parent.root
+        self.name = document.attributes[row].get("Name", "")
+        self._root: Site | None = None if parent is None else parent._root or parent
         self.declared: Type | None = None
         self.own: Type | None = None
         self.part = ""
@@ -82,11 +84,6 @@ class Site:
     def node(self) -> Node:
         """What the file says of it."""
         return self.document.node(self.row)
-
-    @property
-    def name(self) -> str:
-        """The attribute ``Name``."""
-        return self.document.attributes[self.row].get("Name", "")
 
     @property
     def root(self) -> "Site":

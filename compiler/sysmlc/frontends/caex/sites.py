@@ -41,7 +41,10 @@ class Sites:
 
     def rows(self, document: Document) -> dict[int, Site]:
         """The sites of a file by their rows."""
-        return self._rows.setdefault(document, {})
+        known = self._rows.get(document)
+        if known is None:
+            known = self._rows[document] = {}
+        return known
 
     # -- reading -------------------------------------------------------------------------------
 

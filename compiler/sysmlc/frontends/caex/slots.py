@@ -19,6 +19,8 @@ class Slots:
         self._new = context.graph.new
         self._ids = document.ids
         self._ordinals = document.ordinals
+        self._elements = document.elements
+        self._name = document.name
         self._slots: list[Element] = []
         self._features: list[Element] = []
         self._inner: list[Element] = []
@@ -32,15 +34,15 @@ class Slots:
                 value = known.read(text)
             except ValueError:
                 value = self._unfit(row, known, text)
-        made, document = None, self._document
+        made = None
         if not self._ids[row]:
             id, ordinal = owner + known.suffix, self._ordinals[row]
-            made = self._new(id, _SLOT, known.name, owner, ordinal, document.name)
+            made = self._new(id, _SLOT, known.name, owner, ordinal, self._name)
         if made is None:
-            made = self._context.add_at(_SLOT, document, row, owner)
-        if value != "":
+            made = self._context.add_at(_SLOT, self._document, row, owner)
+        if text:
             made.attrs = {"value": value}
-        document.elements[row] = made.id
+        self._elements[row] = made.id
         self._slots.append(made)
         self._features.append(known.element)
         return made

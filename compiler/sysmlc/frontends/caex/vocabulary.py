@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+from sysmlc.sources.caex import ORDER
+
 
 class Family(StrEnum):
     """Kinds of classes; a class path is looked up in one family only."""
@@ -62,6 +64,15 @@ DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
 
 FOLDED = ("Description", "Version", "DefaultValue", "Value")
 """Elements that are kept as text of their parent: a third of the elements of a plant."""
+
+
+class _Signs(dict[str, int]):
+    def __missing__(self, tag: str) -> int:
+        return 0
+
+
+SIGNS = _Signs({tag: rank + 1 for tag, rank in ORDER.items()})
+"""Numbers of tags, larger for those that stand behind others; 0 for what CAEX does not know."""
 
 STRUCTURE = frozenset(
     {
