@@ -40,8 +40,9 @@ def test_what_the_component_could_make_impossible_is_no_help():
 
 
 def test_the_reasons_name_them():
-    game = make_game(contract(TURN), Manager())
-    assert "it could be kept if this were assumed, always: wanted'=wanted" in list(reasons_of(game))
+    turn = contract(TURN)
+    said = list(reasons_of(make_game(turn, Manager()), turn))
+    assert "it could be kept if this were assumed, always: wanted'=wanted" in said
 
 
 def test_with_each_of_them_a_random_contract_can_be_kept():

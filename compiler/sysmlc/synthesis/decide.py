@@ -118,7 +118,7 @@ def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> D
         _report_limit(contract, problem, manager, doing[0], place, sink)
         return Decision(Verdict(contract.component, None))
     if not solution.is_realizable:
-        reasons = tuple(reasons_of(game)) if options.is_explained else ()
+        reasons = tuple(reasons_of(game, contract)) if options.is_explained else ()
         sink.report(
             rules.UNREALIZABLE,
             place(contract.origin),

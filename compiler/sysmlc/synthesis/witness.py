@@ -79,7 +79,7 @@ def files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
 
 def diagram(witness: Witness) -> str:
     """The run as a sequence diagram, with what is broken as its title."""
-    broken = label(_formula(witness.broken))
+    broken = label(as_formula(witness.broken))
     title = f"{label(witness.component)}\\nnot kept: {broken}"
     hidden = _constant(witness.trace, witness.broken)
     steps = tuple(
@@ -105,7 +105,7 @@ def sequence(title: str, trace: Trace, parties: Sequence[Party]) -> str:
 _ALWAYS = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F ", Class.OTHER: ""}
 
 
-def _formula(conjunct: Conjunct) -> str:
+def as_formula(conjunct: Conjunct) -> str:
     """The conjunct with the temporal operators that its class implies."""
     formula, operators = print_formula(conjunct.formula), _ALWAYS[conjunct.class_]
     return f"{operators}({formula})" if operators else formula

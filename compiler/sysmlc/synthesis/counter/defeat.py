@@ -13,6 +13,7 @@ from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import Game, make_game
 from sysmlc.synthesis.unrealizable.core import is_won
 from sysmlc.synthesis.unrealizable.explain import conflict
+from sysmlc.synthesis.unrealizable.reasons import as_written
 from sysmlc.values import replace
 
 NO_COUNTER = rule(
@@ -44,8 +45,10 @@ def defeats(
 
 def _counter(contract: Contract, options: Options) -> Counter:
     environment = environment_of(contract, options)
+    goals = (one.conjunct for one in environment.lost.game.goals)
+    missed = as_written((one for one in goals if one is not None), contract)
     with environment.lost.arena.manager.guard():
-        return counter(environment, contract)
+        return replace(counter(environment, contract), missed=tuple(missed))
 
 
 def environment_of(contract: Contract, options: Options) -> Environment:

@@ -6,7 +6,7 @@ from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.printing import print_literal
 from sysmlc.plantuml import label
 from sysmlc.synthesis.counter.machine import Counter, Row, State, example
-from sysmlc.synthesis.witness import Party, sequence
+from sysmlc.synthesis.witness import Party, as_formula, sequence
 
 MOST_SHOWN = 12
 """States up to which a diagram can be read."""
@@ -16,8 +16,11 @@ _MOST_LINES = 4
 
 def run(counter: Counter, contract: Contract) -> str:
     """A run in which the component does what it may, and fails, as a sequence diagram."""
-    title = f"{label(contract.component)}\\ncannot keep its contract"
-    return sequence(title, example(counter), (Party(contract.component, contract),))
+    title, trace = [f"{label(contract.component)}", "cannot keep its contract"], example(counter)
+    if trace.loop < len(trace.steps):
+        some = "not kept" if len(counter.missed) == 1 else "not all kept"
+        title += [f"{some}: {label(as_formula(one))}" for one in counter.missed]
+    return sequence("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
 def diagram(counter: Counter, contract: Contract) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from sysmlc.logic.contract import Contract, Owner, Variable
+from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import LimitError
@@ -31,6 +31,8 @@ class Counter:
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     states: tuple[State, ...]
+    missed: tuple[Conjunct, ...] = ()
+    """What does not all recur where the system always has an answer."""
 
 
 def counter(environment: Environment, contract: Contract, most: int = MOST_MOVES) -> Counter:
