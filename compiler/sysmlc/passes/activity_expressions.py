@@ -3,9 +3,22 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
-from sysmlc.logic.expressions.context import Feature, context_of, note_range
-from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, Symbol, condition
-from sysmlc.logic.expressions.expression import ExpressionError, parse_expression
+from sysmlc.logic.expressions.context import context_of, note_range
+from sysmlc.logic.expressions.declared import Feature
+from sysmlc.logic.expressions.elaborate import (
+    ElaborationError,
+    Fault,
+    Meaning,
+    Symbol,
+    condition,
+    meaning,
+)
+from sysmlc.logic.expressions.expression import (
+    Expression,
+    ExpressionError,
+    parse_expression,
+    print_expression,
+)
 from sysmlc.logic.formula import Formula, const, var, variables
 
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)
@@ -28,20 +41,44 @@ class Scope:
     def __init__(self, graph: Graph, activity: Element, sink: Sink) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
         self._graph, self._sink = graph, sink
-        outer = context_of(graph, next(above, None))
-        inner = context_of(graph, activity)
-        self._features: dict[str, Feature] = {**outer.features, **inner.features}
-        self._literals, self._numbers = outer.literals, outer.numbers
+        self._outer = context_of(graph, next(above, None))
+        self._inner = context_of(graph, activity)
+        self._variables = {**self._outer.variables, **self._inner.variables}
         self._extra: dict[str, Formula] = {}
 
     def names(self) -> list[str]:
         """Names that must not be given to other variables."""
-        return [feature.variable for feature in self._features.values()]
+        return list(self._variables.values())
 
     def feature(self, name: str) -> Element | None:
         """The property or parameter of a name."""
-        found = self._features.get(name) or self._features.get(name.removeprefix("self."))
+        found = self._feature(name) or self._feature(name.removeprefix("self."))
         return None if found is None else found.element
+
+    def _feature(self, name: str) -> Feature | None:
+        return self._inner.features.get(name) or self._outer.features.get(name)
+
+    def named(self, name: str) -> Feature | None:
+        """The feature of a name, with the values that it may have."""
+        return self._feature(name)
+
+    def is_of_another(self, variable: str) -> bool:
+        """Whether the variable stands for a feature of a part or of what a reference leads to."""
+        return all("." in name for name, one in self._variables.items() if one == variable)
+
+    def variable(self, name: str) -> Variable | None:
+        """The variable of a property as an input; reports the range that it is given."""
+        return self._variable(name)
+
+    def value(self, expression: Expression, domain: Domain) -> Meaning:
+        """The values that an expression has. Raises ElaborationError when it has none of the
+        domain's kind.
+        """
+        found = meaning(expression, self._symbol, domain)
+        if type(found.domain) is not type(domain):
+            text = print_expression(expression)
+            raise ElaborationError(Fault.TYPE, f"'{text}' is of another type", text, 0)
+        return found
 
     def declare(self, name: str, formula: Formula) -> None:
         """Let a name stand for a Boolean input from now on."""
@@ -72,26 +109,28 @@ class Scope:
         known = self._extra if extra is None else extra
         if name in known:
             return Symbol(known[name], BooleanDomain())
-        feature = self._features.get(name)
+        feature = self._feature(name)
         if feature is not None:
             return Symbol(_value(feature), feature.domain)
         return self._literal(name)
 
     def _literal(self, name: str) -> Symbol | None:
-        found = self._literals.get(name)
+        literals = self._outer.literals
+        found = literals.get(name)
         if found is None:
             return None
         enumeration, literal = found
-        named = [made for owner, made in self._literals.values() if owner == enumeration]
+        named = [made for owner, made in literals.values() if owner == enumeration]
         domain = EnumerationDomain(tuple(dict.fromkeys(named)))
-        return Symbol(const(literal), domain, self._numbers.get(name))
+        return Symbol(const(literal), domain, self._outer.numbers.get(name))
 
     def _variable(self, name: str) -> Variable | None:
-        for feature in self._features.values():
-            if feature.variable == name and feature.domain is not None:
-                domain: Domain = feature.domain
+        for feature in (
+            self._feature(known) for known, one in self._variables.items() if one == name
+        ):
+            if feature is not None and feature.domain is not None:
                 note_range(self._graph, feature, self._sink)
-                return Variable(name, Owner.ENVIRONMENT, domain, feature.element.id)
+                return Variable(name, Owner.ENVIRONMENT, feature.domain, feature.element.id)
         return None
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.logic.expressions.enumerations import Enumerations
 from sysmlc.values import dataclass
 
 BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
@@ -25,16 +26,13 @@ class Mentioned:
     numbers: Mapping[str, tuple[int, ...]]
 
 
-def mentioned(graph: Graph, behaviour: Element, literals: Mapping[str, int]) -> Mentioned:
-    """What the guards, effects and conditions of a behaviour mention.
-
-    ``literals`` are the values of enumeration literals by written name.
-    """
+def mentioned(graph: Graph, behaviour: Element, known: Enumerations) -> Mentioned:
+    """What the guards, effects and conditions of a behaviour mention."""
     written = list(_written(graph, behaviour))
     texts = dict.fromkeys(one for text in written for one in _TEXT.findall(text))
     numbers: dict[str, dict[int, None]] = {}
     for name, value in _beside(written):
-        number = literals.get(value) if "::" in value else int(value)
+        number = known.numbers.get(value) if "::" in value else int(value)
         if number is not None and abs(number) <= _GREATEST:
             numbers.setdefault(name, {})[number] = None
     return Mentioned(tuple(texts), {name: tuple(found) for name, found in numbers.items()})

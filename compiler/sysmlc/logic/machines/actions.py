@@ -159,8 +159,8 @@ class Reading:
         """Remember the variables of the context that the expression reads."""
         for part in walk(expression):
             name = name_of(part)
-            if name in self.context.features:
-                feature = self.context.features[name]
+            feature = self.context.features.get(name) if name else None
+            if feature is not None:
                 self.used[feature.variable] = None
                 note_range(self.graph, feature, self.sink)
 

@@ -86,7 +86,7 @@ def read_machine(
 def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> Parts:
     found = context_classifier(graph, machine)
     context = context_of(graph, found, options.assumed_range, machine)
-    taken = [one.variable for one in context.features.values()] + list(context.features)
+    taken = [*context.variables.values(), *context.features]
     names = Names("event", NO_EVENT, *taken)
     return Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
 

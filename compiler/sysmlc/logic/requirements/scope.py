@@ -5,7 +5,8 @@ from collections.abc import Iterable, Mapping
 
 from sysmlc.ir import Kind
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
-from sysmlc.logic.expressions.context import Context, Feature
+from sysmlc.logic.expressions.context import Context
+from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild

@@ -6,7 +6,8 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.expressions.context import Context, Feature, context_of, note_range
+from sysmlc.logic.expressions.context import Context, context_of, note_range
+from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import (
     ElaborationError,
     Fault,
