@@ -6,6 +6,7 @@ from textwrap import dedent
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library, core
 from sysmlc.language.names import Model, resolve
+from sysmlc.language.names.adding import implied_relations
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
 
@@ -52,7 +53,7 @@ def _line(read, found) -> str:
 def leads(model: Model, path: str, kind: str = "", index: int = 0) -> str:
     """The qualified name of what the relation of an element leads to, by the element's name."""
     node = element(model, path)
-    relations = [r for r in node.relations if not r.implied and (not kind or r.kind == kind)]
+    relations = [r for r in node.relations if not kind or r.kind == kind]
     target = relations[index].reference.target
     return model.qualified_name(target) if target else "nowhere"
 
@@ -68,5 +69,4 @@ def element(model: Model, path: str) -> Node:
 
 def implied(model: Model, path: str) -> list[str]:
     """The relations of an element that its text does not say, as lines."""
-    relations = element(model, path).relations
-    return [f"{r.kind} {r.reference}" for r in relations if r.implied]
+    return [f"{r.kind} {r.reference}" for r in implied_relations(model, element(model, path))]

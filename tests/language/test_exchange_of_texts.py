@@ -1,13 +1,15 @@
 """Texts of the corpus, resolved, written as interchange files and read again: the same trees."""
 
 import re
+from functools import partial
 
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import interchange_path, link, read, write
+from sysmlc.language.exchange import Files, interchange_path, link, read, write
 from sysmlc.language.library import find
 from sysmlc.language.names import resolve
+from sysmlc.language.names.adding import implied_redefinitions
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
 
@@ -29,8 +31,9 @@ def written(folder, library):
         )
         for path in paths
     ]
-    resolve(documents, library, sink)
-    known, told = [*documents, *library.loaded()], Sink()
+    model = resolve(documents, library, sink)
+    redefined, told = partial(implied_redefinitions, model), Sink()
+    known = Files([*documents, *library.loaded()], redefined=redefined)
     files = {interchange_path(one): write(one, known, told) for one in documents}
     return documents, files, [found.rule.code for found in told]
 
@@ -52,9 +55,7 @@ def shape(documents):
 def _node(node, roots):
     facts = {name: fact for name, fact in node.facts.items() if name != "isPrefix"}
     role = "default" if node.role == "default =" else node.role
-    relations = [
-        (one.kind, _targets(one.reference, roots)) for one in node.relations if not one.implied
-    ]
+    relations = [(one.kind, _targets(one.reference, roots)) for one in node.relations]
     said = (node.kind, node.name, node.short, node.membership, role, node.visibility)
     return (*said, len(node.members), facts, relations)
 

@@ -2,6 +2,8 @@
 
 from resolving import element, implied, leads, resolved
 
+from sysmlc.language.names.adding import implied_relations
+
 
 def test_definitions_and_usages_have_the_bases_of_their_metaclass():
     model = resolved("""
@@ -115,7 +117,7 @@ def test_control_nodes_and_special_actions_have_their_own_bases():
     assert implied(model, "work::choice") == ["Subsetting Actions::Action::decisions"]
     kinds = {member.kind: member for member in element(model, "work").members}
     lines = {
-        kind: [str(r.reference) for r in kinds[kind].relations if r.implied]
+        kind: [str(r.reference) for r in implied_relations(model, kinds[kind])]
         for kind in ("AcceptActionUsage", "SendActionUsage", "WhileLoopActionUsage")
     }
     assert lines["AcceptActionUsage"] == ["Actions::Action::acceptSubactions"]

@@ -83,7 +83,7 @@ def reference_at(document, offset):
     for node in document.root.walk():
         for relation in node.relations:
             reference = relation.reference
-            if not relation.implied and reference.start <= offset < reference.end:
+            if reference.start <= offset < reference.end:
                 return node, relation
     return None
 

@@ -85,7 +85,6 @@ def _packed(node: Node, members: tuple[_Packed, ...]) -> _Packed:
             [
                 (r.kind, r.reference.chain, r.reference.start, r.reference.end)
                 for r in node.relations
-                if not r.implied
             ]
         ),
         tuple(node.facts.items()),

@@ -53,16 +53,15 @@ class Relation:
     ``Annotation`` ...), ``Membership`` for a member that is only named (the referent of an
     expression, the element of an alias, the source of a transition), or, where the node is the
     relationship itself, the name of the end: ``client`` and ``supplier`` of a dependency,
-    ``importedNamespace``, ``importedMembership``, ``subclassifier`` ... ``implied`` ones are not
-    in the text: the specification adds them (KerML 8.4, SysML 8.4).
+    ``importedNamespace``, ``importedMembership``, ``subclassifier`` ... Those that the
+    specification adds to what a text says, ``names.adding`` gives.
     """
 
-    __slots__ = ("implied", "kind", "reference")
+    __slots__ = ("kind", "reference")
 
-    def __init__(self, kind: str, reference: Reference, *, implied: bool = False) -> None:
+    def __init__(self, kind: str, reference: Reference) -> None:
         self.kind = kind
         self.reference = reference
-        self.implied = implied
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.reference}>"

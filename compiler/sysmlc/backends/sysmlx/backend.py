@@ -1,7 +1,7 @@
 """Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
 
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from os import environ
 
 from sysmlc.backends.base import EmitOptions
@@ -12,6 +12,7 @@ from sysmlc.ir import Element, Graph
 from sysmlc.language.exchange import Files, interchange_path, write
 from sysmlc.language.library import VARIABLE, Library, core, find
 from sysmlc.language.names import Model
+from sysmlc.language.names.adding import implied_redefinitions
 from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.tree import Document
 from sysmlc.output import Output
@@ -39,7 +40,7 @@ class SysmlxBackend:
         for model in models:
             library = _files(model.library)
             library.add(model.library.loaded())
-            known = Files(model.documents, library)
+            known = Files(model.documents, library, partial(implied_redefinitions, model))
             for document in model.documents:
                 path = f"sysmlx/{interchange_path(document)}"
                 data = write(document, known, sink, _Places(model.documents))

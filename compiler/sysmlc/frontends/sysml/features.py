@@ -184,8 +184,7 @@ def port(low: "Lowering", node: Node, owner: Element) -> Element:
 def _flowing(node: Node) -> Node | None:
     rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
     is_only = len(rest) == 1 and rest[0].kind == "ReferenceUsage" and not nodes.name_of(rest[0])
-    is_typed = any(not one.implied for one in node.relations)
-    return rest[0] if is_only and not is_typed else None
+    return rest[0] if is_only and not node.relations else None
 
 
 def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> None:

@@ -19,7 +19,7 @@ _SUBSETS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
 
 def references(node: Node, *kinds: str) -> list[Reference]:
     """References of the relations of these metaclasses that the text states, in order."""
-    return [one.reference for one in node.relations if one.kind in kinds and not one.implied]
+    return [one.reference for one in node.relations if one.kind in kinds]
 
 
 def reference(node: Node, *kinds: str) -> Reference | None:

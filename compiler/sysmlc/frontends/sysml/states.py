@@ -111,7 +111,7 @@ def _is_empty(node: Node) -> bool:
 
 
 def _stated(node: Node) -> bool:
-    return any(not one.implied for one in node.relations)
+    return bool(node.relations)
 
 
 def _transition(

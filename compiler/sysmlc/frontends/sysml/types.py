@@ -20,13 +20,13 @@ def _types(low: "Lowering", node: Node, seen: set[int]) -> list[Node]:
     if id(node) in seen:
         return []
     seen.add(id(node))
-    stated = [one for one in node.relations if one.kind in _TYPES and not one.implied]
+    stated = [one for one in node.relations if one.kind in _TYPES]
     if stated:
         found = (low.target(node, one) for one in stated)
         return [one for one in found if one is not None]
     inherited: dict[int, Node] = {}
     for relation in node.relations:
         general = low.target(node, relation) if relation.kind in _FEATURES else None
-        for type_ in () if general is None or relation.implied else _types(low, general, seen):
+        for type_ in () if general is None else _types(low, general, seen):
             inherited.setdefault(id(type_), type_)
     return list(inherited.values())

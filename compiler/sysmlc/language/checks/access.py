@@ -53,7 +53,7 @@ def _uses(node: Node) -> Iterator[tuple[Node, Relation, Node]]:
 def _of(node: Node, kind: str) -> Iterator[tuple[Node, Relation, Node]]:
     for relation in node.relations:
         targets = relation.reference.targets
-        if relation.kind == kind and not relation.implied and targets and _is_owned(targets[0]):
+        if relation.kind == kind and targets and _is_owned(targets[0]):
             yield node, relation, targets[0]
 
 

@@ -77,7 +77,7 @@ _GENERAL = frozenset({"general", "superclassifier", "subsettedFeature", "redefin
 def check_operands(model: Model, node: Node) -> Iterator[Found]:
     """Report a type that is made of one other only, or of itself."""
     for kind, made in _MADE.items():
-        operands = [one for one in node.relations if one.kind == kind and not one.implied]
+        operands = [one for one in node.relations if one.kind == kind]
         for relation in operands:
             target = relation.reference.target
             name, general = name_of(model, node), name_of(model, target)

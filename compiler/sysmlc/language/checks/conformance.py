@@ -65,6 +65,7 @@ OF_SAME_OWNER = error(
     "part def Car :> Thing {\n    part engine;\n    part small subsets drive;\n}\n",
 )
 
+_REDEFINITION = frozenset({"Redefinition"})
 _SUBSETTINGS = kinds_of("Subsetting")
 _TURNING = frozenset({"Conjugation", "ConjugatedPortTyping"})
 _TURNED = {"in": "out", "out": "in"}
@@ -125,14 +126,19 @@ def check_direction(model: Model, node: Node) -> Iterator[Found]:
     if scope is None or scope.kind == "FlowEnd":
         return
     own = _said(node)
-    for relation in node.relations:
-        target = relation.reference.target
-        if relation.kind == "Redefinition" and target is not None:
-            wanted = direction(model, scope, target)
-            if (wanted in _TURNED and own != wanted) or (wanted == "inout" and own is None):
-                start = node.start if relation.implied else relation.reference.start
-                facts = {"name": name_of(model, target), "owner": name_of(model, target.owner)}
-                yield Found(OTHER_DIRECTION, start, facts)
+    for start, target in _redefined(model, node):
+        wanted = direction(model, scope, target)
+        if (wanted in _TURNED and own != wanted) or (wanted == "inout" and own is None):
+            facts = {"name": name_of(model, target), "owner": name_of(model, target.owner)}
+            yield Found(OTHER_DIRECTION, start, facts)
+
+
+def _redefined(model: Model, node: Node) -> Iterator[tuple[int, Node]]:
+    """What a feature redefines, as its text says or by its position, and where it says so."""
+    for relation, target in written(node, _REDEFINITION):
+        yield relation.reference.start, target
+    for target in model.lookup.by_position(node):
+        yield node.start, target
 
 
 def direction(model: Model, scope: Node, feature: Node) -> str:
@@ -149,14 +155,22 @@ def direction(model: Model, scope: Node, feature: Node) -> str:
     for at, is_turned in waiting:
         if at is feature.owner:
             return _TURNED.get(said, said) if is_turned else said
-        for relation in at.relations:
-            general = model.target(at, relation) if relation.kind in GENERAL else None
-            if general is not None:
-                step = (general, is_turned ^ (relation.kind in _TURNING))
-                if step not in seen:
-                    seen.add(step)
-                    waiting.append(step)
+        for general, turns in _generals(model, at):
+            step = (general, is_turned ^ turns)
+            if step not in seen:
+                seen.add(step)
+                waiting.append(step)
     return ""
+
+
+def _generals(model: Model, node: Node) -> Iterator[tuple[Node, bool]]:
+    """What an element directly specialises, and whether that turns directions around."""
+    for relation in node.relations:
+        general = model.target(node, relation) if relation.kind in GENERAL else None
+        if general is not None:
+            yield general, relation.kind in _TURNING
+    for general in model.needed_generals(node):
+        yield general, False
 
 
 def _said(feature: Node) -> str | None:

@@ -100,7 +100,7 @@ def check_flow_end(model: Model, node: Node) -> Iterator[Found]:
 def _is_held_by_a_type(relation: Relation) -> bool:
     target = relation.reference.target
     owner = target.owner if target is not None else None
-    return owner is not None and not relation.implied and not is_a(owner.kind, "Feature")
+    return owner is not None and not is_a(owner.kind, "Feature")
 
 
 def check_flow(model: Model, node: Node) -> Iterator[Found]:

@@ -88,7 +88,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
         reporter(model, document, node, sink)
     checks = BY_KIND.get(node.kind, ())
     for relation in node.relations:
-        if relation.kind in BY_RELATION and not relation.implied:
+        if relation.kind in BY_RELATION:
             checks = (*checks, *BY_RELATION[relation.kind])
     for one in dict.fromkeys(checks):
         for found in one(model, node):

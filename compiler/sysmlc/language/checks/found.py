@@ -38,7 +38,7 @@ def error(code: str, name: str, phrase: str, why: str, help: str, wrong: str, ri
 def written(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:
     """The relations of some kinds that the text says, with what they lead to."""
     for relation in node.relations:
-        if relation.kind in kinds and not relation.implied:
+        if relation.kind in kinds:
             target = relation.reference.target
             if target is not None:
                 yield relation, target

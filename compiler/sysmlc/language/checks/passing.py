@@ -71,7 +71,7 @@ def check_parameters(model: Model, node: Node) -> Iterator[Found]:
         return
     wanted = gather(called, "parameter", model.lookup)
     for place, one in enumerate(given):
-        is_said = any(r.kind == "Redefinition" and not r.implied for r in one.relations)
+        is_said = any(r.kind == "Redefinition" for r in one.relations)
         namesakes = [other for other in wanted if model.name(other) == model.name(one)]
         meant = [*wanted[place : place + 1], *namesakes]
         if wanted and not (is_said or any(_may_be(one, other) for other in meant)):
@@ -82,7 +82,7 @@ def check_parameters(model: Model, node: Node) -> Iterator[Found]:
 
 def _called(step: Node) -> Node | None:
     """The only behaviour that the text says the step is one of."""
-    found = [r.reference.target for r in step.relations if r.kind in _TYPES and not r.implied]
+    found = [r.reference.target for r in step.relations if r.kind in _TYPES]
     behaviours = [one for one in found if one is not None and one.kind in _CALLED]
     return behaviours[0] if len(behaviours) == 1 else None
 

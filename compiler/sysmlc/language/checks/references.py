@@ -27,7 +27,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
         return
     for relation in node.relations:
         target = relation.reference.target
-        if target is not None and not relation.implied:
+        if target is not None:
             _relation(model, document, node, relation, target, sink)
     _itself(model, document, node, sink)
 

@@ -110,7 +110,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
 
 def _says_types(node: Node) -> bool:
     """Whether the text says types, and all that it names was found."""
-    said = [r for r in node.relations if r.kind in _TYPING and not r.implied]
+    said = [r for r in node.relations if r.kind in _TYPING]
     return bool(said) and all(r.reference.target is not None for r in said)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from sysmlc.language.exchange.elements import Element, walk
 from sysmlc.language.exchange.identity import conjugated, identify
+from sysmlc.language.exchange.naming import Redefined, nothing
 from sysmlc.language.exchange.unfolding import unfold
 from sysmlc.language.tree import Document, Node
 
@@ -14,10 +15,10 @@ _MEMBERSHIPS = {"importedMembership"}
 class File:
     """An unfolded document, and which elements of it are those of which nodes."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, redefined: Redefined = nothing) -> None:
         self.document = document
         self.root = unfold(document.root)
-        identify(self.root, document)
+        identify(self.root, document, redefined)
         self._elements: dict[Node, Element] = {}
         self._memberships: dict[Node, Element] = {}
         self._conjugates: dict[Node | None, Element] = {}
@@ -36,9 +37,18 @@ class File:
 
 
 class Files:
-    """The documents that references may lead to; those of a library may be shared by models."""
+    """The documents that references may lead to; those of a library may be shared by models.
 
-    def __init__(self, documents: Iterable[Document], library: "Files | None" = None) -> None:
+    ``redefined`` says what features redefine implicitly: they are named, and have ids, by that.
+    """
+
+    def __init__(
+        self,
+        documents: Iterable[Document],
+        library: "Files | None" = None,
+        redefined: Redefined = nothing,
+    ) -> None:
+        self.redefined = redefined
         self._documents: dict[Node, Document] = {}
         self._files: dict[Node, File] = {}
         self._library = library
@@ -53,5 +63,5 @@ class Files:
         if root in self._files:
             return self._files[root]
         if root in self._documents:
-            return self._files.setdefault(root, File(self._documents[root]))
+            return self._files.setdefault(root, File(self._documents[root], self.redefined))
         return self._library.of(root) if self._library is not None else None

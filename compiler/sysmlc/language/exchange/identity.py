@@ -8,7 +8,7 @@ import re
 from uuid import NAMESPACE_URL, UUID, uuid5
 
 from sysmlc.language.exchange.elements import Element, walk
-from sysmlc.language.exchange.naming import effective
+from sysmlc.language.exchange.naming import Redefined, effective, nothing
 from sysmlc.language.exchange.unfolding import unfold
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Document, Node
@@ -40,7 +40,7 @@ def ids(document: Document) -> dict[str, Node]:
     return found
 
 
-def identify(root: Element, document: Document) -> None:
+def identify(root: Element, document: Document, redefined: Redefined = nothing) -> None:
     """Give the element and all below it their ids."""
     package = next((one for one in document.root.members if one.kind == "LibraryPackage"), None)
     standard = package is not None and package.facts.get("isStandard") is True
@@ -50,7 +50,7 @@ def identify(root: Element, document: Document) -> None:
     else:
         stem = document.path.rpartition(".")[0] or document.path
         base, path = uuid5(NAMESPACE_URL, f"urn:sysmlc:{stem}"), ""
-    _Ids(base, document.root).give(root, path)
+    _Ids(base, document.root, redefined).give(root, path)
     if package is not None and standard:
         _name_package(root, str(base))
 
@@ -67,7 +67,8 @@ _RESULTS = frozenset({"ReturnParameterMembership"})
 
 
 class _Ids:
-    def __init__(self, base: UUID, root: Node) -> None:
+    def __init__(self, base: UUID, root: Node, redefined: Redefined) -> None:
+        self._redefined = redefined
         self._base = base
         self._root = root
         self._todo: list[tuple[Element, str, str]] = []
@@ -91,7 +92,7 @@ class _Ids:
         taken: set[str] = set()
         operands = iter(_OPERANDS.get(str(element.attributes.get("operator")), ()))
         for index, owned in enumerate(element.owned, 1):
-            name = _name(owned) if is_root or qualified else ""
+            name = _name(owned, self._redefined) if is_root or qualified else ""
             if element.kind == "OperatorExpression" and qualified:
                 name = "result" if owned.kind in _RESULTS else next(operands, "")
             first = name if name not in taken else ""
@@ -121,15 +122,15 @@ def _is_relationship(element: Element) -> bool:
     return element.kind == "Annotation"
 
 
-def _name(owned: Element) -> str:
+def _name(owned: Element, redefined: Redefined) -> str:
     """The name of the member of a membership; nothing for other relationships."""
     if not is_a(owned.kind, "OwningMembership") or not owned.owned:
         return ""
     member = owned.owned[0]
     if member.kind == "ConjugatedPortDefinition":
         original = conjugated(member)
-        return f"~{effective(original)}" if original else ""
-    return effective(member.node) if member.node is not None else ""
+        return f"~{effective(original, redefined)}" if original else ""
+    return effective(member.node, redefined) if member.node is not None else ""
 
 
 def conjugated(definition: Element) -> Node | None:

@@ -1,5 +1,7 @@
 """Effective and qualified names of elements whose references are resolved (KerML 1.0, 8.3.2.1)."""
 
+from collections.abc import Callable, Sequence
+
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.contents import payload_of
 from sysmlc.language.tree import Node, Reference
@@ -38,7 +40,16 @@ class Naming:
         return names or ("#",)
 
 
-def effective(node: Node, depth: int = 0) -> str:
+Redefined = Callable[[Node], Sequence[Node]]
+"""What a feature redefines though its text does not say so."""
+
+
+def nothing(_: Node) -> Sequence[Node]:
+    """For trees of which only the text is known."""
+    return ()
+
+
+def effective(node: Node, redefined: Redefined = nothing, depth: int = 0) -> str:
     """The name of an element, else that of the feature which names it, else nothing.
 
     A feature without a name is called as the first that it redefines (KerML 1.0, 8.3.3.3.4);
@@ -51,13 +62,13 @@ def effective(node: Node, depth: int = 0) -> str:
         return ""
     accepted = accepted_by(node)
     if accepted is not None:
-        return effective(accepted, depth + 1)
+        return effective(accepted, redefined, depth + 1)
     kinds = _naming_relations(node)
     named = next((one for kind in kinds for one in node.relations if one.kind == kind), None)
-    if named is None:
-        return ""
-    target = named.reference.target
-    return effective(target, depth + 1) if target else _last(named.reference)
+    target = named.reference.target if named else next(iter(redefined(node)), None)
+    if target is None:
+        return _last(named.reference) if named else ""
+    return effective(target, redefined, depth + 1)
 
 
 def accepted_by(node: Node) -> Node | None:

@@ -56,7 +56,7 @@ def _in_order(node: Node) -> Iterator[Relation | Node]:
 
     The source of a transition is before its parameters, which no text has (SysML 8.2.2.18.3).
     """
-    relations = [relation for relation in node.relations if not relation.implied]
+    relations = list(node.relations)
     members = list(node.members)
     if node.kind == "TransitionUsage":
         yield from (relation for relation in relations if relation.kind == "Membership")

@@ -52,7 +52,7 @@ class _Writer:
         self._document = document
         self._sink = sink
         self._others = others
-        self._file = File(document)
+        self._file = File(document, others.redefined)
         self._folder = dirname(at(document)) or "."
         self.root = self._file.root
         self._prune()

@@ -15,22 +15,24 @@ _STEPS = kinds_of("IfActionUsage") | kinds_of("LoopActionUsage")
 _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
-def add_implied(model: Model) -> None:
-    """Give the types and features of the documents what the text does not say of them.
+def implied_relations(model: Model, node: Node) -> list[Relation]:
+    """What the text does not say of a type or feature.
 
-    Expressions and multiplicities, which no one declares, are left as they are, but for the
-    conditions of steps: those are parameters, and named by what they redefine.
+    Expressions and multiplicities, which no one declares, have none, but for the conditions of
+    steps: those are parameters, and named by what they redefine.
     """
-    names: dict[Node, tuple[str, ...]] = {}
-    for document in model.documents:
-        for node in document.root.walk():
-            if node.kind in _DECLARED or _is_condition(node):
-                try:
-                    made = _relations(model, node)
-                except RecursionError:
-                    model.lookup.abandon()
-                    continue
-                node.relations += [_relation(model, kind, one, names) for kind, one in made]
+    if not _has_implied(node):
+        return []
+    return [_relation(model, kind, one) for kind, one in _relations(model, node)]
+
+
+def implied_redefinitions(model: Model, node: Node) -> list[Node]:
+    """What a feature redefines though the text does not say so."""
+    return model.lookup.by_position(node) if _has_implied(node) else []
+
+
+def _has_implied(node: Node) -> bool:
+    return node.kind in _DECLARED or _is_condition(node)
 
 
 def _is_condition(node: Node) -> bool:
@@ -40,12 +42,11 @@ def _is_condition(node: Node) -> bool:
 
 def _relations(model: Model, node: Node) -> list[tuple[str, Node]]:
     """Kind and target of each relation that is needed beside the written ones."""
-    positions = model.lookup.by_position(node)
+    made = [("Redefinition", one) for one in model.lookup.by_position(node)]
     if node.kind not in _DECLARED:
-        return [("Redefinition", one) for one in positions]
+        return made
     by_type = typed.needed(model, node)
     needed = dict.fromkeys(model.needed_generals(node, by_type))
-    made = [("Redefinition", one) for one in positions]
     for _, one in made:
         needed.pop(one, None)
     for kind, target in [*(("Subsetting", one) for one in by_type), *model.candidates(node)]:
@@ -55,12 +56,7 @@ def _relations(model: Model, node: Node) -> list[tuple[str, Node]]:
     return made
 
 
-def _relation(
-    model: Model, kind: str, target: Node, names: dict[Node, tuple[str, ...]]
-) -> Relation:
-    name = names.get(target)
-    if name is None:
-        name = names[target] = tuple(model.qualified_name(target).split("::"))
-    reference = Reference((name,))
+def _relation(model: Model, kind: str, target: Node) -> Relation:
+    reference = Reference((tuple(model.qualified_name(target).split("::")),))
     reference.targets = [target]
-    return Relation(kind, reference, implied=True)
+    return Relation(kind, reference)

@@ -14,7 +14,7 @@ class Asked(Protocol):
     def generals(self, node: Node) -> list[Node]:
         """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
 
-    def all_generals(self, node: Node) -> list[Node]:
+    def all_generals(self, node: Node) -> tuple[Node, ...]:
         """What ``node`` specialises as the text says and what it may implicitly."""
 
     def at_positions(self, scope: Node, role: str) -> list[Node]:

@@ -78,9 +78,9 @@ def naming(node: Node) -> Reference | None:
         return None
     if node.kind in _REFERRING or node.membership in _REFERRING_MEMBERSHIPS:
         for relation in node.relations:
-            if relation.kind == "ReferenceSubsetting" and not relation.implied:
+            if relation.kind == "ReferenceSubsetting":
                 return relation.reference
     for relation in node.relations:
-        if relation.kind == "Redefinition" and not relation.implied:
+        if relation.kind == "Redefinition":
             return relation.reference
     return None

@@ -33,7 +33,7 @@ class Generals(ABC):
         self._pointed: set[Node] = set()
         self._generals: dict[Node, list[Node]] = {}
         self._silently: dict[Node, list[Node]] = {}
-        self._all_generals: dict[Node, list[Node]] = {}
+        self._all_generals: dict[Node, tuple[Node, ...]] = {}
         self._redefining: dict[Node, list[Node]] = {}
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
@@ -64,9 +64,8 @@ class Generals(ABC):
         found: list[Node] = []
         links: list[Node] = []
         for relation in node.relations:
-            if not relation.implied and (
-                relation.kind in GENERAL
-                or (relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS)
+            if relation.kind in GENERAL or (
+                relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS
             ):
                 target = self.target(node, relation)
                 if target is not None and target not in found:
@@ -191,12 +190,12 @@ class Generals(ABC):
                 del self._at_positions[key]
         return known
 
-    def all_generals(self, node: Node) -> list[Node]:
+    def all_generals(self, node: Node) -> tuple[Node, ...]:
         """What ``node`` specialises as the text says and what it may implicitly."""
         known = self._all_generals.get(node)
         if known is None:
             before = self.cuts
-            known = [*self.generals(node), *self._silent_generals(node)]
+            known = (*self.generals(node), *self._silent_generals(node))
             if self.cuts == before:
                 self._all_generals[node] = known
         return known

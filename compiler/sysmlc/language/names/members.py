@@ -119,7 +119,7 @@ class Members(Generals):
 
         None where generals import some, are not known for good, or lead in a circle.
         """
-        key = tuple(self.all_generals(scope))
+        key = self.all_generals(scope)
         if key not in self._names_of:
             each = [self._names_from(general, {}) for general in key]
             known = tuple([names for names in each if names is not None])
@@ -190,7 +190,7 @@ class Members(Generals):
         without a name of its own, or nothing."""
         for member in scope.members:
             for relation in member.relations:
-                if relation.kind == "Redefinition" and not relation.implied:
+                if relation.kind == "Redefinition":
                     name = relation.reference.chain[-1][-1]
                     if name in (hit.name, hit.short) or hit.name is None:
                         target = self.target(member, relation)

@@ -28,7 +28,9 @@ class Model:
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
         self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
+        self._types: dict[tuple[Node, ...], list[Node]] = {}
         self._supers: dict[Node, dict[Node, None]] = {}
+        self._aboves: dict[tuple[Node, ...], dict[Node, None]] = {}
         self.by_type: dict[Node, tuple[Node, ...]] = {}
         """What ``typed`` found out about features, once all names are resolved."""
         self.by_types_above: dict[tuple[Node, ...], set[Node]] = {}
@@ -80,15 +82,24 @@ class Model:
 
     def types(self, node: Node) -> list[Node]:
         """The types of a feature: its own, else those of what it subsets and redefines."""
+        generals = self.lookup.all_generals(node)
+        known = self._types.get(generals)
+        if known is None:
+            known = self._types[generals] = self._types_among(generals)
+        return list(known)
+
+    def _types_among(self, generals: tuple[Node, ...]) -> list[Node]:
+        """The most special of what is no feature among generals of a feature, and theirs."""
         found: dict[Node, None] = {}
-        waiting, seen = [node], {node}
-        for one in waiting:
-            for general in self.lookup.all_generals(one):
-                if general.kind not in FEATURES:
-                    found[general] = None
-                elif general not in seen:
-                    seen.add(general)
-                    waiting.append(general)
+        seen: set[Node] = set()
+        waiting = [generals]
+        for some in waiting:
+            for one in some:
+                if one.kind not in FEATURES:
+                    found[one] = None
+                elif one not in seen:
+                    seen.add(one)
+                    waiting.append(self.lookup.all_generals(one))
         if len(found) < 2:
             return list(found)
         return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
@@ -192,14 +203,21 @@ class Model:
         """Like ``supers``, to look one up in."""
         known = self._supers.get(node)
         if known is None:
-            known = {node: None}
-            waiting = [node]
+            known = {node: None, **self._above(self.lookup.all_generals(node))}
+            self._supers[node] = known
+        return known
+
+    def _above(self, generals: tuple[Node, ...]) -> dict[Node, None]:
+        """Some generals and all that they specialise, the nearest first."""
+        known = self._aboves.get(generals)
+        if known is None:
+            known = self._aboves[generals] = dict.fromkeys(generals)
+            waiting = list(known)
             for one in waiting:
                 for general in self.lookup.all_generals(one):
                     if general not in known:
                         known[general] = None
                         waiting.append(general)
-            self._supers[node] = known
         return known
 
 

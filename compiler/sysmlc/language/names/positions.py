@@ -42,7 +42,7 @@ def counts(feature: Node) -> bool:
     """Whether a feature may redefine another though the text does not say so."""
     if feature.membership not in REDEFINED_BY_MEMBERSHIP and not role(feature):
         return False
-    return not any(r.kind == "Redefinition" and not r.implied for r in feature.relations)
+    return not any(r.kind == "Redefinition" for r in feature.relations)
 
 
 def own(scope: Node, wanted: str) -> list[Node]:

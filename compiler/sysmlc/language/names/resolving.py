@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library
-from sysmlc.language.names.adding import add_implied
 from sysmlc.language.names.model import Model, root
 from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP
 from sysmlc.language.names.unresolved import report, subject
@@ -25,7 +24,7 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     try:
         for document in model.documents:
             _resolve(document, model, sink)
-        add_implied(model)
+        _settle(model)
         _report_cycles(model, sink)
         if library.is_core:
             _report_core(model, sink)
@@ -39,7 +38,7 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
 def _resolve(document: Document, model: Model, sink: Sink) -> None:
     for node in document.root.walk():
         for relation in node.relations:
-            if relation.reference.target is None and not relation.implied:
+            if relation.reference.target is None:
                 _resolve_one(document, node, relation, model, sink)
 
 
@@ -55,6 +54,19 @@ def _resolve_one(
         model.lookup.abandon()
         place = subject(document, node, relation.reference.start)
         sink.report(TOO_DEEP, place, name=str(relation.reference))
+
+
+def _settle(model: Model) -> None:
+    """Find out what leads through many elements while Python may still call itself that deep."""
+    lookup = model.lookup
+    for document in model.documents:
+        for node in document.root.walk():
+            try:
+                if node.relations:
+                    lookup.generals(node)
+                lookup.by_position(node)
+            except RecursionError:
+                lookup.abandon()
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
@@ -77,9 +89,7 @@ def _report_core(model: Model, sink: Sink) -> None:
         for document in model.documents
         for node in document.root.walk()
         for relation in node.relations
-        if not relation.implied
-        and relation.reference.target is not None
-        and root(relation.reference.target) in roots
+        if relation.reference.target is not None and root(relation.reference.target) in roots
     ]
     if uses:
         sink.report(CORE, subject(*uses[0]), count=len(uses))

@@ -29,7 +29,7 @@ def needed(model: Model, node: Node) -> tuple[Node, ...]:
     found = _candidates(model, node)
     if not found:
         return ()
-    generals = tuple(model.lookup.all_generals(node))
+    generals = model.lookup.all_generals(node)
     above = model.by_types_above.get(generals)
     if above is None:
         above = {one for general in _above(model, generals) for one in _candidates(model, general)}
