@@ -200,6 +200,21 @@ def test_the_game_ends_where_there_is_no_answer_or_the_reader_gives_up():
     assert played(STUCK, "quit")[0] is False
 
 
+def test_the_game_names_what_an_answer_has_broken_at_once():
+    text = "env go: bool\nsys at: 0..1\npromise always !go -> at=0\npromise recurs at=1"
+    _, said = played(text, "at=1", "", "")
+    assert said[1:3] == ["step 1: go=false", "     at=1"]
+    assert said[-1] == "Your last answer breaks '!go -> at=0'. You have lost."
+
+
+def test_the_game_shows_a_formula_as_it_was_written():
+    _, said = played("env go: bool\nsys at: 0..1\npromise G (go -> F at=1)\n" + STAY, *[""] * 9)
+    assert said[-1].endswith("'G (go -> F at=1)' is not kept. You have lost.")
+
+
+STAY = "promise at first at=0\npromise always at'=at"
+
+
 def test_history_bits_are_nobodys_business():
     made = "env ask: bool\nsys done: bool\npromise always !done'\npromise G (ask -> F done)"
     found = defeated(made)

@@ -34,12 +34,23 @@ def folder(help: str) -> Callable[[_F], _F]:
     )
 
 
+def amount(_ctx: click.Context, _param: click.Parameter, value: float) -> float:
+    """Seconds or GiB, from 0 on; 0 is no limit."""
+    if not 0 <= value <= _MOST:
+        raise click.BadParameter(f"{value} is not from 0 to {_MOST:,}")
+    return value
+
+
+_MOST = 1_000_000_000
+
+
 def time_limit(help: str) -> Callable[[_F], _F]:
     """The option ``--time-limit``: CPU seconds for each question about contracts."""
     return click.option(
         "--time-limit",
         "seconds",
         type=float,
+        callback=amount,
         default=10.0,
         show_default=True,
         metavar="S",

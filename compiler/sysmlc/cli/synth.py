@@ -60,9 +60,30 @@ no machine, or the work could not be done.""",
     type=click.Choice(("cudd", "autoref")),
     help="Library of decision diagrams.  [default: cudd if it is there]",
 )
-@click.option("--time-limit", "seconds", type=float, default=0.0, metavar="S", help="CPU seconds.")
-@click.option("--memory", type=float, default=0.0, metavar="GIB", help="GiB for the diagrams.")
-@click.option("--nodes", type=int, default=0, metavar="N", help="Nodes of diagrams at once.")
+@click.option(
+    "--time-limit",
+    "seconds",
+    type=float,
+    callback=options.amount,
+    default=0.0,
+    metavar="S",
+    help="CPU seconds.  [default: no limit]",
+)
+@click.option(
+    "--memory",
+    type=float,
+    callback=options.amount,
+    default=0.0,
+    metavar="GIB",
+    help="GiB for the diagrams.  [default: 8]",
+)
+@click.option(
+    "--nodes",
+    type=click.IntRange(min=0),
+    default=0,
+    metavar="N",
+    help="Nodes of diagrams at once.  [default: no limit]",
+)
 @options.reporting
 @options.reading
 @click.pass_context

@@ -5,8 +5,6 @@ libraries do differently, and what may run for long, are methods of ``Manager``.
 """
 
 import logging
-import signal
-import threading
 import time
 import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -17,7 +15,16 @@ from typing import Any, Protocol, Self, cast
 from weakref import WeakKeyDictionary
 
 from sysmlc.synthesis.bdd.inside import watch
-from sysmlc.values import dataclass
+from sysmlc.synthesis.bdd.limits import (
+    End,
+    LimitError,
+    Limits,
+    Progress,
+    TooLargeError,
+    Usage,
+    exceeded,
+    interrupts,
+)
 
 ENGINES = ("cudd", "autoref")
 """Names of the libraries, the fast one first."""
@@ -55,44 +62,6 @@ class Node(Protocol):
     def equiv(self, other: Self, /) -> Self: ...
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How much a manager may use; 0 is no limit of its own."""
-
-    nodes: int = 0
-    """Nodes that are alive at once."""
-    memory: int = 0
-    """Bytes."""
-    seconds: float = 0.0
-    """CPU time since the manager was made."""
-
-
-class LimitError(Exception):
-    """A limit was reached: ``what`` it limits, and the limit itself, in words."""
-
-    def __init__(self, what: str, limit: str) -> None:
-        super().__init__(f"the limit of {limit} {what} was reached")
-        self.what = what
-        self.limit = limit
-
-
-class TooLargeError(LimitError):
-    """One form of an outcome is too large; another one may not be."""
-
-
-@dataclass(frozen=True, slots=True)
-class Usage:
-    """What a manager has used so far."""
-
-    nodes: int
-    peak: int
-    seconds: float
-
-
-Progress = Callable[[str], None]
-"""Called between operations with what is being done."""
-
-
 class Manager:
     """Owner of the diagrams of one game; bits are declared in their order."""
 
@@ -113,7 +82,7 @@ class Manager:
         self._reorder_at = REORDER_AT
         self._numbers: dict[str, int] = {}
         self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
-        self._end: LimitError | KeyboardInterrupt | None = None
+        self._end: End | None = None
         # dd has no type hints that a checker could use.
         self._bdd: Any = _new(library, self.engine, self.limits.memory or _MEMORY)
         self.true: Node = cast("Node", self._bdd.true)
@@ -257,7 +226,7 @@ class Manager:
         if doing and self._progress is not None:
             self._progress(doing)
         if self.is_over() and self._end is not None:
-            raise self._end
+            raise self._end()
         # Not when the clock says so: what is decided must not depend on how fast that was.
         nodes = self._nodes if self._alive is None else self._alive()
         if nodes > self._reorder_at:
@@ -268,19 +237,9 @@ class Manager:
         now = time.process_time()
         if self._end is None and now >= self._next_look:
             self._next_look = now + _PATIENCE
-            self._end = self._exceeded()
+            used = self.usage()
+            self._nodes, self._end = used.nodes, exceeded(used, self.limits, self._ceiling)
         return self._end is not None
-
-    def _exceeded(self) -> "LimitError | None":
-        used, limits = self.usage(), self.limits
-        self._nodes = used.nodes
-        if self._ceiling and used.nodes > self._ceiling:
-            return TooLargeError("nodes", f"{self._ceiling:,}")
-        if limits.nodes and used.nodes > limits.nodes:
-            return LimitError("nodes", f"{limits.nodes:,}")
-        if limits.seconds and used.seconds > limits.seconds:
-            return LimitError("of CPU time", f"{limits.seconds:g} s")
-        return None
 
     def _counts(self) -> tuple[int, int]:
         if self.engine != "cudd":
@@ -297,39 +256,23 @@ class Manager:
         """Turn what the library raises when an operation is given up, or its memory used up, into
         LimitError; within it Ctrl-C ends operations, too."""
         try:
-            with _interrupts(self._interrupted):
+            with interrupts(self._interrupted):
                 yield
         except (RuntimeError, ValueError, MemoryError) as problem:
             if self._end is not None:
-                raise self._end from None
+                raise self._end() from None
             if isinstance(problem, MemoryError) or _is_memory(str(problem)):
                 size = (self.limits.memory or _MEMORY) / _GIBIBYTE
-                raise LimitError("of memory", f"{size:g} GiB") from None
+                raise LimitError("of memory", f"{size:.3g} GiB") from None
             raise
-        if isinstance(self._end, KeyboardInterrupt):
-            raise self._end
+        if self._end is KeyboardInterrupt:
+            raise KeyboardInterrupt
 
     def _interrupted(self, number: int, frame: FrameType | None) -> None:
         """Ctrl-C: what runs is given up soon; when it is pressed again, at once."""
         if self._end is not None:
             raise KeyboardInterrupt
-        self._end = KeyboardInterrupt()
-
-
-@contextmanager
-def _interrupts(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Let a function see Ctrl-C where it would raise KeyboardInterrupt: an operation of the library
-    would not be ended by that."""
-    is_main = threading.current_thread() is threading.main_thread()
-    before = signal.getsignal(signal.SIGINT)
-    if not is_main or before is not signal.default_int_handler:
-        yield
-        return
-    signal.signal(signal.SIGINT, handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+        self._end = KeyboardInterrupt
 
 
 def _is_memory(text: str) -> bool:

@@ -5,10 +5,12 @@ from itertools import islice
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.domains import values
-from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.evaluate import has_primes, is_true
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.reduction.rules import has_past
 from sysmlc.synthesis.counter.environment import Bits, Environment
+from sysmlc.synthesis.unrealizable.reasons import as_written
 
 MOST_ANSWERS = 2_000
 """Answers that are looked through in one step."""
@@ -48,7 +50,7 @@ class Player:
             self._say(f"step {step}: {self._told(given, state)}")
             answers = list(islice(self._environment.answers(state, given), MOST_ANSWERS))
             if not answers:
-                self._say("You have no answer: each one breaks what you promise. You have lost.")
+                self._say(self._stuck(state))
                 return True
             answer = self._chosen(state, given, answers)
             if answer is None:
@@ -133,6 +135,16 @@ class Player:
             if one.class_ is class_ and not is_true(one.formula, *values):
                 yield f"That breaks '{print_formula(one.formula)}'{_about(one)}."
 
+    def _stuck(self, state: Bits | None) -> str:
+        """Why there is no answer: what holds already breaks a promise, or whatever comes."""
+        now = self._symbols.decode(state or {})
+        for one in self._contract.guarantees:
+            is_of_step = one.class_ is Class.SAFETY and not has_primes(one.formula)
+            if state and is_of_step and not has_past(one.formula) and not is_true(one.formula, now):
+                broken = f"'{print_formula(one.formula)}'{_about(one)}"
+                return f"Your last answer breaks {broken}. You have lost."
+        return "You have no answer: each one breaks what you promise. You have lost."
+
     def _for_ever(self, state: Bits, step: int, earlier: int) -> str:
         lost = self._environment.lost
         rank = self._environment.rank(state)
@@ -140,8 +152,12 @@ class Player:
         if not lost.game.goals:
             return f"{said}. You have lost."
         conjunct = lost.game.goals[rank.goal].conjunct
-        goal = f"'{print_formula(conjunct.formula)}'{_about(conjunct)}" if conjunct else ""
-        return f"{said}:\n{goal} does not come about again. You have lost."
+        if conjunct is None:
+            return f"{said}. You have lost."
+        (goal,) = as_written([conjunct], self._contract)
+        missed = f"'{print_formula(goal.formula)}'{_about(goal)}"
+        end = "is not kept" if goal.class_ is Class.OTHER else "does not come about again"
+        return f"{said}:\n{missed} {end}. You have lost."
 
 
 def _about(conjunct: Conjunct) -> str:
