@@ -7,12 +7,30 @@ is over starts anew in the next step.
 """
 
 import random
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 TAKES_ANY = ("merge", "flow-final", "object")
 PASSES = ("fork", "join", "value")
 WORKS = ("opaque", "send", "accept")
+
+PROPERTIES = [
+    '    Property x "x" default=0',
+    "      -> typed-by int",
+    '    Property y "y" default=false',
+    "      -> typed-by bool",
+    '    Constraint r body="0 <= x <= 2"',
+]
+TYPES = ['  DataType int "Integer"', '  DataType bool "Boolean"']
+BODIES = {
+    "x := x + 1": ("x", lambda now: min(now["x"] + 1, 2)),
+    "x := 0": ("x", lambda now: 0),
+    "x := if y ? 2 else x": ("x", lambda now: 2 if now["y"] else now["x"]),
+    "y := not y": ("y", lambda now: not now["y"]),
+    "y := x > 0": ("y", lambda now: now["x"] > 0),
+}
+"""What may be assigned, with what it means in the words of this game."""
+GUARDS = {"x < 2": lambda now: now["x"] < 2, "y": lambda now: now["y"]}
 
 
 @dataclass
@@ -23,6 +41,8 @@ class Drawing:
     flows: dict[str, tuple[str, str, str]] = field(default_factory=dict)
     objects: set[str] = field(default_factory=set)
     """Flows that carry objects, from pin to pin."""
+    bodies: dict[str, str] = field(default_factory=dict)
+    """What actions assign when they are done."""
 
     def incoming(self, node):
         return [id for id, (_, target, _) in self.flows.items() if target == node]
@@ -32,7 +52,7 @@ class Drawing:
 
     def text(self):
         """The activity in IR text."""
-        lines = ['Package p "P"', '  Activity a "a"']
+        lines = ['Package p "P"', '  Activity a "a"', *(PROPERTIES if self.bodies else [])]
         for id, kind in self.nodes.items():
             lines += self._node(id, kind)
         for id, (source, target, guard) in self.flows.items():
@@ -41,11 +61,12 @@ class Drawing:
             shown = f' guard="{guard}"' if guard else ""
             lines += [f"    {word} {id}{shown}", f"      -> flow-source {ends[0]}"]
             lines += [f"      -> flow-target {ends[1]}"]
-        return "\n".join(lines) + "\n"
+        return "\n".join([*lines, *(TYPES if self.bodies else [])]) + "\n"
 
     def _node(self, id, kind):
         if kind in (*WORKS, "value"):
-            yield f'    Action {id} "{id}" subkind="{kind}"'
+            body = f' body="{self.bodies[id]}"' if id in self.bodies else ""
+            yield f'    Action {id} "{id}"{body} subkind="{kind}"'
             for flow in sorted(self.objects):
                 source, target, _ = self.flows[flow]
                 for end, word in ((source, "o"), (target, "i")):
@@ -178,16 +199,39 @@ class Pencil:
         return fork, b
 
 
+class Writer(Pencil):
+    """Draws a random activity in which actions assign what guards read."""
+
+    def _action(self, depth):
+        made, _ = super()._action(depth)
+        if self.drawing.nodes[made] == "opaque":
+            self.drawing.bodies[made] = self.dice.choice([*BODIES])
+        return made, made
+
+    def guard(self):
+        return self.dice.choice([super().guard(), *GUARDS])
+
+    def drawn(self):
+        """An activity in which at least one action assigns something."""
+        made = super().drawn()
+        while not made.bodies:
+            self.left = self.dice.randint(2, 7)
+            self.drawing, self.guards = Drawing(), 0
+            made = super().drawn()
+        return made
+
+
 class UnsafeError(Exception):
     """A second token comes to where one is."""
 
 
 @dataclass(frozen=True)
 class Tokens:
-    """Flows with a token, and actions that run."""
+    """Flows with a token, actions that run, and what has been assigned."""
 
     at: frozenset[str]
     running: frozenset[str]
+    values: tuple[tuple[str, object], ...] = ()
 
 
 def start(drawing):
@@ -195,7 +239,8 @@ def start(drawing):
     begins = [
         id for id, (source, _, _) in drawing.flows.items() if drawing.nodes[source] == "initial"
     ]
-    return Tokens(frozenset(begins), frozenset())
+    values = (("x", 0), ("y", False)) if drawing.bodies else ()
+    return Tokens(frozenset(begins), frozenset(), values)
 
 
 def is_over(drawing, tokens):
@@ -230,8 +275,11 @@ class _Step:
     """What moves in a step: everything looks at the tokens as they were."""
 
     def __init__(self, drawing, tokens, inputs):
-        self.drawing, self.tokens, self.inputs = drawing, tokens, inputs
-        self.taken, self.given, self.choices = set(), [], []
+        self.drawing, self.tokens = drawing, tokens
+        self.taken, self.given, self.choices, self.writers = set(), [], [], {}
+        self.now = dict(tokens.values)
+        held = (guard for guard, holds in GUARDS.items() if self.now and holds(self.now))
+        self.inputs = {*inputs, *held}
         self.running = set(tokens.running)
 
     def move(self, node, kind):
@@ -264,10 +312,16 @@ class _Step:
         elif kind == "send" or node in self.inputs:
             self.running.remove(node)
             self.given += outgoing
+            if node in self.drawing.bodies:
+                name, value = BODIES[self.drawing.bodies[node]]
+                self.writers.setdefault(name, []).append(value(self.now))
 
     def ends(self):
         for chosen in product(*self.choices):
-            yield _placed(self.tokens, self.taken, [*self.given, *chosen], self.running)
+            made = _placed(self.tokens, self.taken, [*self.given, *chosen], self.running)
+            for written in product(*self.writers.values()):
+                values = self.now | dict(zip(self.writers, written, strict=True))
+                yield replace(made, values=tuple(values.items()))
 
 
 def _open(drawing, outgoing, inputs):

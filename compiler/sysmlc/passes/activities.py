@@ -15,11 +15,12 @@ from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
+from sysmlc.passes.activity_bounds import report_stops
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
+from sysmlc.passes.activity_stores import follow, report_unfollowed
 from sysmlc.passes.activity_usages import drawn_of, has_steps
-from sysmlc.passes.activity_written import report_written
 from sysmlc.values import dataclass, replace
 
 
@@ -87,8 +88,10 @@ class Activities:
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, raising, sink)
+        tokens, unfollowed = follow(graph, activity, tokens, scope)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
-        report_written(graph, activity, tokens, scope, sink)
+        report_unfollowed(graph, activity, unfollowed, sink)
+        report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
         return activity_search.named(tokens, inputs.names)

@@ -88,7 +88,8 @@ class _Checker:
         conditions = [(edge, _condition(edge)) for edge in stated]
         names = {v.name for _, c in conditions for v in variables(c)}
         opens = [(edge, evaluate.evaluation(c)) for edge, c in conditions]
-        read = {v.name: v.domain for v in self.tokens.inputs if v.name in names}
+        known = (*self.tokens.inputs, *(one.variable for one in self.tokens.stores))
+        read = {v.name: v.domain for v in known if v.name in names}
         if domains.count(read) > _MOST_VALUATIONS:
             return None
         return [

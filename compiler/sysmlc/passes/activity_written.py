@@ -1,103 +1,96 @@
-"""What an activity writes itself and reads in its guards: its contract does not follow it."""
+"""What the actions of an activity write, in the order in which their tokens come.
+
+An action assigns (``x := e`` in its body), or writes a structural feature (UML 2.5.1, 16.8.3: Add
+Structural Feature Value, its value given by a literal).
+"""
 
 from collections.abc import Iterator
 
-from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.expressions.expression import (
     Assignment,
+    Expression,
     ExpressionError,
     name_of,
     parse_effect,
+    parse_expression,
+    print_expression,
 )
-from sysmlc.passes.activity_expressions import Scope
+from sysmlc.values import dataclass
 
 
-def _counting(body: str) -> str:
-    return f"""\
-Package p "Plant"
-  Class c "Cell" role="block"
-    Property n "full"
-      -> typed-by bool
-    Activity a "work"
-      Control i subkind="initial"
-      Control m subkind="merge"
-      Action w "fill" subkind="opaque" body="{body}"
-      Control d "enough" subkind="decision"
-      Control e subkind="final"
-      ControlFlow im
-        -> flow-source i
-        -> flow-target m
-      ControlFlow mw
-        -> flow-source m
-        -> flow-target w
-      ControlFlow wd
-        -> flow-source w
-        -> flow-target d
-      ControlFlow dm guard="not full"
-        -> flow-source d
-        -> flow-target m
-      ControlFlow de guard="full"
-        -> flow-source d
-        -> flow-target e
-  DataType bool "Boolean"
-"""
+@dataclass(frozen=True, slots=True)
+class Assigned:
+    """An action gives a named feature a value; None where the model does not say which."""
+
+    action: Element
+    name: str
+    value: Expression | None
+
+    @property
+    def text(self) -> str:
+        """The value as it is written."""
+        return "" if self.value is None else print_expression(self.value)
 
 
-WRITTEN = rule(
-    "SM544",
-    "guard-reads-what-is-written",
-    Severity.INFO,
-    "a guard of '{activity}' reads '{name}', which {writers} {verb}: the contract leaves its value "
-    "to the environment",
-    why="The contract of an activity says where its tokens go, not what its actions compute. It "
-    "holds for every value, so that some ways are in it that are never taken.",
-    help="say what becomes of it in a requirement, or draw the behaviour as a state machine, whose "
-    "effects are in its contract",
-    wrong=_counting("full := true"),
-    right=_counting("measure()"),
-)
-
-
-def report_written(
-    graph: Graph, activity: Element, tokens: TokenGraph, scope: Scope, sink: Sink
-) -> None:
-    """Report each property that guards of the activity read and actions of it write."""
-    read = {one.origin for one in tokens.inputs if graph[one.origin].kind is Kind.PROPERTY}
-    if not read:
-        return
-    writers: dict[str, list[str]] = {}
-    for action in graph.subtree(activity):
-        if action.kind is Kind.ACTION:
-            for feature in _written(graph, action, scope):
-                writers.setdefault(feature, []).append(f"'{action.name}'")
-    for feature in (one.origin for one in tokens.inputs if one.origin in read & writers.keys()):
-        found = writers[feature]
-        sink.report(
-            WRITTEN,
-            graph.subject(graph[feature]),
-            activity=activity.name,
-            name=graph[feature].name,
-            writers=" and ".join(found),
-            verb="writes" if len(found) == 1 else "write",
-        )
-
-
-def _written(graph: Graph, action: Element, scope: Scope) -> Iterator[str]:
-    """The features that an action writes, by their ids."""
+def assigned(graph: Graph, action: Element) -> Iterator[Assigned]:
+    """What an action assigns, one after the other."""
     if action.subkind == "write":
-        feature = graph.target(action, Edge.CALLS)
-        yield from [feature.id] if feature is not None else []
+        yield from _written(graph, action)
     body = action.attrs.get("body")
-    if action.subkind != "opaque" or not isinstance(body, str):
-        return
+    if action.subkind in ("opaque", "function") and isinstance(body, str) and ":=" in body:
+        yield from _said(action, body)
+
+
+def _said(action: Element, body: str) -> Iterator[Assigned]:
     try:
         statements = parse_effect(body)
     except ExpressionError:
         return
     for one in statements:
         name = name_of(one.target) if isinstance(one, Assignment) else None
-        feature = scope.feature(name) if name else None
-        if feature is not None:
-            yield feature.id
+        if name and isinstance(one, Assignment):
+            yield Assigned(action, name.removeprefix("self."), one.value)
+
+
+def _written(graph: Graph, action: Element) -> Iterator[Assigned]:
+    feature = graph.target(action, Edge.CALLS)
+    if feature is not None:
+        yield Assigned(action, feature.name, _value(graph, action))
+
+
+def _value(graph: Graph, action: Element) -> Expression | None:
+    pins = {pin.subkind or pin.name: pin for pin in graph.owned(action) if pin.kind is Kind.PIN}
+    target, value = pins.get("object"), pins.get("value")
+    if value is None or not _is_self(graph, target):
+        return None
+    text = _literal(graph, value)
+    try:
+        return None if text is None else parse_expression(text)
+    except ExpressionError:
+        return None
+
+
+def _is_self(graph: Graph, pin: Element | None) -> bool:
+    """Whether what is written to is the object that performs the activity."""
+    giver = None if pin is None else _giver(graph, pin)
+    return giver is None or giver.subkind == "read-self"
+
+
+def _literal(graph: Graph, pin: Element) -> str | None:
+    giver = _giver(graph, pin)
+    from_value = giver is not None and giver.subkind == "value"
+    value = giver.attrs.get("value") if giver is not None and from_value else pin.attrs.get("value")
+    return None if value is None else print_value(value)
+
+
+def _giver(graph: Graph, pin: Element) -> Element | None:
+    """The action from which the only flow into a pin comes."""
+    flows = list(graph.sources(pin, Edge.FLOW_TARGET))
+    source = graph.target(flows[0], Edge.FLOW_SOURCE) if len(flows) == 1 else None
+    return graph.owner(source) if source is not None and source.kind is Kind.PIN else source
+
+
+def print_value(value: object) -> str:
+    """A literal as expressions write it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,14 +1,14 @@
 """What can be simulated: activities and state machines behind one interface."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities import token_game
-from sysmlc.logic.activities.tokens import TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.tokens import TokenGraph, TokenNode
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -24,6 +24,7 @@ from sysmlc.logic.machines.reader import read_machine
 from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
+_T = TypeVar("_T")
 _LASTING = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 
 
@@ -136,11 +137,11 @@ class _Chooser:
         self._given = given
         self._counts: list[int] = []
 
-    def choose(self, node: TokenNode, branches: Sequence[TokenEdge]) -> TokenEdge:
+    def choose(self, node: TokenNode, options: Sequence[_T]) -> _T:
         del node
-        self._counts.append(len(branches))
+        self._counts.append(len(options))
         place = len(self._counts) - 1
-        return branches[self._given[place] if place < len(self._given) else 0]
+        return options[self._given[place] if place < len(self._given) else 0]
 
     def others(self) -> Iterator[list[int]]:
         """The choices that differ from this one at a place that was not given."""

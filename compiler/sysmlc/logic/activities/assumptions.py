@@ -18,6 +18,8 @@ def assumptions(game: Game) -> Iterator[Conjunct]:
     """Actions end, some guard holds wherever a token waits for one, and loops are left."""
     for node in game.graph.workers():
         if node.kind is NodeKind.ACTION and node.duration is Duration.TIMED and node.done:
+            if game.graph.is_own(node.done):
+                continue
             ended = f.either(f.negate(f.var(node.run)), node.done)
             text = f"Whenever {node.label} runs, the environment ends it sooner or later."
             yield Conjunct(ended, Class.LIVENESS, node.origin, text)
@@ -33,6 +35,8 @@ def _answers(game: Game, node: TokenNode) -> Iterator[Conjunct]:
     if node.firing is not Firing.CHOICE or not branches or node.exhaustive:
         return
     opened = f.either(*map(game.opened, branches))
+    if game.graph.is_own(opened):
+        return
     answer = f.either(f.negate(game.waits(node)), opened)
     text = f"Whenever a token waits at {node.label}, one of its guards holds sooner or later."
     yield Conjunct(answer, Class.LIVENESS, node.origin, text)

@@ -11,6 +11,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import assumptions
 from sysmlc.logic.activities.game import Game, at
 from sysmlc.logic.activities.loops import endless_entries
+from sysmlc.logic.activities.stores import starts, updates
 from sysmlc.logic.activities.tokens import (
     ACTIVITY_REGION,
     Duration,
@@ -42,22 +43,26 @@ def derive(graph: TokenGraph) -> Contract:
         assumptions=tuple(assumptions(game)),
         guarantees=(
             *_starts(graph),
+            *(part for store in graph.stores for part in starts(store)),
             *(_quiet(game, region, name) for region, name in graph.quiets),
             *(_edge_update(game, edge) for edge in graph.edges if not game.is_chosen(edge)),
             *(part for node in game.choosers() for part in _choice(game, node)),
             *(_run_update(game, node) for node in graph.workers()),
+            *(part for store in graph.stores for part in updates(game, store)),
             *_progress(game),
         ),
     )
 
 
 def variables(graph: TokenGraph) -> tuple[Variable, ...]:
-    """The variables of an activity: inputs, running actions, tokens, complete regions."""
+    """The variables of an activity: inputs, what it writes, running actions, tokens, complete
+    regions.
+    """
     runs = [(node.run, node.origin) for node in graph.workers()]
     tokens = [(edge.variable, edge.origin) for edge in graph.edges]
     quiets = [(name, _origin(graph, region)) for region, name in graph.quiets]
     own = (Variable(n, Owner.SYSTEM, BooleanDomain(), o) for n, o in (*runs, *tokens, *quiets))
-    return (*graph.inputs, *own)
+    return (*graph.inputs, *(store.variable for store in graph.stores), *own)
 
 
 def _origin(graph: TokenGraph, region: str) -> str:

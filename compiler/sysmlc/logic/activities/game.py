@@ -68,6 +68,11 @@ class Game:
             return f.TRUE
         return node.done
 
+    def finishes(self, node: TokenNode) -> Formula:
+        """A running node is done, and nothing around it ends before it counts."""
+        going = f.both(f.var(node.run), self.done(node), self.lives(node))
+        return f.both(going, f.negate(self.ended(node.region)))
+
     def choosers(self) -> list[TokenNode]:
         """Decisions with several branches that may be open at the same time."""
         return [n for n in self.graph.nodes if _may_choose(self.graph.outgoing(n), n)]

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 
 from sysmlc.ir.components import strong_components
 from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
-from sysmlc.logic.formula import Const, variables
+from sysmlc.logic.formula import Const
 from sysmlc.values import dataclass
 
 
@@ -46,7 +46,7 @@ def _enters(edge: TokenEdge, component: Collection[str]) -> bool:
 def _loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:
     for component in _components(graph, nodes):
         exits = [edge for edge in graph.edges if _is_exit(graph, edge, component)]
-        if any(map(_is_decided_outside, exits)):
+        if any(_is_decided_outside(graph, one) for one in exits):
             yield Loop(component, tuple(exits))
         deciders = {edge.source for edge in exits}
         if deciders:
@@ -81,8 +81,13 @@ def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> 
     return is_choice and edge.source in component and edge.target not in component
 
 
-def _is_decided_outside(edge: TokenEdge) -> bool:
+def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
+    """Whether the environment opens the branch, by its own guard or by those of the others."""
     guard = edge.guard
     if guard is None or isinstance(guard.condition, Const):
         return False
-    return guard.condition is None or any(True for _ in variables(guard.condition))
+    if guard.condition is not None:
+        return graph.is_decided_outside(guard.condition)
+    others = (one.guard for one in graph.outgoing(graph.node(edge.source)))
+    stated = [one.condition for one in others if one is not None and one.condition is not None]
+    return not stated or not all(map(graph.is_own, stated))

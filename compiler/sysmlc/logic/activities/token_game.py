@@ -8,8 +8,10 @@ The interpreter is the judge of the contracts that ``activity_contract`` derives
 plays must satisfy every conjunct, and a changed run must not.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Protocol, TypeVar
 
+from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities.tokens import (
     ACTIVITY_REGION,
     Duration,
@@ -18,12 +20,20 @@ from sysmlc.logic.activities.tokens import (
     TokenEdge,
     TokenGraph,
     TokenNode,
+    Write,
 )
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.values import dataclass
 
 Inputs = Mapping[str, Literal]
-Choose = Callable[[TokenNode, Sequence[TokenEdge]], TokenEdge]
+_T = TypeVar("_T")
+
+
+class Choose(Protocol):
+    """Picks one of several branches of a node, or of the writes of one variable in one step."""
+
+    def __call__(self, node: TokenNode, options: Sequence[_T], /) -> _T:
+        """One of the options."""
 
 
 class NotSafeError(RuntimeError):
@@ -32,28 +42,48 @@ class NotSafeError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Where the tokens are: ids of the edges that hold one and of the nodes that run."""
+    """Where the tokens are: ids of the edges that hold one and of the nodes that run; and what
+    the variables are that nodes write.
+    """
 
     tokens: frozenset[str]
     running: frozenset[str]
+    stored: tuple[tuple[str, Literal], ...] = ()
 
 
-def first(node: TokenNode, branches: Sequence[TokenEdge]) -> TokenEdge:
+def first(node: TokenNode, options: Sequence[_T]) -> _T:
     """The first of several open branches."""
     del node
-    return branches[0]
+    return options[0]
 
 
 def start(graph: TokenGraph) -> State:
-    """The state in which the activity starts."""
-    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset())
+    """The state in which the activity starts; what nothing gives a value has the least."""
+    stored = (
+        (
+            one.variable.name,
+            domains.values(one.variable.domain)[0] if one.first is None else one.first,
+        )
+        for one in graph.stores
+    )
+    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset(), tuple(stored))
+
+
+def _start_again(graph: TokenGraph, old: State) -> State:
+    """The state in which the activity starts once more."""
+    afresh = {
+        one.variable.name: one.first for one in graph.stores if one.local and one.first is not None
+    }
+    stored = tuple((name, afresh.get(name, value)) for name, value in old.stored)
+    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset(), stored)
 
 
 def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
     """The value of every variable that the state decides."""
     runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
     quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
-    return runs | {edge.variable: edge.id in state.tokens for edge in graph.edges} | quiet
+    tokens = {edge.variable: edge.id in state.tokens for edge in graph.edges}
+    return runs | tokens | quiet | dict(state.stored)
 
 
 def state_of(graph: TokenGraph, valuation: Inputs) -> State:
@@ -61,6 +91,7 @@ def state_of(graph: TokenGraph, valuation: Inputs) -> State:
     return State(
         frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
         frozenset(node.id for node in graph.workers() if valuation[node.run]),
+        tuple((one.variable.name, valuation[one.variable.name]) for one in graph.stores),
     )
 
 
@@ -119,7 +150,7 @@ class _Step:
     ) -> None:
         self.graph = graph
         self.old = old
-        self.inputs = inputs
+        self.inputs = {**inputs, **dict(old.stored)}
         self.holds = holds
         self.choose = choose
         self.tokens = set(old.tokens)
@@ -127,10 +158,11 @@ class _Step:
         self.started: list[TokenNode] = []
         self.ended: list[TokenNode] = []
         self.interrupted: list[str] = []
+        self.finished: set[str] = set()
 
     def play(self) -> State:
         if finishes(self.graph, self.old):
-            return start(self.graph)
+            return _start_again(self.graph, self.old)
         self.ended = [node for node in self.graph.workers() if self._ends(node)]
         alive = [node for node in self.graph.nodes if self._is_alive(node)]
         # Taking comes before giving: a token may arrive where another has just left.
@@ -143,7 +175,19 @@ class _Step:
             self._interrupt(region)
         for node in self.started:
             self._open(node)
-        return State(frozenset(self.tokens), frozenset(self.running))
+        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored()))
+
+    def _stored(self) -> Iterator[tuple[str, Literal]]:
+        """What the variables are when all nodes that are done have written."""
+        for store, (name, value) in zip(self.graph.stores, self.old.stored, strict=True):
+            writes = [one for one in store.writes if one.node in self.finished]
+            if len(writes) > 1:
+                writes = [self.choose(self.graph.node(writes[0].node), writes)]
+            yield name, self._written(writes[0]) if writes else value
+
+    def _written(self, write: Write) -> Literal:
+        held = (value for when, value in write.values if self.holds(when, self.inputs))
+        return evaluate.value_of(next(held), self.inputs)
 
     def _ends(self, node: TokenNode) -> bool:
         runs = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
@@ -218,6 +262,7 @@ class _Step:
         if not is_running or not self._is_done(node):
             return ()
         self.running.discard(node.id)
+        self.finished.add(node.id)
         return outgoing
 
     def _is_done(self, node: TokenNode) -> bool:

@@ -17,7 +17,7 @@ from enum import StrEnum
 from functools import cached_property
 
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.formula import Formula
+from sysmlc.logic.formula import Formula, Literal, variables
 from sysmlc.values import dataclass
 
 ACTIVITY_REGION = ""
@@ -170,6 +170,35 @@ class Interruptible:
     nodes: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Write:
+    """A node writes a value when its work is done.
+
+    ``values`` are pairs of a condition and the value that it then gives, over what holds at that
+    time; one of the conditions holds, and under those in ``stops`` the value is a bound of the
+    range that it would leave. ``text`` is how the modeller writes the value.
+    """
+
+    node: str
+    text: str
+    values: tuple[tuple[Formula, Formula], ...]
+    stops: tuple[Formula, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """A variable that the activity decides: it keeps its value until a node writes another.
+
+    ``first`` is its value at the start, None when nothing says so; a ``local`` one has it again
+    each time the activity starts.
+    """
+
+    variable: Variable
+    writes: tuple[Write, ...]
+    first: Literal | None = None
+    local: bool = False
+
+
 @dataclass(frozen=True)
 class TokenGraph:
     """One activity as a token game; nodes and edges in the order of the model.
@@ -179,6 +208,7 @@ class TokenGraph:
     ``finishes`` is false when no run can end. ``rests`` are the regions that may come to rest
     before a token is at a final node (None: any of them), ``quiets`` the names of variables that
     say that a region is complete: formulas that would repeat a long condition name it instead.
+    ``stores`` are the variables that its nodes write.
     """
 
     activity: str
@@ -192,6 +222,20 @@ class TokenGraph:
     finishes: bool = True
     rests: frozenset[str] | None = None
     quiets: tuple[tuple[str, str], ...] = ()
+    stores: tuple[Store, ...] = ()
+
+    @cached_property
+    def own(self) -> frozenset[str]:
+        """Names of the variables that the nodes of the activity write."""
+        return frozenset(one.variable.name for one in self.stores)
+
+    def is_decided_outside(self, formula: Formula) -> bool:
+        """Whether the environment has a say in the condition."""
+        return any(one.name not in self.own for one in variables(formula))
+
+    def is_own(self, formula: Formula) -> bool:
+        """Whether what nodes write decides the condition, and nothing else does."""
+        return bool(variables(formula)) and not self.is_decided_outside(formula)
 
     @cached_property
     def _nodes(self) -> dict[str, TokenNode]:

@@ -1,0 +1,293 @@
+"""The variables that an activity writes and its contract follows; the others are told (SM544)."""
+
+from collections.abc import Iterable, Iterator
+from itertools import product
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic import formula as f
+from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
+from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
+from sysmlc.logic.expressions.declared import Feature
+from sysmlc.logic.expressions.elaborate import ElaborationError
+from sysmlc.logic.formula import Formula
+from sysmlc.logic.machines.path import saturated
+from sysmlc.logic.simplify import substitute
+from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_written import Assigned, assigned
+from sysmlc.values import dataclass, replace
+
+_Cases = tuple[tuple[Formula, Formula], ...]
+_Way = tuple[Formula, Formula, bool]
+
+
+def _counting(body: str) -> str:
+    return f"""\
+Package p "Plant"
+  Class c "Cell" role="block"
+    Property n "full"
+      -> typed-by bool
+    Activity a "work"
+      Control i subkind="initial"
+      Control m subkind="merge"
+      Action w "fill" subkind="opaque" body="{body}"
+      Control d "enough" subkind="decision"
+      Control e subkind="final"
+      ControlFlow im
+        -> flow-source i
+        -> flow-target m
+      ControlFlow mw
+        -> flow-source m
+        -> flow-target w
+      ControlFlow wd
+        -> flow-source w
+        -> flow-target d
+      ControlFlow dm guard="not full"
+        -> flow-source d
+        -> flow-target m
+      ControlFlow de guard="full"
+        -> flow-source d
+        -> flow-target e
+  DataType bool "Boolean"
+"""
+
+
+WRITTEN = rule(
+    "SM544",
+    "guard-reads-what-is-written",
+    Severity.INFO,
+    "'{activity}' reads '{name}', which {writers} {verb}, but {reason}: the contract leaves its "
+    "value to the environment",
+    why="The contract follows what actions assign to the activity's own features and those of "
+    "its block, as far as they have finitely many values, are written nowhere else, and get values "
+    "that can be read. Else it holds for all values, and has ways that are never taken.",
+    help="give an Integer a range (constraint 0 <= {name} <= 9), write the value as an expression "
+    "over known properties, or say what becomes of it in a requirement",
+    wrong=_counting("full := measure()"),
+    right=_counting("full := true"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Unfollowed:
+    """A feature that the activity reads and writes, and why its contract does not follow it."""
+
+    feature: Element
+    reason: str
+    writers: tuple[str, ...]
+
+
+def follow(
+    graph: Graph, activity: Element, tokens: TokenGraph, scope: Scope
+) -> tuple[TokenGraph, list[Unfollowed]]:
+    """The token graph with the variables that its nodes write; and what it reads but cannot
+    follow.
+    """
+    found = _Following(graph, activity, tokens, scope)
+    if not found.assigned:
+        return tokens, []
+    return found.followed(), found.unfollowed()
+
+
+def report_unfollowed(
+    graph: Graph, activity: Element, unfollowed: Iterable[Unfollowed], sink: Sink
+) -> None:
+    """Report each feature whose values are left to the environment although actions write it."""
+    for one in unfollowed:
+        sink.report(
+            WRITTEN,
+            graph.subject(one.feature),
+            activity=activity.name,
+            name=one.feature.name,
+            writers=" and ".join(one.writers),
+            verb="writes" if len(one.writers) == 1 else "write",
+            reason=one.reason,
+        )
+
+
+class _Following:
+    """Features that actions of one activity assign, by the names of their variables."""
+
+    def __init__(self, graph: Graph, activity: Element, tokens: TokenGraph, scope: Scope) -> None:
+        self.graph, self.activity, self.tokens, self.scope = graph, activity, tokens, scope
+        self.nodes = {node.id: node for node in tokens.workers()}
+        self.features: dict[str, Feature] = {}
+        self.assigned: dict[str, list[Assigned]] = {}
+        self.writes: dict[str, list[Write]] = {}
+        self.refused: dict[str, str] = {}
+        self.read: set[str] = set()
+        for action in graph.subtree(activity):
+            if action.kind is Kind.ACTION and action.id in self.nodes:
+                self._note(list(assigned(graph, action)))
+
+    def _note(self, statements: list[Assigned]) -> None:
+        """Remember what an action assigns, and the value that it leaves in each variable."""
+        left: dict[str, _Cases] = {}
+        stops: dict[str, tuple[Formula, ...]] = {}
+        for one in statements:
+            feature = self.scope.named(one.name)
+            if feature is None:
+                continue
+            name = feature.variable
+            self.features[name] = feature
+            self.assigned.setdefault(name, []).append(one)
+            ways = self._cases(one, feature, left)
+            if ways:
+                left[name] = tuple((when, value) for when, value, _ in ways)
+                stops[name] = tuple(when for when, _, is_bound in ways if is_bound)
+            else:
+                left.pop(name, None)
+                what = one.text or "its value"
+                self.refused.setdefault(name, f"'{what}' is not known" if one.text else _UNKNOWN)
+        texts = {one.name: one.text for one in statements}
+        for name, cases in left.items():
+            node = statements[0].action.id
+            text = texts[self.assigned[name][-1].name]
+            self.writes.setdefault(name, []).append(Write(node, text, cases, stops[name]))
+
+    def _cases(self, one: Assigned, feature: Feature, left: dict[str, _Cases]) -> list[_Way]:
+        """The values that an assignment gives, each with its condition and whether it is a bound
+        that it would pass; none when the value is unknown.
+        """
+        if one.value is None or feature.domain is None:
+            return []
+        try:
+            found = self.scope.value(one.value, feature.domain)
+        except ElaborationError:
+            return []
+        after = (way for t in found.terms for way in _after(t.condition, t.value, left))
+        ways: list[_Way] = []
+        for case, value in after:
+            ways += _within(case, value, feature.domain, found.domain)
+        return [way for way in ways if way[0] != f.FALSE]
+
+    # -- which of them are followed ------------------------------------------------------------
+
+    def followed(self) -> TokenGraph:
+        """The token graph with a store for each that is followed."""
+        names = self._wanted()
+        stores = tuple(self._store(name) for name in self.writes if name in names)
+        own = {one.variable.name for one in stores}
+        self.read = self._read_by_tokens() | self._read_by_values(own)
+        known = {one.name: one for one in self.tokens.inputs}
+        more = (self.scope.variable(name) for name in sorted(self.read - known.keys() - own))
+        inputs = (*known.values(), *(one for one in more if one is not None))
+        inputs = tuple(one for one in inputs if one.name not in own)
+        return replace(self.tokens, inputs=inputs, stores=stores)
+
+    def _wanted(self) -> set[str]:
+        """What guards and other values read, and what belongs to the block: others see it."""
+        wanted = {name for name in self.writes if self._is_seen(name)} | self._read_by_tokens()
+        while True:
+            able = {name for name in self.writes if name in wanted and not self._refusal(name)}
+            more = self._read_by_values(able)
+            if more <= wanted:
+                return able
+            wanted |= more
+
+    def _read_by_values(self, names: Iterable[str]) -> set[str]:
+        writes = [write for name in names for write in self.writes[name]]
+        formulas = [part for write in writes for pair in write.values for part in pair]
+        return {variable.name for one in formulas for variable in f.variables(one)}
+
+    def _read_by_tokens(self) -> set[str]:
+        guards = (edge.guard.condition for edge in self.tokens.edges if edge.guard is not None)
+        formulas = [*guards, *(node.done for node in self.tokens.nodes)]
+        return {v.name for one in formulas if one is not None for v in f.variables(one)}
+
+    def _is_seen(self, name: str) -> bool:
+        """Whether others than the activity see it."""
+        feature = self.features[name]
+        return feature.direction == "out" or not self._is_local(feature)
+
+    def _is_local(self, feature: Feature) -> bool:
+        owner = self.graph.owner(feature.element)
+        return owner is not None and owner.kind in query.BEHAVIORS
+
+    def _refusal(self, name: str) -> str:
+        """Why the contract cannot follow the variable; empty when it can."""
+        feature = self.features[name]
+        if feature.domain is None:
+            return "it has not finitely many values"
+        if feature.is_assumed:
+            return "it has no range"
+        if feature.direction in ("in", "inout") or feature.constant:
+            return "others decide it too"
+        if self.scope.is_of_another(name):
+            return "it belongs to another object"
+        if name in self.refused:
+            return self.refused[name]
+        other = None if self._is_local(feature) else _writer_elsewhere(self.graph, self, feature)
+        return f"'{other.name or other.subkind}' writes it too" if other is not None else ""
+
+    def _store(self, name: str) -> Store:
+        feature = self.features[name]
+        assert feature.domain is not None
+        variable = Variable(name, Owner.SYSTEM, feature.domain, feature.element.id)
+        local = self._is_local(feature)
+        return Store(variable, tuple(self.writes[name]), feature.default, local)
+
+    def unfollowed(self) -> list[Unfollowed]:
+        """What is read and written and not followed, with the reason."""
+        found = []
+        for name, writes in self.assigned.items():
+            reason = self._refusal(name) if name in self.read else ""
+            if reason:
+                labels = dict.fromkeys(self.nodes[one.action.id].label for one in writes)
+                found.append(Unfollowed(self.features[name].element, reason, tuple(labels)))
+        return found
+
+
+def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
+    if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
+        yield from saturated(case, value, domain, spread)
+    else:
+        yield case, value, False
+
+
+_UNKNOWN = "the value that it gets is not known"
+
+
+def _after(
+    condition: Formula, value: Formula, left: dict[str, _Cases]
+) -> Iterator[tuple[Formula, Formula]]:
+    """A value behind earlier assignments of the same action, over what held before them."""
+    names = [
+        name
+        for name in left
+        if any(name == one.name for part in (condition, value) for one in f.variables(part))
+    ]
+    for combination in product(*(left[name] for name in names)):
+        given = {name: case[1] for name, case in zip(names, combination, strict=True)}
+        when = f.both(*(case[0] for case in combination), substitute(condition, given))
+        if when != f.FALSE:
+            yield when, substitute(value, given)
+
+
+def _writer_elsewhere(graph: Graph, own: _Following, feature: Feature) -> Element | None:
+    """Another behaviour of the block, or of what specialises it, that writes the feature."""
+    owner = graph.owner(feature.element)
+    inside = {one.id for one in graph.subtree(own.activity)}
+    name = feature.element.name
+    for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
+        if one.id in inside or not _may_write(graph, one, feature.element):
+            continue
+        context = _context(graph, one)
+        family = () if context is None else (context, *query.generals(graph, context))
+        if owner in family and any(each.name == name for each in assigned(graph, one)):
+            return one
+    return None
+
+
+def _may_write(graph: Graph, one: Element, feature: Element) -> bool:
+    body = one.attrs.get("body")
+    return (isinstance(body, str) and feature.name in body) or (
+        one.subkind == "write" and graph.target(one, Edge.CALLS) is feature
+    )
+
+
+def _context(graph: Graph, behaviour: Element) -> Element | None:
+    for above in graph.ancestors(behaviour):
+        if above.kind in query.CLASSIFIERS and above.kind not in query.BEHAVIORS:
+            return above
+    return None

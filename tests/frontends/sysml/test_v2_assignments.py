@@ -1,0 +1,193 @@
+"""What actions assign is in the contract of their activity, as in SysML v1; the rest is told."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.diagnostics import Sink, catalogue
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.contract import Class, Contract, Owner
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+from sysmlc.synthesis.check import check
+from sysmlc.synthesis.decide import Options
+
+pipeline.load("contracts")
+
+V2 = """
+package P {
+    private import ScalarValues::*;
+    part def Cell {
+        attribute total : Integer := 0;
+        assert constraint { 0 <= total and total <= 9 }
+        action work {
+            attribute n : Integer default = 0;
+            assert constraint { 0 <= n and n <= 3 }
+            first start; then again; merge again;
+            then action fill;
+            then action count assign n := n + 1;
+            then action add assign total := total + n;
+            then enough; decide enough; if n < 3 then again; else done;
+        }
+    }
+}
+"""
+V1 = """\
+Package p "P"
+  Class c "Cell" role="block"
+    Property t "total" default=0
+      -> typed-by int
+    Constraint ct body="0 <= total and total <= 9"
+    Activity a "work"
+      Property k "n" default=0
+        -> typed-by int
+      Constraint ck body="0 <= n and n <= 3"
+      Control i "start" subkind="initial"
+      Control m "again" subkind="merge"
+      Action f "fill" subkind="opaque"
+      Action w "count" subkind="opaque" body="n := n + 1"
+      Action d "add" subkind="opaque" body="total := total + n"
+      Control q "enough" subkind="decision"
+      Control e "done" subkind="final"
+FLOWS  DataType int "Integer"
+"""
+_WAYS = ("i m", "m f", "f w", "w d", "d q", "q m n < 3", "q e else")
+
+
+def v1(text=V1):
+    flows = ""
+    for number, way in enumerate(_WAYS):
+        source, target, *guard = way.split(" ", 2)
+        shown = f' guard="{guard[0]}"' if guard else ""
+        flows += f"      ControlFlow f{number}{shown}\n"
+        flows += f"        -> flow-source {source}\n        -> flow-target {target}\n"
+    graph, sink = parse_text(text.replace("FLOWS", flows)), Sink()
+    pipeline.run(graph, sink)
+    return graph, sink
+
+
+def v2(text=V2):
+    reading = read(text)
+    pipeline.run(reading.graph, reading.sink)
+    return reading.graph, reading.sink
+
+
+def contract(graph):
+    return next(one for one in graph.derived(Contract) if one.component == "P::Cell.work")
+
+
+def said(made):
+    """What the contract says of the variables that actions assign."""
+    names = {one.name for one in made.variables if one.name in ("n", "total")}
+    return [
+        one.text
+        for one in made.guarantees
+        if one.class_ is not Class.LIVENESS and any(f"'{name}'" in one.text for name in names)
+    ]
+
+
+def test_what_actions_assign_is_decided_by_the_component():
+    made = contract(v2()[0])
+    assert [one.name for one in made.variables if one.owner is Owner.SYSTEM][:2] == ["n", "total"]
+    assert said(made) == [
+        "At the start 'n' is 0.",
+        "At the start 'total' is 0.",
+        "When action 'count' is done and n>2, 'n' becomes 3.",
+        "When action 'count' is done and n<=2, 'n' becomes n + 1.",
+        "'n' is 0 whenever activity 'work' starts.",
+        "'n' keeps its value until an action writes another.",
+        "When action 'add' is done and total + n>9, 'total' becomes 9.",
+        "When action 'add' is done and total + n<=9, 'total' becomes total + n.",
+        "'total' keeps its value until an action writes another.",
+    ]
+
+
+def test_a_loop_that_a_counter_ends_needs_no_assumption():
+    made = contract(v2()[0])
+    assert [one.text for one in made.assumptions] == [
+        f"Whenever action '{name}' runs, the environment ends it sooner or later."
+        for name in ("fill", "count", "add")
+    ]
+    assert decided(made, v2()[0]) is True
+
+
+def decided(made, graph):
+    (found,) = check([made], [made], lambda id: graph.subject(graph[id]), Sink(), Options())
+    return found.verdict.is_realizable
+
+
+def test_a_loop_that_its_counter_never_ends_cannot_be_finished():
+    graph, _ = v2(V2.replace("n := n + 1", "n := 0"))
+    assert decided(contract(graph), graph) is False
+
+
+def test_both_notations_say_the_same():
+    shown = [
+        [
+            [(one.name, one.owner, one.domain) for one in made.variables],
+            [(one.class_, print_formula(one.formula)) for one in made.assumptions],
+            [(one.class_, print_formula(one.formula), one.text) for one in made.guarantees],
+        ]
+        for made in (contract(v1()[0]), contract(v2()[0]))
+    ]
+    assert shown[0] == shown[1]
+
+
+def test_only_what_can_leave_its_range_is_told():
+    """The loop ends before the counter does; the total goes on in the next run."""
+    assert [one.message for one in v2()[1]] == [
+        "action 'add' can take 'total' out of its range; it stops at the bound"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("assert constraint { 0 <= n and n <= 3 }", "", "it has no range"),
+        ("n := n + 1", "n := measure(n)", "'measure(n)' is not known"),
+    ],
+)
+def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
+    graph, sink = v2(V2.replace(old, new))
+    assert next(one.message for one in sink if one.rule.code == "SM544") == (
+        f"'work' reads 'n', which action 'count' writes, but {reason}: the contract leaves its "
+        "value to the environment"
+    )
+    owners = {one.name: one.owner for one in contract(graph).variables}
+    assert owners["n"] is Owner.ENVIRONMENT
+
+
+def test_what_two_behaviours_write_is_nobodys_own():
+    other = "action reset { first start; then action clear assign total := 0; then done; }"
+    text = V2.replace("action work {", f"{other}\n        action work {{")
+    graph, sink = v2(text.replace("if n < 3", "if total < 9"))
+    assert [one.message for one in sink if one.rule.code == "SM544"] == [
+        "'work' reads 'total', which action 'add' writes, but 'clear' writes it too: the contract "
+        "leaves its value to the environment"
+    ]
+    assert "total" not in [
+        one.name for one in contract(graph).variables if one.owner is Owner.SYSTEM
+    ]
+
+
+WRITES = V1.replace(
+    'Action w "count" subkind="opaque" body="n := n + 1"',
+    """Action w "count" subkind="write"
+        -> calls k
+        Pin wo "object" direction="in" subkind="object"
+        Pin wv "value" direction="in" subkind="value" value=3""",
+)
+
+
+def test_a_structural_feature_gets_the_value_of_its_pin():
+    graph, sink = v1(WRITES)
+    texts = said(contract(graph))
+    assert "When action 'count' is done, 'n' becomes 3." in texts
+    assert "SM544" not in [one.rule.code for one in sink]
+
+
+def test_the_rule_reports_its_wrong_model_and_not_its_right_one():
+    rule = catalogue()["SM544"]
+    for text, expected in ((rule.wrong, True), (rule.right, False)):
+        graph, sink = parse_text(text), Sink()
+        pipeline.run(graph, sink, verify_each=True)
+        assert ("SM544" in [one.rule.code for one in sink]) is expected
