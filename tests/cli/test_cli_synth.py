@@ -225,7 +225,7 @@ def test_what_gr1c_cannot_list_is_said_and_not_written(here):
 
 def test_a_limit_in_the_making_of_a_machine_leaves_no_file(here, monkeypatch):
     from sysmlc.synthesis import synthesise
-    from sysmlc.synthesis.bdd.manager import LimitError
+    from sysmlc.synthesis.bdd.limits import LimitError
 
     def beyond(*given):
         raise LimitError("of CPU time", "1 s")

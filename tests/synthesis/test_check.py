@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.check import BREAKS, check
 from sysmlc.synthesis.decide import Options
 

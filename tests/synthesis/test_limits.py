@@ -2,6 +2,7 @@
 
 import gc
 import signal
+import weakref
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,12 +11,15 @@ import pytest
 from click.testing import CliRunner
 
 from sysmlc.cli.group import sysmlc
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import LimitError, Limits, Manager
+from sysmlc.synthesis import decide as deciding
 from sysmlc.synthesis.algebra.relations import refinement_failures
 from sysmlc.synthesis.bdd import inside
+from sysmlc.synthesis.bdd.limits import Progress
+from sysmlc.synthesis.decide import Options, decide
 from sysmlc.synthesis.games.game import make_game
 
 RUNAWAY = """{
@@ -126,3 +130,23 @@ def test_an_unknown_library_is_left_alone() -> None:
     library = SimpleNamespace(__file__="no library.so")
 
     assert not inside.watch(library, Other(), Other())  # type: ignore[arg-type]
+
+
+def test_what_was_given_up_leaves_no_circle_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A circle is left to the collector, which may take the manager away before its diagrams."""
+    made: list[weakref.ref[Manager]] = []
+
+    def noted(engine: str, limits: Limits, progress: Progress) -> Manager:
+        manager = Manager(engine, limits, progress)
+        made.append(weakref.ref(manager))
+        return manager
+
+    monkeypatch.setattr(deciding, "Manager", noted)
+    gc.disable()
+    try:
+        options = Options("cudd", Limits(nodes=50_000))
+        verdict = decide(runaway(), lambda origin: Subject(), Sink(), options)
+        assert verdict.is_realizable is None
+        assert [one() for one in made] == [None]
+    finally:
+        gc.enable()

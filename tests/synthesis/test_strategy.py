@@ -11,7 +11,7 @@ from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import TRUE, Const, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import LimitError, Manager, make_game, solve, synthesise
-from sysmlc.synthesis.bdd.manager import TooLargeError
+from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.controllers.conditions import machine as written
 from sysmlc.synthesis.controllers.listing import listed
 from sysmlc.synthesis.controllers.mealy import Move

@@ -4,7 +4,8 @@
 ``dd`` is imported when a ``Manager`` is made, not before.
 """
 
-from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, Node
+from sysmlc.synthesis.bdd.limits import LimitError, Limits
+from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, Part, make_game
 from sysmlc.synthesis.games.layers import Layer

@@ -8,7 +8,7 @@ from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.lints import lint

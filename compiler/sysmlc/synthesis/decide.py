@@ -7,7 +7,8 @@ from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, Progress
+from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.arena import Arena
 from sysmlc.synthesis.games.derived import without_derived
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers import gr1c_text, machine_text, table_text
 from sysmlc.synthesis.controllers.closed import Controller
 from sysmlc.synthesis.controllers.mealy import Machine

@@ -5,7 +5,8 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis.algebra.viewpoints import conjunction
-from sysmlc.synthesis.bdd.manager import LimitError, Manager
+from sysmlc.synthesis.bdd.limits import LimitError
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core

@@ -7,7 +7,8 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.bdd.manager import LimitError, Limits, Manager, TooLargeError
+from sysmlc.synthesis.bdd.limits import LimitError, Limits, TooLargeError
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.controllers.closed import Controller
 from sysmlc.synthesis.controllers.conditions import machine
 from sysmlc.synthesis.controllers.listing import listed

@@ -11,7 +11,7 @@ from sysmlc.synthesis.algebra.composition import Composition, DriverError, compo
 from sysmlc.synthesis.algebra.discharge import Open
 from sysmlc.synthesis.algebra.systems import DomainError
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.together_rules import BREAK, CIRCLE, CONTRADICT, LOST, NOT_COMPOSED, OPEN

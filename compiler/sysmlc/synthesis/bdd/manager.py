@@ -7,7 +7,7 @@ libraries do differently, and what may run for long, are methods of ``Manager``.
 import logging
 import time
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from types import FrameType, ModuleType
@@ -35,9 +35,8 @@ _START = 1 << 26
 """Bytes that CUDD is told to expect: it sets aside and clears a share of them at once, which for
 8 GiB takes longer than most games."""
 REORDER_AT = 40_000
-"""Nodes from which on a better order of bits is worth the search: sooner, what is sifted are the
-parts of a relation, and an order that suits them can be hopeless for the game (five by five cells
-with four robots: 3 s from 25,000 nodes on, no end from 20,000 on)."""
+"""Nodes from which on a better order of bits is worth the search, where the one that variables
+come in is not known to be good (``calm``)."""
 _CALM = 1_000_000
 """The same where the order is known to be good."""
 _CACHE = 1 << 14
@@ -207,7 +206,7 @@ class Manager:
                 yield
         finally:
             self._ceiling = before
-            if isinstance(self._end, TooLargeError):
+            if self._end is not None and isinstance(self._end(), TooLargeError):
                 self._end = None
 
     def sift(self) -> None:

@@ -25,7 +25,8 @@ from sysmlc.logic.formula import (
 )
 from sysmlc.logic.formula import variables as variables_of
 from sysmlc.synthesis.bdd.choice import least
-from sysmlc.synthesis.bdd.manager import Node, TooLargeError
+from sysmlc.synthesis.bdd.limits import TooLargeError
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.listing import Answer, Draft
 from sysmlc.synthesis.controllers.mealy import Machine, Move

@@ -12,7 +12,7 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Vari
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Literal
 from sysmlc.output import json_text
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers.closed import Controller
 
 VERSION = 1

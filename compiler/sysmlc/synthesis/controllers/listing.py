@@ -9,7 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from sysmlc.logic import domains
 from sysmlc.logic.formula import Const, Formula
-from sysmlc.synthesis.bdd.manager import Node, TooLargeError
+from sysmlc.synthesis.bdd.limits import TooLargeError
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.controllers.memory import Reached, gives, steps
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.values import dataclass

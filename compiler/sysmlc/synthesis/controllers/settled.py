@@ -4,7 +4,8 @@ The library looks for a better order of bits when diagrams grow, at moments that
 What is written must not: a table is made again in the order that only the variables decide.
 """
 
-from sysmlc.synthesis.bdd.manager import LimitError, Manager
+from sysmlc.synthesis.bdd.limits import LimitError
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.closed import nodes_of
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.bdd.manager import Node, TooLargeError
+from sysmlc.synthesis.bdd.limits import TooLargeError
+from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import width
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.values import dataclass

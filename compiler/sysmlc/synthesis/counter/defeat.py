@@ -5,7 +5,8 @@ from collections.abc import Iterable, Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
-from sysmlc.synthesis.bdd.manager import LimitError, Manager
+from sysmlc.synthesis.bdd.limits import LimitError
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.counter.environment import Environment
 from sysmlc.synthesis.counter.machine import Counter, counter
 from sysmlc.synthesis.counter.ranks import lost

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.counter.environment import Bits, Environment
 from sysmlc.values import dataclass, replace
 

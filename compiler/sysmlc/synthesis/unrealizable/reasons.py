@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import is_plain
-from sysmlc.synthesis.bdd.manager import LimitError
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
 from sysmlc.synthesis.unrealizable.helpful import helpful_assumptions
