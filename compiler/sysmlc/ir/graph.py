@@ -251,11 +251,14 @@ class Graph:
         for source, target in zip(sources, targets, strict=True):
             if source is None or target is None:
                 continue
-            # An edge that is there already may be noted twice: the way back has it once.
-            if drawn is not None and out.setdefault(source.id, target) is target:
-                drawn += (source, target)
-            else:
+            known = None if drawn is None else out.setdefault(source.id, target)
+            if drawn is None or not (known is target or isinstance(known, Element)):
                 self._link(edge, source, target)
+                continue
+            # An edge that is there already may be noted twice: the way back has it once.
+            drawn += (source, target)
+            if known is not target:
+                out[source.id] = [known, target]
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
         """Remove an edge if it is there. Use ``move`` for ownership."""

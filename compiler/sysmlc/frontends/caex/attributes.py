@@ -39,7 +39,7 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         default_value=default if default != value else None,
         semantics=_semantics(node),
     )
-    declared = _attribute_type(context, node, document)
+    declared = mirrors.named_class(context, node, document)
     fitting.know(context, document, node.row, data_type)
     if given:
         element.attrs["default"] = fitting.value(context, node, given, data_type, declared)
@@ -54,16 +54,6 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         element.id, structure or declared, document, node.row
     )
     return structure
-
-
-def _attribute_type(context: Context, node: Node, document: Document) -> Type | None:
-    path = node.attributes.get("RefAttributeType", "").strip()
-    if not path:
-        return None
-    if mirrors.is_mirror(context, node):
-        context.mirrors.append((document, node))
-        return None
-    return context.type(path, Family.ATTRIBUTE, document, node)
 
 
 def redefine(context: Context, owner: Type, node: Node, element: Element) -> None:

@@ -23,7 +23,7 @@ def interface(context: Context, owner: Type, top: Node, document: Document) -> N
 
 def _interface(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
     element = context.add(Kind.PORT, node, document, owner.id)
-    declared = interface_class(context, node, document) or _inherited(owner, node)
+    declared = mirrors.named_class(context, node, document) or _inherited(owner, node)
     attributes.redefine(context, owner, node, element)
     said = ports.said_of(context, node)
     element.attrs.update(said)
@@ -46,17 +46,6 @@ def _inherited(owner: Type, node: Node) -> Type | None:
     """The class of the interface that it overrides, where it names none itself."""
     known = owner.base.find(node.tag, node.name) if owner.base else None
     return known.type if known and not node.attributes.get("RefBaseClassPath", "").strip() else None
-
-
-def interface_class(context: Context, node: Node, document: Document) -> Type | None:
-    """The interface class that an external interface names."""
-    path = node.attributes.get("RefBaseClassPath", "").strip()
-    if not path:
-        return None
-    if mirrors.is_mirror(context, node):
-        context.mirrors.append((document, node))
-        return None
-    return context.type(path, Family.INTERFACE, document, node)
 
 
 def _own_interface(

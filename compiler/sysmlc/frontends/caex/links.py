@@ -95,7 +95,11 @@ class Links:
             types = [type.id for type in declared.chain() if type.id in self._drawing]
             self._drawing_above[declared] = types
         key = _key(ends, holder) if types else None
-        return key is not None and any((id, key) in self._drawn for id in types)
+        if key is not None:
+            for id in types:
+                if (id, key) in self._drawn:
+                    return True
+        return False
 
     def _connector(self, row: int, document: Document, holder: Site, ends: list[End]) -> None:
         top = holder.root
@@ -204,8 +208,16 @@ def _standing_for(site: Site) -> str:
 
 def _key(ends: list[End], top: Site) -> _Ends | None:
     """The ends as seen from above; None when one of them is elsewhere."""
-    one, other = ends
-    parts, other_parts = one.site.parts_below(top), other.site.parts_below(top)
-    if parts is None or other_parts is None:
-        return None
-    return frozenset(((*parts, one.port), (*other_parts, other.port)))
+    one, other = _way(ends[0], top), _way(ends[1], top)
+    return None if one is None or other is None else frozenset((one, other))
+
+
+def _way(end: End, top: Site) -> tuple[str, ...] | None:
+    """The parts and the port that lead to an end; most ends are in a part, or at the top."""
+    site = end.site
+    if site.parent is top:
+        return site.part, end.port
+    if site is top:
+        return (end.port,)
+    parts = site.parts_below(top)
+    return None if parts is None else (*parts, end.port)

@@ -10,7 +10,7 @@ from sysmlc.frontends.caex import (
     ports,
     special,
 )
-from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.context import Context, reference_of
 from sysmlc.frontends.caex.document import Node
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.libraries import mark
@@ -22,12 +22,6 @@ from sysmlc.ir import Edge, Element, Kind
 
 REPEATED = frozenset({"Constraint", "RefSemantic"})
 """What a repeated attribute holds that says what its class says."""
-
-_CLASSES = {
-    "Attribute": ("RefAttributeType", Family.ATTRIBUTE),
-    "ExternalInterface": ("RefBaseClassPath", Family.INTERFACE),
-}
-"""Members of internal elements: the attribute that names their class."""
 
 _Path = tuple[str, ...]
 """Ids of the features that an inner one lies in, outermost first."""
@@ -111,10 +105,9 @@ def _attribute(context: Context, site: Site, node: Node) -> None:
 
 def check_class(context: Context, node: Node, site: Site) -> None:
     """Note that a class leads nowhere which an instance names; that of its class counts."""
-    attribute, family = _CLASSES[node.tag]
-    path = node.attributes.get(attribute, "").strip()
+    path = reference_of(node)
     if path and not mirrors.is_mirror(context, node):
-        context.type(path, family, site.document, node)
+        context.type(path, mirrors.FAMILIES[node.tag], site.document, node)
 
 
 def _value(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context, reference_of
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element
 
 _REFERENCE = {
@@ -12,6 +14,9 @@ _REFERENCE = {
     "ExternalInterface": "RefBaseClassPath",
     "Attribute": "RefAttributeType",
 }
+FAMILIES = {"Attribute": Family.ATTRIBUTE, "ExternalInterface": Family.INTERFACE}
+"""Families of the classes that members of internal elements name."""
+
 _GUID = 36
 
 
@@ -31,6 +36,17 @@ def is_mirror(context: Context, node: Node) -> bool:
 def _is_dotted(context: Context, text: str) -> bool:
     """Whether a text is ``ID.name``: meant as a mirror, but names are parted by ``/`` (rule 12)."""
     return "." in text and is_reference(context, text.partition(".")[0])
+
+
+def named_class(context: Context, node: Node, document: Document) -> Type | None:
+    """The class that an attribute or external interface names; what mirrors another is noted."""
+    path = reference_of(node)
+    if not path:
+        return None
+    if is_mirror(context, node):
+        context.mirrors.append((document, node))
+        return None
+    return context.type(path, FAMILIES[node.tag], document, node)
 
 
 def is_reference(context: Context, id: str) -> bool:

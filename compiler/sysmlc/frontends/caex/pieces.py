@@ -16,6 +16,7 @@ from typing import Any
 from sysmlc.frontends.caex import wellformed
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.tags import (
+    UNLIKE,
     NotPlainError,
     Reader,
     Tag,
@@ -34,7 +35,7 @@ _DECLARATION = re.compile(rb"<\?xml\s.*?\?>", re.DOTALL)
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*(?<!/)>(.*)""", re.DOTALL)
 
-_FOLDED_STARTS = "".join({name[0] for name in FOLDED})
+_FOLDED_STARTS = tuple({name[0]: None for name in FOLDED})
 """What the names of folded elements start with: no others that are frequent do."""
 
 _SILENT, _LISTENING, _FOLDED = range(3)
@@ -137,7 +138,8 @@ def _fill(document: Document, pieces: Iterator[str], reader: Reader, ended: well
     push, pop = stack.append, stack.pop
     ordinal, row, state, piece = 0, 1, _LISTENING, ""
     for piece in pieces:
-        if piece[0] == "/":
+        first = piece[0]
+        if first == "/":
             above = pop()
             if tags[above] != ended[piece]:
                 raise NotPlainError
@@ -146,17 +148,16 @@ def _fill(document: Document, pieces: Iterator[str], reader: Reader, ended: well
             continue
         ordinal += 1
         above = stack[-1]
-        tag, id = known(piece), ""
-        if tag is None:
-            if piece[0] in _FOLDED_STARTS and not state:
-                name, sign, said = piece.partition(">")
-                column = texts.get(name)
-                if column is not None and sign and above not in column:
-                    column[above] = without_references(said) if "&" in said else said
-                    if ended[next(pieces)] != name:
-                        raise NotPlainError
-                    continue
-            tag, id = read(piece, row)
+        if first in _FOLDED_STARTS and not state:
+            name, sign, said = piece.partition(">")
+            column = texts.get(name)
+            if column is not None and sign and above not in column:
+                column[above] = without_references(said) if "&" in said else said
+                if ended[next(pieces)] != name:
+                    raise NotPlainError
+                continue
+        found = None if first == UNLIKE else known(piece)
+        tag, id = read(piece, row) if found is None else (found, "")
         name, values, is_empty, has_text, alike = tag
         if has_text or state:
             state = _listen(texts, tag, piece, above, row)

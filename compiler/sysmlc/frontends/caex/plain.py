@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import documents, fitting, measures, mirrors, ports, sameness, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.types import Member, Missing, Type
+from sysmlc.frontends.caex.types import Missing, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
@@ -90,7 +90,7 @@ class Plain:
             self._targets.append(shape.target)
         else:
             measures.refer(self._context, _TYPED_BY, made, data_type, made.ordinal)
-        owner.members["Attribute", name] = Member(made.id, shape.type, document, row)
+        owner.members["Attribute", name] = member((made.id, shape.type, document, row))
         return True
 
     def named(self, row: int) -> _Named:
@@ -161,7 +161,7 @@ class Plain:
         if shape.target is not None:
             self._sources.append(made)
             self._targets.append(shape.target)
-        owner.members["ExternalInterface", name] = Member(made.id, shape.type, document, row)
+        owner.members["ExternalInterface", name] = member((made.id, shape.type, document, row))
         inside = document.ends[row] - row - 1
         if inside:
             made.attrs = self._said(row)

@@ -1,5 +1,7 @@
 """What the sides of internal links lead to: interfaces, in every style that files have."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from sysmlc.frontends.caex import rules
@@ -17,6 +19,9 @@ class End(NamedTuple):
 
     port: str
     site: Site
+
+
+_end: Callable[[tuple[str, Site]], End] = partial(tuple.__new__, End)
 
 
 class Problem(NamedTuple):
@@ -57,7 +62,7 @@ class Sides:
             site = rows.get(above)
         if site is None:
             return None
-        found = self._direct[text] = End(port, site)
+        found = self._direct[text] = _end((port, site))
         return found
 
     def end(self, node: Node, document: Document, side: str) -> End | Problem | None:

@@ -9,6 +9,10 @@ NO_ROWS: list[int] = []
 """What stands for the rows of a site when they are lowered: a list of its own costs as much."""
 
 
+NO_IDS: list[tuple[AttrValue, ...]] = []
+"""What stands for the IDs of a site when they are kept."""
+
+
 class Site:
     """One internal element, or the class at the top of some, and where it stands.
 

@@ -7,9 +7,9 @@ from sysmlc.frontends.caex import groups, members, mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import instance, own
-from sysmlc.frontends.caex.site import NO_ROWS, Site
+from sysmlc.frontends.caex.site import NO_IDS, NO_ROWS, Site
 from sysmlc.frontends.caex.swift import Swift
-from sysmlc.frontends.caex.types import Member, Type
+from sysmlc.frontends.caex.types import Member, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
@@ -175,7 +175,7 @@ class Sites:
             element.attrs["aggregation"] = "composite"
         key = ("InternalElement", site.name)
         inherited = owner.base.find(*key) if owner.base else None
-        owner.members[key] = Member(element.id, site.declared, site.document, site.row)
+        owner.members[key] = member((element.id, site.declared, site.document, site.row))
         site.part, site.part_made = element.id, element
         if inherited is not None:
             self._context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
@@ -188,15 +188,14 @@ class Sites:
             self._mirror(site)
         for site in self._showing:
             groups.show(self._context, site)
-        parts = [site for site in self._all if site.part and not site.is_known]
-        self._tie(Edge.TYPED_BY, parts, list(map(self.part, parts)))
-        instances = [site for site in self._all if site.instance]
-        self._tie(Edge.INSTANCE_OF, instances, list(map(self.instance, instances)))
-        for site in self._all:
-            if site.interface_ids:
-                one = self.instance(site) or (None if site.is_known else self.part(site))
-                if one is not None:
-                    one.attrs["interface_ids"] = tuple(site.interface_ids)
+        sites = [site for site in self._all if site.instance]
+        instances = list(map(self.instance, sites))
+        self._tie(Edge.INSTANCE_OF, sites, instances)
+        _keep_ids(sites, instances)
+        sites = [site for site in self._all if site.part and not site.is_known]
+        parts = list(map(self.part, sites))
+        self._tie(Edge.TYPED_BY, sites, parts)
+        _keep_ids(sites, parts)
 
     def part(self, site: Site) -> Element | None:
         """The part that stands for an internal element in the class above."""
@@ -224,6 +223,14 @@ class Sites:
             own(self._context, site)
         if site.type is not None:
             members.lower(self._context, site)
+
+
+def _keep_ids(sites: list[Site], elements: list[Element | None]) -> None:
+    """Let each element have the IDs that interfaces of its class have in it, once a site."""
+    for site, element in zip(sites, elements, strict=True):
+        if site.interface_ids and element is not None:
+            element.attrs["interface_ids"] = tuple(site.interface_ids)
+            site.interface_ids = NO_IDS
 
 
 def _is_another(site: Site, known: Member) -> bool:

@@ -33,18 +33,20 @@ class Swift:
         texts = document.texts
         self._odd = texts["DefaultValue"].keys() | texts["Description"].keys()
         """Rows that say something beside their value."""
+        self._other = self._odd | set(document.parents)
+        """Those, and rows with others inside."""
         self._slots = Slots(context, document)
 
     def lower(self, site: Site) -> None:
         """The members of an internal element."""
         declared, document = site.declared, self._document
         steps = (self._plans.get(declared) or self._plan(declared)).steps
-        alike, ends, odd, verdicts = document.alike, document.ends, self._odd, document.verdicts
+        alike, other, verdicts = document.alike, self._other, document.verdicts
         value_of, ids, elements = document.texts["Value"].get, document.ids, document.elements
         add = self._slots.add
         for row in site.members:
             known = steps.get(alike[row])
-            if known is None or ends[row] > row + 1 or row in odd:
+            if known is None or row in other:
                 self._otherwise(site, row)
                 continue
             verdicts[row] = _MAPPED

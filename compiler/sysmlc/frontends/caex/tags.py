@@ -17,11 +17,11 @@ many line ends and tabs there are, and -1 where the values have to be looked at 
 _K = TypeVar("_K")
 _V = TypeVar("_V")
 
+UNLIKE = "I"
+"""What tags start with of which hardly two are alike: those of internal elements and links."""
+
 _REMEMBERED = 1 << 14
 """So many tags are remembered: a file whose tags all differ must not fill the memory."""
-
-_UNLIKE = "Internal"
-"""How tags start of which hardly two are alike."""
 
 _TAG = re.compile(r'([^\s/>"\'=!?]+)((?:\s+[^\s=>"\']+\s*=\s*"[^"]*")*)\s*(/?)>(.*)', re.DOTALL)
 _SOUND = re.compile(
@@ -64,7 +64,7 @@ class Reader:
 
         Raises NotPlainError.
         """
-        if piece.startswith(_UNLIKE):
+        if piece[0] == UNLIKE:
             tag = self._parsed(piece, row)
             return tag, tag[1].get("ID", "")
         head, sign, rest = piece.partition(' ID="')

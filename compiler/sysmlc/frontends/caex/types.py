@@ -1,6 +1,7 @@
 """Classes of AutomationML as the unit knows them, and how a class path finds one."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 from sysmlc.frontends.caex.document import Document, Node
@@ -20,6 +21,12 @@ class Member(NamedTuple):
     def node(self) -> Node:
         """What says it in the file."""
         return self.document.node(self.row)
+
+
+member: Callable[[tuple[str, "Type | None", Document, int]], Member] = partial(
+    tuple.__new__, Member
+)
+"""Makes a member of its parts, in a third of the time that a call of the class takes."""
 
 
 class Type:
