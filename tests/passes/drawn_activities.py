@@ -43,6 +43,12 @@ class Drawing:
     """Flows that carry objects, from pin to pin."""
     bodies: dict[str, str] = field(default_factory=dict)
     """What actions assign when they are done."""
+    regions: dict[str, set[str]] = field(default_factory=dict)
+    """Interruptible regions with their nodes."""
+    interrupts: dict[str, str] = field(default_factory=dict)
+    """Flows that interrupt a region."""
+    unseen: set[str] = field(default_factory=set)
+    """Flows from accept actions to themselves: nobody draws them, they listen again."""
 
     def incoming(self, node):
         return [id for id, (_, target, _) in self.flows.items() if target == node]
@@ -53,12 +59,15 @@ class Drawing:
     def text(self):
         """The activity in IR text."""
         lines = ['Package p "P"', '  Activity a "a"', *(PROPERTIES if self.bodies else [])]
+        lines += [f'    Structured {id} "{id}" subkind="interruptible"' for id in self.regions]
         for id, kind in self.nodes.items():
             lines += self._node(id, kind)
-        for id, (source, target, guard) in self.flows.items():
+        for id in [id for id in self.flows if id not in self.unseen]:
+            source, target, guard = self.flows[id]
             word = "ObjectFlow" if id in self.objects else "ControlFlow"
             ends = (self._pin(source, id, "o"), self._pin(target, id, "i"))
             shown = f' guard="{guard}"' if guard else ""
+            shown += f' interrupts="{self.interrupts[id]}"' if id in self.interrupts else ""
             lines += [f"    {word} {id}{shown}", f"      -> flow-source {ends[0]}"]
             lines += [f"      -> flow-target {ends[1]}"]
         return "\n".join([*lines, *(TYPES if self.bodies else [])]) + "\n"
@@ -67,6 +76,7 @@ class Drawing:
         if kind in (*WORKS, "value"):
             body = f' body="{self.bodies[id]}"' if id in self.bodies else ""
             yield f'    Action {id} "{id}"{body} subkind="{kind}"'
+            yield from self._around(id)
             for flow in sorted(self.objects):
                 source, target, _ = self.flows[flow]
                 for end, word in ((source, "o"), (target, "i")):
@@ -77,6 +87,12 @@ class Drawing:
             yield f'    ObjectNode {id} "{id}" subkind="central-buffer"'
         else:
             yield f'    Control {id} "" subkind="{kind}"'
+            yield from self._around(id)
+
+    def _around(self, id):
+        around = [region for region, nodes in self.regions.items() if id in nodes]
+        if around:
+            yield f"      -> in-partition {' '.join(around)}"
 
     def _pin(self, node, flow, word):
         is_pinned = flow in self.objects and self.nodes[node] != "object"
@@ -109,6 +125,7 @@ class Pencil:
         self.drawing.flows[id] = (source, target, guard)
         if is_object:
             self.drawing.objects.add(id)
+        return id
 
     def guard(self):
         self.guards += 1
@@ -221,6 +238,34 @@ class Writer(Pencil):
         return made
 
 
+class Listener(Pencil):
+    """Draws a random activity with interruptible regions in which something listens."""
+
+    def part(self, depth):
+        if self.left > 1 and depth < 3 and self.dice.random() < 0.35:
+            self.left -= 1
+            return self._guarded(depth + 1)
+        return super().part(depth)
+
+    def _guarded(self, depth):
+        """An accept action without incoming flows interrupts a part that is entered later."""
+        region = f"r{len(self.drawing.regions)}"
+        self.drawing.regions[region] = set()
+        before, merge = self.node("opaque"), self.node("merge")
+        known = set(self.drawing.nodes)
+        first, last = self.part(depth)
+        listens = self.node("accept")
+        inside = {one for one, kind in self.drawing.nodes.items() if one not in known}
+        self.drawing.regions[region] |= {
+            one for one in inside if self.drawing.nodes[one] != "object"
+        }
+        self.flow(before, first)
+        self.drawing.unseen.add(self.flow(listens, listens))
+        for source in (last, listens):
+            self.drawing.interrupts[self.flow(source, merge)] = region
+        return before, merge
+
+
 class UnsafeError(Exception):
     """A second token comes to where one is."""
 
@@ -286,7 +331,8 @@ class _Step:
         incoming, outgoing = self.drawing.incoming(node), self.drawing.outgoing(node)
         ready = [flow for flow in incoming if flow in self.tokens.at]
         has_all = bool(incoming) and len(ready) == len(incoming)
-        if kind in TAKES_ANY and len(ready) > 1 and outgoing:
+        reasons = {self.drawing.interrupts.get(flow, flow) for flow in ready}
+        if kind in TAKES_ANY and len(reasons) > 1 and outgoing:
             raise UnsafeError
         if (kind in TAKES_ANY and ready) or (kind in PASSES and has_all):
             self.taken.update(ready)
@@ -318,10 +364,36 @@ class _Step:
 
     def ends(self):
         for chosen in product(*self.choices):
-            made = _placed(self.tokens, self.taken, [*self.given, *chosen], self.running)
+            given = [*self.given, *chosen]
+            given += [flow for flow in self.drawing.unseen if self._hears(flow)]
+            made = _placed(self.tokens, self.taken, given, self.running)
+            made = self._interrupted(made, given)
             for written in product(*self.writers.values()):
                 values = self.now | dict(zip(self.writers, written, strict=True))
                 yield replace(made, values=tuple(values.items()))
+
+    def _hears(self, flow):
+        """A token comes into a region around an accept action that does not listen."""
+        node, _, _ = self.drawing.flows[flow]
+        waits = flow in self.tokens.at or node in self.tokens.running
+        return not waits and any(self._is_entered(nodes) for nodes in self._innermost(node))
+
+    def _innermost(self, node):
+        around = [nodes for nodes in self.drawing.regions.values() if node in nodes]
+        return [min(around, key=len)]
+
+    def _is_entered(self, nodes):
+        ends = (self.drawing.flows[flow] for flow in self.taken)
+        return any(source not in nodes and target in nodes for source, target, _ in ends)
+
+    def _interrupted(self, made, given):
+        for region in {
+            self.drawing.interrupts[flow] for flow in given if flow in self.drawing.interrupts
+        }:
+            nodes = self.drawing.regions[region]
+            inside = {id for id, (a, b, _) in self.drawing.flows.items() if {a, b} <= nodes}
+            made = replace(made, at=made.at - inside, running=made.running - nodes)
+        return made
 
 
 def _open(drawing, outgoing, inputs):

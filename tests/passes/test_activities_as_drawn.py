@@ -3,7 +3,17 @@
 import random
 
 import pytest
-from drawn_activities import BODIES, GUARDS, WORKS, Pencil, Writer, following, is_over, start
+from drawn_activities import (
+    BODIES,
+    GUARDS,
+    WORKS,
+    Listener,
+    Pencil,
+    Writer,
+    following,
+    is_over,
+    start,
+)
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
@@ -50,6 +60,10 @@ class Named:
             return one.origin in tokens.at
         if one.origin in dict(tokens.values):
             return dict(tokens.values)[one.origin]
+        unseen = f"at_{one.origin}_to_{one.origin}"
+        if one.name == unseen:
+            (flow,) = (id for id in self.drawing.unseen if self.drawing.flows[id][0] == one.origin)
+            return flow in tokens.at
         if one.origin in self.drawing.nodes:
             assert self.drawing.nodes[one.origin] in WORKS
             return one.origin in tokens.running
@@ -173,6 +187,23 @@ def test_contracts_of_activities_admit_what_the_drawing_does_and_nothing_else(pa
 def test_contracts_follow_what_actions_assign_as_the_drawing_says(part):
     compared = [agreed(seed, Writer) for seed in range(part * EACH, (part + 1) * EACH)]
     assert compared.count(True) > EACH * 0.85
+
+
+@pytest.mark.parametrize("part", range(ROUNDS))
+def test_accept_actions_listen_from_when_a_token_enters_their_region(part):
+    compared = [agreed(seed, Listener) for seed in range(part * EACH, (part + 1) * EACH)]
+    assert compared.count(True) > EACH * 0.6
+
+
+def test_regions_are_entered_again_and_within_one_another():
+    drawings = [Listener(seed).drawn() for seed in range(ROUNDS * EACH)]
+    assert sum(len(one.regions) > 0 for one in drawings) > 100
+    nested = [
+        one
+        for one in drawings
+        if any(a < b for a in one.regions.values() for b in one.regions.values())
+    ]
+    assert len(nested) > 10
 
 
 def test_all_that_may_be_assigned_and_read_is_compared():

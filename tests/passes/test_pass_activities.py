@@ -15,7 +15,7 @@ LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 RULES = {
     code: rule
     for code, rule in catalogue().items()
-    if "SM450" <= code <= "SM479" or code == "SM509"
+    if "SM450" <= code <= "SM479"
 }
 
 

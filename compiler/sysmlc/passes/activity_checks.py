@@ -141,10 +141,16 @@ class _Checker:
             found.add(id)
             node = self.tokens.node(id)
             waiting += [edge.target for edge in self.tokens.outgoing(node)]
+            waiting += self._listeners(id)
             if node.kind is NodeKind.STRUCTURED:
                 edges, _ = self.tokens.inside(id)
                 waiting += [edge.target for edge in edges if edge.marked]
         return found
+
+    def _listeners(self, id: str) -> list[str]:
+        """What listens once a token is at a node of its interruptible region."""
+        around = {one.id for one in self.tokens.interruptibles if id in one.nodes}
+        return [edge.target for edge in self.tokens.edges if edge.listens in around]
 
     # -- tokens --------------------------------------------------------------------------------
 

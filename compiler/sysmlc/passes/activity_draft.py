@@ -19,7 +19,8 @@ class Draft:
     event, ``answers`` the inputs of decisions. ``exits`` leads from a node to the one that its
     drawn flows leave when they wait for handlers of exceptions, ``rounds`` from a loop to the
     edges that begin another round. ``ended`` holds the structured nodes that exceptions end,
-    ``failing`` the calls that may end with an exception.
+    ``failing`` the calls that may end with an exception. ``listening`` leads from an accept action
+    to the interruptible region whose tokens make it listen.
     """
 
     def __init__(
@@ -39,6 +40,7 @@ class Draft:
         self.rounds: dict[str, list[str]] = {}
         self.ended: dict[str, Element] = {}
         self.failing: set[str] = set()
+        self.listening: dict[str, str] = {}
         self._used: set[str] = set()
         self.takers: dict[str, list[Element]] = {}
         self.incoming: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
@@ -74,6 +76,7 @@ class Draft:
         guard: Guard | None = None,
         interrupts: str = "",
         keeps: bool = False,
+        listens: str = "",
     ) -> TokenEdge:
         """Add an edge; the first one of a flow has the flow's id."""
         label = flow_label(origin, self.nodes[source].label, self.nodes[target].label)
@@ -92,6 +95,7 @@ class Draft:
             guard,
             interrupts,
             keeps,
+            listens,
         )
         self.edges.append(edge)
         return edge

@@ -1,5 +1,5 @@
-"""Rules about activities (SM450 to SM479, SM509), each with a small model that has it and one
-that nearly has it.
+"""Rules about activities (SM450 to SM479), each with a small model that has it and one that nearly
+has it.
 """
 
 from sysmlc.diagnostics import Severity
@@ -294,21 +294,6 @@ STAYS_INSIDE = _rule(
     "lead it out of the region, or let it interrupt nothing",
     'initial i\ninterruptible r\n  action x\n  action y\ni -> x\nx -> y interrupts="r"',
     'initial i\ninterruptible r\n  action x\naction y\ni -> x\nx -> y interrupts="r"',
-)
-LISTENS_EARLY = _rule(
-    "SM509",
-    "listening-before-its-region",
-    Severity.WARNING,
-    "{node} listens from when the activity starts, not from when a token enters '{region}', and "
-    "after an interruption not again",
-    "In an interruptible region that is entered later or again, an accept action without incoming "
-    "flows is meant to listen while there is a token in it. The contract has it start with the "
-    "activity, as other actions without incoming flows do.",
-    "lead a flow to it: a fork where the region is entered",
-    "initial i\naction y\ninterruptible r\n  action x\n  accept go\n    on-pallet t\naction z\n"
-    'i -> y\ny -> x\ngo -> z interrupts="r"',
-    "initial i\ninterruptible r\n  action x\n  accept go\n    on-pallet t\naction z\n"
-    'i -> x\ngo -> z interrupts="r"',
 )
 TOO_DEEP = _rule(
     "SM479",

@@ -84,6 +84,7 @@ def _is_coupled(tokens: TokenGraph) -> bool:
     return any(
         edge.keeps
         or edge.interrupts
+        or edge.listens
         or tokens.enters(edge)
         or tokens.node(edge.source).region != edge.region
         for edge in tokens.edges

@@ -162,7 +162,8 @@ def add_start(draft: Draft, node: Element) -> None:
     if is_started or node.id in draft.chained or not (works or (waits and reaching)):
         return
     if node.subkind in ACCEPTS and not reaching:
-        draft.link(node.id, node.id, node, made.region, marked=True)
+        region = draft.listening.get(node.id, "")
+        draft.link(node.id, node.id, node, made.region, marked=not region, listens=region)
         return
     start = draft.extra(node, "start", NodeKind.INITIAL, "the start", made.region)
     draft.link(start.id, node.id, node, made.region, marked=True)

@@ -37,11 +37,11 @@ def build(
         add_order(draft, node)
     for flow in drawing.flows:
         add_flow(draft, flow)
+    _find_listening(draft)
     for node in drawing.nodes:
         add_rest(draft, node)
         add_start(draft, node)
     _check_events(draft)
-    _check_listening(draft)
     return _result(draft)
 
 
@@ -53,13 +53,13 @@ def _check_events(draft: Draft) -> None:
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
 
 
-def _check_listening(draft: Draft) -> None:
+def _find_listening(draft: Draft) -> None:
+    """Accept actions without flows listen when a token enters their interruptible region."""
     graph, drawing = draft.graph, draft.drawing
     for region, members in interruptible_regions(graph, drawing.activity, drawing.nodes):
         open_ = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
         for node in open_ if is_entered_later(graph, members) else ():
-            label, name = drawing.labels[node.id], region.name or "the region"
-            draft.sink.report(rules.LISTENS_EARLY, graph.subject(node), node=label, region=name)
+            draft.listening[node.id] = region.id
 
 
 def _result(draft: Draft) -> TokenGraph:

@@ -77,16 +77,23 @@ def _starts(graph: TokenGraph) -> Iterator[Conjunct]:
     for edge in graph.edges:
         is_marked = edge.marked and edge.region == ACTIVITY_REGION
         value = at(edge) if is_marked else f.negate(at(edge))
-        verb = "starts with a token" if is_marked else "has no token at the start"
-        yield Conjunct(value, Class.INIT, edge.origin, f"{_capital(edge.label)} {verb}.")
+        yield Conjunct(value, Class.INIT, edge.origin, _start_text(graph, edge, is_marked))
     for node in graph.workers():
         text = f"At the start {node.label} is not running."
         yield Conjunct(f.negate(f.var(node.run)), Class.INIT, node.origin, text)
 
 
+def _start_text(graph: TokenGraph, edge: TokenEdge, is_marked: bool) -> str:
+    if edge.source == edge.target:
+        verb = "begins to listen" if is_marked else "does not listen"
+        return f"{_capital(graph.node(edge.source).label)} {verb} at the start."
+    verb = "starts with a token" if is_marked else "has no token at the start"
+    return f"{_capital(edge.label)} {verb}."
+
+
 def _edge_update(game: Game, edge: TokenEdge) -> Conjunct:
     moves = f.both(
-        f.either(game.given(edge), game.kept(edge)),
+        f.either(game.given(edge), game.kept(edge), game.heard(edge)),
         f.negate(game.cleared(edge.region, {edge.source, edge.target})),
     )
     held = f.either(f.both(game.begins(edge.region), _constant(edge.marked)), moves)
@@ -112,6 +119,8 @@ def _next(variable: str, value: Formula) -> Formula:
 
 def _edge_text(game: Game, edge: TokenEdge) -> str:
     source, target = game.graph.node(edge.source), game.graph.node(edge.target)
+    if source is target:
+        return _listening_text(game, edge)
     given = f"{source.label} gives one"
     if edge.marked:
         around = [node.label for node in game.graph.regions_around(edge.region)]
@@ -121,6 +130,17 @@ def _edge_text(game: Game, edge: TokenEdge) -> str:
         f"{_capital(edge.label)} gets a token when {given}{when}, and keeps it "
         f"until {target.label} takes it."
     )
+
+
+def _listening_text(game: Game, edge: TokenEdge) -> str:
+    """The edge of an accept action without flows: nobody draws it."""
+    node = game.graph.node(edge.target)
+    text = f"{_capital(node.label)} begins to listen again when it has accepted an event"
+    if not edge.listens:
+        return f"{text}."
+    region = next(one for one in game.graph.interruptibles if one.id == edge.listens)
+    name = f"region '{region.label}'" if region.label else "its region"
+    return f"{text}, and when a token enters {name} while it does not listen."
 
 
 def _open(guard: Guard) -> str:

@@ -180,6 +180,16 @@ class Game:
         incoming = self.graph.incoming(self.graph.node(edge.target))
         return f.both(*(at(other) for other in incoming if other is not edge))
 
+    def heard(self, edge: TokenEdge) -> Formula:
+        """A token enters the region that the edge listens to, and its target does not wait yet."""
+        if not edge.listens:
+            return f.FALSE
+        target = self.graph.node(edge.target)
+        coming = (f.both(at(one), self.taken(one)) for one in self.graph.entering(edge.listens))
+        is_idle = f.both(f.negate(at(edge)), f.negate(f.var(target.run)))
+        around = self.graph.regions_around(edge.region)
+        return f.both(f.either(*coming), is_idle, *(f.var(one.run) for one in around))
+
     def kept(self, edge: TokenEdge) -> Formula:
         """The edge holds a token that stays on it."""
         return f.both(at(edge), f.negate(self.taken(edge)))

@@ -159,6 +159,7 @@ class _Step:
         self.ended: list[TokenNode] = []
         self.interrupted: list[str] = []
         self.finished: set[str] = set()
+        self.taken: set[str] = set()
 
     def play(self) -> State:
         if finishes(self.graph, self.old):
@@ -169,6 +170,9 @@ class _Step:
         gifts = [edge for node in alive for edge in self._fire(node)]
         for edge in gifts:
             self._give(edge)
+        for edge in self.graph.edges:
+            if edge.listens and self._hears(edge):
+                self._give(edge)
         for node in self.ended:
             self._clear_region(node.id)
         for region in self.interrupted:
@@ -176,6 +180,13 @@ class _Step:
         for node in self.started:
             self._open(node)
         return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored()))
+
+    def _hears(self, edge: TokenEdge) -> bool:
+        """A token enters the region that the edge listens to, and its target does not wait yet."""
+        target = self.graph.node(edge.target)
+        waits = edge.id in self.old.tokens or edge.target in self.old.running
+        coming = any(one.id in self.taken for one in self.graph.entering(edge.listens))
+        return coming and not waits and self._is_alive(target)
 
     def _stored(self) -> Iterator[tuple[str, Literal]]:
         """What the variables are when all nodes that are done have written."""
@@ -273,7 +284,9 @@ class _Step:
         return self.holds(node.done, self.inputs)
 
     def _take(self, edges: Sequence[TokenEdge]) -> None:
-        self.tokens.difference_update(edge.id for edge in edges if not edge.keeps)
+        taken = [edge.id for edge in edges if not edge.keeps]
+        self.tokens.difference_update(taken)
+        self.taken.update(taken)
 
     def _give(self, edge: TokenEdge) -> None:
         if edge.id in self.tokens and not edge.keeps:

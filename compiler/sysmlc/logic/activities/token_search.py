@@ -115,9 +115,20 @@ class _Board:
         self.content = {region: self._content(region) for region in graph.regions()}
         self.structured = [p for p in self.parts if p.node.kind is NodeKind.STRUCTURED]
         lost = {one.id: self._lost(frozenset(one.nodes)) for one in graph.interruptibles}
+        self.hearing = [
+            (self.bits[edge.id], self._run(graph.node(edge.target)), *self._heard(edge))
+            for edge in graph.edges
+            if edge.listens
+        ]
         self.losses = [
             (self.bits[edge.id], lost[edge.interrupts]) for edge in graph.edges if edge.interrupts
         ]
+
+    def _heard(self, edge: TokenEdge) -> tuple[int, int, frozenset[str]]:
+        """The edges that make an edge listen, and what has to run around it."""
+        around = list(self.graph.regions_around(edge.region))
+        runs = sum(map(self._run, around))
+        return self._mask(self.graph.entering(edge.listens)), runs, frozenset(n.id for n in around)
 
     def _mask(self, edges: "Iterator[TokenEdge] | list[TokenEdge]") -> int:
         return sum(self.bits[edge.id] for edge in edges)
@@ -249,6 +260,10 @@ class _Board:
         left = state & ~(takes & ~self.keeps)
         if left & gives & ~self.keeps:
             raise UnsafeError(self._name(left & gives & ~self.keeps))
+        for heard, run, coming, around, regions in self.hearing:
+            is_alive = state & around == around and not regions & ended
+            if takes & coming and not state & (heard | run) and is_alive:
+                gives |= heard
         after = left | gives | starts
         for region in sorted(ended):
             after &= ~self.content[region]

@@ -131,7 +131,9 @@ class TokenEdge:
     ``origins`` are the ids of the drawn flows that it stands for, several after a collapse.
     ``marked`` edges hold a token when their region starts. ``interrupts`` is the id of the
     interruptible region that loses its tokens when a token enters this edge. ``keeps`` edges
-    leave data stores: their token stays when it is taken.
+    leave data stores: their token stays when it is taken. An edge that ``listens`` to an
+    interruptible region (its id) gets a token when one enters the region, unless its target has one
+    or runs: accept actions without incoming flows are enabled then (UML 2.5.1, 15.6.3).
     """
 
     id: str
@@ -145,6 +147,7 @@ class TokenEdge:
     guard: Guard | None = None
     interrupts: str = ""
     keeps: bool = False
+    listens: str = ""
 
     @property
     def origin(self) -> str:
@@ -288,6 +291,18 @@ class TokenGraph:
         """The activity and every structured node."""
         yield ACTIVITY_REGION
         yield from (node.id for node in self.nodes if node.kind is NodeKind.STRUCTURED)
+
+    def entering(self, interruptible: str) -> list[TokenEdge]:
+        """Edges that bring tokens into an interruptible region, from outside or at its start."""
+        found = next(one for one in self.interruptibles if one.id == interruptible)
+        members = frozenset(found.nodes)
+        return [
+            edge
+            for edge in self.edges
+            if edge.target in members
+            and not edge.keeps
+            and (edge.source not in members or self._nodes[edge.source].kind is NodeKind.INITIAL)
+        ]
 
     def enters(self, edge: TokenEdge) -> bool:
         """Whether the edge leads into a region from outside."""
