@@ -51,6 +51,7 @@ def forbid(monkeypatch):
         (flow, "decide"),
         (claims, "refinement_failures"),
         (claims, "Entailment"),
+        (claims, "Together"),
     ):
         monkeypatch.setattr(module, name, fail)
 
@@ -102,7 +103,7 @@ def test_another_version_of_the_tool_makes_all_anew(keeper, monkeypatch):
 def test_claims_that_were_not_asked_for_are_decided_later(keeper):
     made(FIRST, keeper, has_relations=False)
     found, _ = made(FIRST, keeper)
-    assert len(found.relations) == 7
+    assert len(found.relations) == 11
 
 
 def test_what_was_not_decided_is_tried_again(keeper):

@@ -38,7 +38,7 @@ def system_contract(study: Study, encoding: Encoding = Encoding.THESIS) -> Contr
         study.component,
         study.origin,
         tuple(_variables(study, encoding)),
-        (*_ASSUMED[encoding](study), *_timing(study)),
+        (*_ASSUMED[encoding](study), *timing(study)),
         (*_PROMISED[encoding](study), *_limits(study), *_goals(study)),
     )
 
@@ -94,7 +94,7 @@ def _placed(study: Study) -> Iterator[Conjunct]:
         yield from words.on_floor(study, robot)
 
 
-def _timing(study: Study) -> Iterator[Conjunct]:
+def timing(study: Study) -> Iterator[Conjunct]:
     """Timers count the steps since a robot has its target."""
     for robot in study.robots if study.within is not None else ():
         yield from _timer(robot, (study.within or 0) + 1)

@@ -138,6 +138,12 @@ def in_all(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
         yield each(f.primed(one.formula), one.origin, one.text)
 
 
+def stays(robot: Robot) -> Conjunct:
+    """A robot stays for ever."""
+    text = f"'{robot.name}' stays."
+    return each(is_(command(robot), STAY), robot.origin, text)
+
+
 def starts(robots: Iterable[Robot]) -> Iterator[Conjunct]:
     """Where robots are at first, as far as that is given."""
     for robot in robots:
