@@ -5,6 +5,7 @@ import copy
 import dataclasses
 import inspect
 import pickle
+import weakref
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, InitVar, field, fields, replace
 from pathlib import Path
@@ -102,6 +103,22 @@ def _child(made):
     return Child
 
 
+def _loose(made):
+    @made(frozen=True)
+    class Loose:
+        one: int
+        two: int = 2
+
+    return Loose
+
+
+def _many(made):
+    names = [f"field_{number}" for number in range(20)]
+    return made(frozen=True, slots=True)(
+        type("Many", (), {"__annotations__": dict.fromkeys(names, int), "__module__": __name__})
+    )
+
+
 CLASSES = [
     (_empty, ()),
     (_single, (1,)),
@@ -110,6 +127,8 @@ CLASSES = [
     (_identical, ()),
     (_own_words, (1,)),
     (_child, (1,)),
+    (_loose, (1,)),
+    (_many, tuple(range(20))),
 ]
 
 
@@ -117,7 +136,7 @@ CLASSES = [
 def test_the_class_says_the_same_of_itself(build, given):
     ours, theirs = both(build)
     for said in ("__name__", "__qualname__", "__module__", "__slots__", "__match_args__"):
-        assert getattr(ours, said) == getattr(theirs, said)
+        assert getattr(ours, said, None) == getattr(theirs, said, None)
     assert inspect.signature(ours.__init__).parameters.keys() == (
         inspect.signature(theirs.__init__).parameters.keys()
     )
@@ -134,7 +153,7 @@ def test_values_behave_alike(build, given):
         one, same = cls(*given), cls(*given)
         is_hashed = cls.__hash__ is not None
         answers.append((repr(one), one == same, is_hashed and hash(one) == hash(same)))
-        assert not hasattr(one, "__dict__")
+        assert hasattr(one, "__dict__") == (not hasattr(cls, "__slots__"))
         assert one != object()
     assert answers[0] == answers[1]
 
@@ -228,6 +247,26 @@ def test_each_inherits_from_the_other(above, below):
     assert repr(Below(1)).endswith("Below(one=1, two=2, three=3)")
     assert Below.__slots__ == ("three",)
     assert Below(1) != Above(1, 2)
+
+
+def test_a_value_that_is_made_elsewhere_and_held_weakly():
+    @dataclass(frozen=True, slots=True, eq=False, init=False, weakref_slot=True)
+    class Single:
+        one: int
+
+        def __new__(cls, one: int):
+            made = object.__new__(cls)
+            object.__setattr__(made, "one", one)
+            return made
+
+    value = Single(1)
+    assert (weakref.ref(value)() is value, value.one) == (True, 1)
+    assert value != Single(1)
+
+
+def test_defaults_of_loose_values_are_attributes_of_the_class():
+    for cls in both(_loose):
+        assert (cls.two, vars(cls(1))) == (2, {"one": 1, "two": 2})
 
 
 def test_what_is_no_plain_argument_is_left_to_the_standard_library():

@@ -1,14 +1,15 @@
-"""Functions of dataclasses: compiled for a number of fields, then given the names of a class."""
+"""What dataclasses have beside ``__init__``: shared by all, or made for a class when called."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, Field, FrozenInstanceError
+from collections.abc import Callable, Sequence
+from dataclasses import FrozenInstanceError
 from functools import cache
 from operator import attrgetter
 from reprlib import recursive_repr
 from types import CodeType, FunctionType
 from typing import Any, NoReturn
 
-_Fields = Mapping[str, "Field[Any]"]
+from sysmlc.values.declared import FIELDS, Declared
+
 _BODY = {
     "__eq__": """\
 def __eq__(self, other):
@@ -23,79 +24,21 @@ def __hash__(self):
 }
 
 
-def common(fields: _Fields, *, frozen: bool, eq: bool) -> dict[str, object]:
-    """All that a dataclass has beside ``__init__``, as the standard library has it."""
-    names = tuple(fields)
-    made: dict[str, object] = {"__match_args__": names, "__repr__": _shown}
-    made["__replace__"] = _replacement(names)
-    if frozen:
-        made |= {"__setattr__": _refuse_setting, "__delattr__": _refuse_deleting}
-        made |= {"__getstate__": _state, "__setstate__": _set_state}
-    if eq:
-        compared = tuple(name for name, one in fields.items() if one.compare)
-        hashed = tuple(name for name, one in fields.items() if _is_hashed(one))
-        made["__eq__"] = _when_called("__eq__", compared)
-        made["__hash__"] = _when_called("__hash__", hashed) if frozen else None
-    return made
+def compared(known: Declared, *, frozen: bool) -> dict[str, object]:
+    """``__eq__``, and ``__hash__`` where values stay as they are."""
+    hashed = _when_called("__hash__", known, known.hashed) if frozen else None
+    return {"__eq__": _when_called("__eq__", known, known.compared), "__hash__": hashed}
 
 
-def _is_hashed(one: "Field[Any]") -> bool:
-    return one.compare if one.hash is None else one.hash
-
-
-def init(
-    owner: str, fields: _Fields, *, frozen: bool, post: bool
-) -> tuple[FunctionType, Callable[[type], None]]:
-    """``__init__``, and what completes it when the class is there: its slots set the fields."""
-    names = tuple(fields)
-    factories = {
-        number: one.default_factory
-        for number, one in enumerate(fields.values())
-        if one.default_factory is not MISSING
-    }
-    code = _renamed(_init_code(len(names), frozenset(factories), frozen, post), names)
-    known: dict[str, object] = {f"make_{number}": make for number, make in factories.items()}
-    known["missing"] = MISSING
-    made = FunctionType(code, known, "__init__", _defaults(fields))
-    made.__qualname__ = f"{owner}.__init__"
-    made.__annotations__ = {name: one.type for name, one in fields.items()} | {"return": None}
-
-    def complete(cls: type) -> None:
-        if frozen:
-            for number, name in enumerate(names):
-                known[f"set_{number}"] = getattr(cls, name).__set__
-
-    return made, complete
-
-
-def _defaults(fields: _Fields) -> tuple[object, ...]:
-    defaults = [
-        (name, one.default)
-        for name, one in fields.items()
-        if one.default is not MISSING or one.default_factory is not MISSING
-    ]
-    if [name for name, _ in defaults] != list(fields)[len(fields) - len(defaults) :]:
-        raise TypeError(f"of {', '.join(fields)} one without a default follows one with a default")
-    return tuple(default for _, default in defaults)
-
-
-@cache
-def _init_code(number: int, made: frozenset[int], frozen: bool, post: bool) -> CodeType:
-    lines = [f"def __init__(self{''.join(f', _{at}' for at in range(number))}):"]
-    for at in range(number):
-        value = f"_{at} if _{at} is not missing else make_{at}()" if at in made else f"_{at}"
-        lines.append(f"    set_{at}(self, {value})" if frozen else f"    self._{at} = {value}")
-    lines.append("    self.__post_init__()" if post else "    return")
-    return _compiled("\n".join(lines), "__init__")
-
-
-def _when_called(function: str, names: Sequence[str]) -> Callable[..., object]:
+def _when_called(
+    function: str, known: Declared, names: Callable[[], list[str]]
+) -> Callable[..., object]:
     """A function that makes the right one in its own place: most values are never compared."""
 
     def first(self: object, *others: object) -> object:
-        made = _named(function, names)
+        made = _named(function, names())
         for cls in type(self).__mro__:
-            if cls.__dict__.get(function) is first:
+            if cls.__dict__.get(FIELDS) is known:
                 setattr(cls, function, made)
         return made(self, *others)
 
@@ -103,8 +46,11 @@ def _when_called(function: str, names: Sequence[str]) -> Callable[..., object]:
 
 
 def _named(function: str, names: Sequence[str]) -> FunctionType:
-    code = _renamed(_code(function, len(names)), names)
-    return FunctionType(code, {"hash": hash, "NotImplemented": NotImplemented})
+    """The function with the names of fields instead of ``_0``, ``_1`` and so on."""
+    code = _code(function, len(names))
+    places = {f"_{at}": name for at, name in enumerate(names)}
+    renamed = code.replace(co_names=tuple(places.get(name, name) for name in code.co_names))
+    return FunctionType(renamed, {"hash": hash, "NotImplemented": NotImplemented})
 
 
 @cache
@@ -113,48 +59,44 @@ def _code(function: str, number: int) -> CodeType:
         word: "".join(f"{who}._{at}, " for at in range(number))
         for word, who in (("own", "self"), ("others", "other"))
     }
-    return _compiled(_BODY[function].format(**texts), function)
-
-
-def _compiled(source: str, function: str) -> CodeType:
     known: dict[str, Any] = {}
-    exec(source, known)
+    exec(_BODY[function].format(**texts), known)
     code: CodeType = known[function].__code__
     return code
 
 
-@cache
-def _places(number: int) -> tuple[str, ...]:
-    return tuple(f"_{at}" for at in range(number))
-
-
-def _renamed(code: CodeType, names: Sequence[str]) -> CodeType:
-    """The code with the names of fields instead of ``_0``, ``_1`` and so on."""
-    get = dict(zip(_places(len(names)), names, strict=True)).get
-    return code.replace(
-        co_varnames=tuple([get(name, name) for name in code.co_varnames]),
-        co_names=tuple([get(name, name) for name in code.co_names]),
-    )
-
-
-def _replacement(names: Sequence[str]) -> Callable[..., object]:
+def _replaced(self: Any, /, **changes: object) -> object:  # noqa: ANN401 - every class of values
     """What Python has from 3.13 on, for ``copy.replace``."""
+    return replacer(type(self))(self, changes)
+
+
+_Replacer = Callable[[object, dict[str, object]], object]
+_replacers: dict[type, _Replacer] = {}
+
+
+def replacer(cls: type) -> _Replacer:
+    """A function that makes another value of the class: from one, and what is to be changed."""
+    return _replacers.get(cls) or _replacers.setdefault(cls, _replacer(cls))
+
+
+def _replacer(cls: type) -> _Replacer:
+    names: tuple[str, ...] = cls.__match_args__  # type: ignore[attr-defined]
     get = attrgetter(*names) if len(names) > 1 else None
     places = {name: at for at, name in enumerate(names)}
 
-    def __replace__(self: object, /, **changes: object) -> object:  # noqa: N807
-        values = [*get(self)] if get else [getattr(self, name) for name in names]
-        for name, value in changes.items():
+    def replaced(value: object, changes: dict[str, object]) -> object:
+        values = [*get(value)] if get else [getattr(value, name) for name in names]
+        for name, one in changes.items():
             if name not in places:
-                raise TypeError(f"{type(self).__qualname__} has no field {name!r}")
-            values[places[name]] = value
-        return self.__class__(*values)
+                raise TypeError(f"{cls.__qualname__} has no field {name!r}")
+            values[places[name]] = one
+        return cls(*values)
 
-    return __replace__
+    return replaced
 
 
 @recursive_repr("...")
-def _shown(self: Any) -> str:  # noqa: ANN401 - every class of values
+def _shown(self: Any) -> str:  # noqa: ANN401
     fields = self.__dataclass_fields__
     values = ", ".join(f"{name}={getattr(self, name)!r}" for name in fields if fields[name].repr)
     return f"{type(self).__qualname__}({values})"
@@ -176,3 +118,11 @@ def _refuse_setting(_self: object, name: str, _value: object) -> NoReturn:
 
 def _refuse_deleting(_self: object, name: str) -> NoReturn:
     raise FrozenInstanceError(f"cannot delete field {name!r}")
+
+
+COMMON = {"__repr__": _shown, "__replace__": _replaced}
+"""What all have."""
+FROZEN = {"__setattr__": _refuse_setting, "__delattr__": _refuse_deleting}
+"""What those have whose fields stay as they are."""
+PACKED = {"__getstate__": _state, "__setstate__": _set_state}
+"""What those of them have that have no ``__dict__``."""

@@ -1,4 +1,4 @@
-"""Dataclasses with slots whose functions are compiled once for each number of fields.
+"""Dataclasses without code that is made for each class.
 
 ``dataclasses`` compiles five or six functions for every class, which takes 0.7 ms, and a run
 imports two hundred. The functions of two classes with as many fields differ in names alone.
@@ -6,21 +6,19 @@ imports two hundred. The functions of two classes with as many fields differ in 
 
 import dataclasses
 from collections.abc import Callable, Iterable
-from dataclasses import MISSING, Field, InitVar, field
+from functools import cache
 from types import SimpleNamespace
-from typing import Any, ClassVar, TypeVar, cast, get_origin
+from typing import Any, TypeVar, cast
 
-from sysmlc.values import functions
+from sysmlc.values import declared, functions
+from sysmlc.values.declared import FIELDS, Declared
+from sysmlc.values.inits import give_init
 
 _T = TypeVar("_T")
-_Fields = dict[str, "Field[object]"]
-
-FIELDS = "__dataclass_fields__"
-"""Attribute by which ``dataclasses.fields`` and ``replace`` know a dataclass."""
 
 _PARAMETERS = "__dataclass_params__"
 """Attribute of which the standard library asks a base class whether it is frozen."""
-_OF_NO_SLOTS = frozenset({"__dict__", "__weakref__"})
+_OF_PYTHON = frozenset({"__dict__", "__weakref__"})
 
 
 def dataclass(
@@ -30,104 +28,81 @@ def dataclass(
     frozen: bool = False,
     slots: bool = False,
     eq: bool = True,
+    init: bool = True,
+    weakref_slot: bool = False,
     **others: bool,
 ) -> type[_T] | Callable[[type[_T]], type[_T]]:
-    """``dataclasses.dataclass``; without slots, or with ``others``, it is that one itself."""
+    """``dataclasses.dataclass``; with ``others`` it is that one itself."""
 
     def decorate(cls: type[_T]) -> type[_T]:
-        if others or not slots or not _is_simple(cls):
-            made = dataclasses.dataclass(frozen=frozen, slots=slots, eq=eq, **others)
-            return made(cls)
-        return _made(cls, frozen=frozen, eq=eq)
+        given = _given(cls)
+        own = None if others else declared.own(given)
+        if own is None or (init and not own.types and hasattr(cls, "__post_init__")):
+            words = {"frozen": frozen, "slots": slots, "eq": eq, "init": init} | others
+            return dataclasses.dataclass(weakref_slot=weakref_slot, **words)(cls)
+        known = declared.with_inherited(cls, own)
+        content = _shared(frozen, slots, eq) | {
+            "__match_args__": tuple(known.types),
+            FIELDS: known,
+        }
+        content |= functions.compared(known, frozen=frozen) if eq else {}
+        content |= given if slots else given | _values(own)
+        if slots:
+            content["__slots__"] = _slots(cls, known, weakref_slot)
+        return _made(cls, content, known if init else None)
 
     return decorate if cls is None else decorate(cls)
 
 
-def replace(value: _T, /, **changes: object) -> _T:
-    """``dataclasses.replace``."""
-    make = type(value).__dict__.get("__replace__")
-    if make is None:
-        return cast("_T", dataclasses.replace(cast("Any", value), **changes))
-    return cast("_T", make(value, **changes))
-
-
-def _is_simple(cls: type) -> bool:
-    """Whether all fields are plain arguments of ``__init__``."""
-    annotations = cls.__dict__.get("__annotations__", {})  # noqa: RUF063 - its module takes 7 ms
-    declared = [one for one in cls.__dict__.values() if isinstance(one, Field)]
-    return (
-        "self" not in annotations
-        and all(one.init and one.kw_only is not True for one in declared)
-        and not any(map(_is_special, annotations.values()))
-    )
-
-
-def _is_special(annotation: object) -> bool:
-    if isinstance(annotation, str):
-        return any(word in annotation for word in ("ClassVar", "InitVar", "KW_ONLY"))
-    is_mark = annotation is InitVar or annotation is dataclasses.KW_ONLY
-    return is_mark or isinstance(annotation, InitVar)
-
-
-def _made(cls: type[_T], *, frozen: bool, eq: bool) -> type[_T]:
-    """The class anew, with slots and functions: slots cannot be added to one that is there."""
-    given = {name: one for name, one in cls.__dict__.items() if name not in _OF_NO_SLOTS}
+def _given(cls: type) -> dict[str, Any]:
+    """What the class says itself; a hash that Python took from it is to come again."""
+    given = {name: one for name, one in cls.__dict__.items() if name not in _OF_PYTHON}
     if "__eq__" in given and given["__hash__"] is None:
         del given["__hash__"]
-    fields = _inherited(cls) | _own(given)
-    post = hasattr(cls, "__post_init__")
-    init, complete = functions.init(cls.__qualname__, fields, frozen=frozen, post=post)
-    made_functions = functions.common(fields, frozen=frozen, eq=eq) | {"__init__": init}
-    content = (
-        made_functions
-        | given
-        | _marks(cls, fields)
-        | {_PARAMETERS: SimpleNamespace(frozen=frozen, eq=eq)}
-    )
+    return given
+
+
+def replace(value: _T, /, **changes: object) -> _T:
+    """``dataclasses.replace``."""
+    cls = type(value)
+    if isinstance(cls.__dict__.get(FIELDS), Declared):
+        return cast("_T", functions.replacer(cls)(value, changes))
+    return cast("_T", dataclasses.replace(cast("Any", value), **changes))
+
+
+@cache
+def _shared(frozen: bool, slots: bool, eq: bool) -> dict[str, object]:
+    """What classes declared with the same words have in common."""
+    marks: dict[str, object] = {_PARAMETERS: SimpleNamespace(frozen=frozen, eq=eq)}
+    marks |= functions.COMMON
+    if frozen:
+        marks |= functions.FROZEN
+    return marks | functions.PACKED if frozen and slots else marks
+
+
+def _values(own: Declared) -> dict[str, object]:
+    """Defaults that are attributes of a class without slots, too."""
+    given = {name: declared.value(default) for name, default in own.defaults.items()}
+    return {name: one for name, one in given.items() if one is not dataclasses.MISSING}
+
+
+def _slots(cls: type, known: Declared, weakref_slot: bool) -> tuple[str, ...]:
+    wanted = (*known.types, "__weakref__") if weakref_slot else tuple(known.types)
+    above = cls.__mro__[1:-1]
+    if not above:
+        return wanted
+    taken = {name for base in above for name in _names(base.__dict__.get("__slots__", ()))}
+    return tuple([name for name in wanted if name not in taken])
+
+
+def _names(slots: str | Iterable[str]) -> Iterable[str]:
+    return (slots,) if isinstance(slots, str) else slots
+
+
+def _made(cls: type[_T], content: dict[str, object], known: Declared | None) -> type[_T]:
+    """The class anew: slots cannot be added to one that is there."""
     made: type[_T] = cast("Any", type(cls))(cls.__name__, cls.__bases__, content)
     made.__qualname__ = cls.__qualname__
-    complete(made)
+    if known is not None:
+        give_init(made, known)
     return made
-
-
-def _marks(cls: type, fields: _Fields) -> dict[str, object]:
-    slots = _slots_above(cls)
-    return {"__slots__": tuple(name for name in fields if name not in slots), FIELDS: fields}
-
-
-def _inherited(cls: type) -> _Fields:
-    bases = [base for base in reversed(cls.__mro__[1:]) if FIELDS in base.__dict__]
-    return {one.name: one for base in bases for one in dataclasses.fields(base)}
-
-
-def _own(given: dict[str, Any]) -> _Fields:
-    """The fields that the class declares; their defaults leave its attributes."""
-    found: _Fields = {}
-    for name, annotation in given.get("__annotations__", {}).items():
-        if annotation is ClassVar or get_origin(annotation) is ClassVar:
-            continue
-        default = given.pop(name, MISSING)
-        found[name] = one = default if isinstance(default, Field) else field(default=default)
-        if one.default.__class__.__hash__ is None:
-            raise ValueError(f"mutable default of field {name}: use default_factory")
-        one.name, one.type, one.kw_only = name, annotation, False
-        setattr(one, _PLACE, _PLAIN)
-    return found
-
-
-def _slots_above(cls: type) -> set[str]:
-    slots: Iterable[str | Iterable[str]]
-    slots = (base.__dict__.get("__slots__", ()) for base in cls.__mro__[1:])
-    return {name for some in slots for name in ((some,) if isinstance(some, str) else some)}
-
-
-@dataclasses.dataclass(init=False, repr=False, eq=False, match_args=False)
-class _Sample:
-    """Without these words ``dataclasses`` would take 15 ms to write some of its own."""
-
-    field: int
-
-
-_PLACE = "_field_type"
-_PLAIN = getattr(dataclasses.fields(_Sample)[0], _PLACE)
-"""What the standard library's functions look for in a field that is no ``ClassVar``."""
