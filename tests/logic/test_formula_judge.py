@@ -1,7 +1,7 @@
 """The reader of formulas understands what grammars/ltl.lark does, and nothing else."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lark.exceptions import UnexpectedInput
 from ltl_judge import judge
@@ -19,6 +19,7 @@ MEANING = ("is not Boolean", "is not a number", "be compared", "neither a variab
 
 
 @given(st.lists(st.sampled_from((*TRUTHS, *TRUTHS, *SIGNS, *NUMBERS)), min_size=1, max_size=9))
+@example(["p", "=", "G"])
 @settings(max_examples=1500, deadline=None)
 def test_the_reader_and_the_grammar_agree(words):
     text = " ".join(words)

@@ -36,6 +36,7 @@ _PREFIXES = {
 """What variables of diagrams begin with."""
 _UNSET = re.compile(r"!\w+$")
 _MANY = 3
+_FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _MARKUP = re.compile(r"[<>`|\[\]]")
 """What would not be shown as it is written."""
 
@@ -160,7 +161,8 @@ def _section(class_: Class, rows: list[Row]) -> Section:
     unset = [one for one in rows if class_ is Class.INIT and _UNSET.match(one.formula)]
     if len(unset) < _MANY:
         return Section(_TITLES[class_], tuple(rows))
-    shown = tuple(one for one in rows if one not in unset)
+    hidden = {*map(id, unset)}
+    shown = tuple(one for one in rows if id(one) not in hidden)
     names = tuple(replace(one, formula=one.formula[1:]) for one in unset)
     return Section(_TITLES[class_], shown, names)
 
@@ -171,10 +173,9 @@ def _name(graph: Graph, id: str) -> str:
     if element is None:
         return ""
     kind = _in_words(element.kind)
-    if element.kind is Kind.TRANSITION:
-        edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
-        ends = [graph.target(element, edge) for edge in edges]
-        return f"{kind} {' to '.join(_quoted(end) for end in ends if end is not None)}"
+    if element.kind is Kind.TRANSITION or (element.kind in _FLOWS and not element.name):
+        ends = [graph.target(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+        return f"{kind} {' to '.join(_quoted(_end(graph, end)) for end in ends if end is not None)}"
     owner = next((up for up in graph.ancestors(element) if up.name), None)
     of = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
     return f"{kind} '{element.name}'{of}" if element.name else f"{kind}{of}"
@@ -183,6 +184,12 @@ def _name(graph: Graph, id: str) -> str:
 @cache
 def _in_words(kind: str) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", " ", kind).lower()
+
+
+def _end(graph: Graph, end: Element) -> Element:
+    """What a flow leads to, as it is called: of a pin the action that has it."""
+    owner = graph.owner(end) if end.kind is Kind.PIN else None
+    return owner or end
 
 
 def _quoted(vertex: Element) -> str:

@@ -29,7 +29,7 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.moves import Derivation, Move, active, explore, is_picked
 from sysmlc.logic.machines.path import Path
-from sysmlc.logic.simplify import tidy
+from sysmlc.logic.simplify import is_satisfiable, tidy
 
 _Touches = Callable[[Path, str], bool]
 
@@ -135,7 +135,8 @@ def _transition(work: Derivation, move: Move) -> Iterator[Conjunct]:
         formula = f.implies(taken, f.both(*_effects(work, path)))
         if formula != f.TRUE:
             way = tidy(path.when, work.domains, _conjuncts(move.fires))
-            text = words.transition(work.machine, move.transition, path, way)
+            first = [one.transition for one in _overtaking(work, move, path)]
+            text = words.transition(work.machine, move.transition, path, way, first)
             yield Conjunct(formula, Class.SAFETY, origin, text)
     if any(list(_passed_picks(work, move, path)) for path in move.paths):
         ways = [
@@ -144,6 +145,13 @@ def _transition(work: Derivation, move: Move) -> Iterator[Conjunct]:
         ]
         formula = f.implies(move.fires, f.either(*ways))
         yield Conjunct(formula, Class.SAFETY, origin, words.some_way(move.transition))
+
+
+def _overtaking(work: Derivation, move: Move, path: Path) -> Iterator[Move]:
+    """What may be taken first where the transition could be taken along the path."""
+    for other in move.before:
+        if is_satisfiable(f.both(move.enabled, path.when, other.enabled), work.domains):
+            yield other
 
 
 def _passed_picks(work: Derivation, move: Move, path: Path) -> Iterator[tuple[str, str]]:

@@ -89,6 +89,8 @@ class Move:
     paths: tuple[Path, ...]
     enabled: Formula
     fires: Formula = f.FALSE
+    before: tuple["Move", ...] = ()
+    """What goes first where both are enabled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,13 +116,20 @@ def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
         found.append(Move(one, tuple(paths), _enabled(machine, domains, one, paths)))
         _report(graph, machine, domains, one, paths, sink)
     found = _joined(machine, domains, found)
-    moves = tuple(replace(m, fires=tidy(_fires(machine, m, found), domains)) for m in found)
+    moves = tuple(_ordered(machine, domains, move, found) for move in found)
     try:
         starts = tuple(_starts(machine, domains, explorer))
     except TooManyPaths:
         _give_up(graph, machine.id, f"the start of '{machine.name}'", sink)
         return None
     return Derivation(machine, domains, moves, starts)
+
+
+def _ordered(
+    machine: Machine, domains: Mapping[str, Domain], move: Move, moves: list[Move]
+) -> Move:
+    fires = tidy(_fires(machine, move, moves), domains)
+    return replace(move, fires=fires, before=tuple(_before(machine, move, moves)))
 
 
 def _joined(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
@@ -234,18 +243,18 @@ def _fires(machine: Machine, move: Move, moves: list[Move]) -> Formula:
 
 
 def _eligible(machine: Machine, move: Move, moves: list[Move]) -> Formula:
-    return f.both(move.enabled, *(f.negate(one) for one in _before(machine, move, moves)))
+    return f.both(move.enabled, *(f.negate(one.enabled) for one in _before(machine, move, moves)))
 
 
-def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Formula]:
+def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Move]:
     """What goes first: transitions of inner states, and the completion of the same state."""
     mine = move.transition
     for other in moves:
         if _is_inside(machine, other, move):
             if simultaneous(mine, other.transition):
-                yield other.enabled
+                yield other
         elif _is_later(mine, other.transition) and mine.source in other.transition.sources:
-            yield other.enabled
+            yield other
 
 
 def _is_later(one: Transition, other: Transition) -> bool:

@@ -1,5 +1,7 @@
 """What the conjuncts of a state machine's contract say, in the modeller's words."""
 
+from collections.abc import Sequence
+
 from sysmlc.logic.expressions.expression import Expression, dotted, print_expression
 from sysmlc.logic.formula import TRUE, Const, Formula
 from sysmlc.logic.machines.machine import (
@@ -28,15 +30,21 @@ def name_transition(one: Transition) -> str:
     return f"transition '{one.words}'"
 
 
-def transition(machine: Machine, one: Transition, path: Path, way: Formula) -> str:
-    """What taking the transition on this path means; ``way`` is what tells it from others."""
+def transition(
+    machine: Machine, one: Transition, path: Path, way: Formula, first: Sequence[Transition] = ()
+) -> str:
+    """What taking the transition on this path means; ``way`` is what tells it from others,
+    ``first`` are transitions that are taken instead where they can be.
+    """
     source = "' and '".join(machine.vertices[each].literal for each in one.sources)
     reasons = " or ".join(_occurrence(each) for each in one.occurrences)
     when = reasons or (f"'{source}' are complete" if one.also else f"'{source}' is complete")
     guard = [] if one.guard is None else [f"[{_shown(one.guard)}]"]
     chosen = [] if way == TRUE else [print_formula(way)]
     conditions = " and ".join([when, *guard, *chosen])
-    return f"In '{source}', when {conditions}: {_outcome(machine, one, path)}."
+    names = " or ".join(dict.fromkeys(name_transition(each) for each in first))
+    unless = f", unless {names} goes first" if names else ""
+    return f"In '{source}', when {conditions}{unless}: {_outcome(machine, one, path)}."
 
 
 def _occurrence(occurrence: Occurrence) -> str:
