@@ -13,6 +13,7 @@ LAYERS = [
         "resources",
         "output",
         "naming",
+        "patterns",
         "suggest",
         "cache",
         "depth",

@@ -3,12 +3,12 @@
 It serves tests, the examples of ``sysmlc explain``, and bug reports without the original model.
 """
 
-import re
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.text import IrSyntaxError, parse_text
+from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 from sysmlc.values import dataclass
 
@@ -22,9 +22,9 @@ IR_SYNTAX = rule(
     wrong='Klass gate "Gate"',
     right='Class gate "Gate"',
 )
-_FIRST = re.compile(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
+_FIRST = pattern(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
 _KINDS = frozenset(kind.value.encode() for kind in Kind)
-_PLACE = re.compile(r"line (\d+)")
+_PLACE = pattern(r"line (\d+)")
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ lines the references that are not resolved yet. docs/ir.md shows the form.
 """
 
 import json
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import field
 from enum import StrEnum
@@ -15,11 +14,12 @@ from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.reference import Reference
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
 _E = TypeVar("_E", bound=StrEnum)
-_BARE = re.compile(r"[\w.:/#!+~%-]+")
-_BLANK = re.compile(r"\s*")
+_BARE = pattern(r"[\w.:/#!+~%-]+")
+_BLANK = pattern(r"\s*")
 _DECODER = json.JSONDecoder()
 
 

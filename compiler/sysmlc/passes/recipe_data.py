@@ -1,6 +1,5 @@
 """Data of an activity: which variables its guards, pins and parameters stand for."""
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
@@ -9,6 +8,7 @@ from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, is_input, parameter, read, read_time
 from sysmlc.passes.recipe_paths import feature_at, with_values
 from sysmlc.passes.recipe_regions import contents, is_inlined
+from sysmlc.patterns import pattern
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
 from sysmlc.values import dataclass
@@ -194,7 +194,7 @@ def _spoken(context: Context, activity: Element) -> frozenset[str]:
     return frozenset(name for found in dotted for name in found)
 
 
-_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
+_DOTTED = pattern(r"[^\W\d]\w*\.[^\W\d]\w*")
 
 
 def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, measures, query
 from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
 from sysmlc.values import dataclass, replace
 
@@ -26,7 +27,7 @@ DERIVED = rule(
     samples.OWNED_FUNCTION.replace('"Robot"', '"Robot" level="machine"'),
 )
 
-_NODE_ID = re.compile(
+_NODE_ID = pattern(
     r"(?:nsu?=[^;]+;)?"
     r"(?:i=\d+|s=.+|b=[A-Za-z0-9+/=]+|g=[0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})",
     re.DOTALL,

@@ -12,11 +12,12 @@ from urllib.parse import unquote
 
 from sysmlc import resources
 from sysmlc.ir import Kind
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
-_ROLE_NAME = re.compile(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
-_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
-_METACLASS = re.compile(r"[A-Z][A-Za-z]+")
+_ROLE_NAME = pattern(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
+_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
+_METACLASS = pattern(r"[A-Z][A-Za-z]+")
 
 
 @dataclass(frozen=True, slots=True)

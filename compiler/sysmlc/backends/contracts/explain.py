@@ -12,6 +12,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass, replace
 
 _FOLDER = "contracts"
@@ -34,10 +35,10 @@ _PREFIXES = {
     "was_": "what the condition was in the step before",
 }
 """What variables of diagrams begin with."""
-_UNSET = re.compile(r"!\w+$")
+_UNSET = pattern(r"!\w+$")
 _MANY = 3
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-_MARKUP = re.compile(r"[<>`|\[\]]")
+_MARKUP = pattern(r"[<>`|\[\]]")
 """What would not be shown as it is written."""
 
 

@@ -1,12 +1,11 @@
 """Whether a source is AutomationML: told by its root element, not by its name."""
 
-import re
-
+from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 
 _HEAD = 1 << 14
-_ROOT = re.compile(rb"<(?:[\w.-]+:)?CAEXFile[\s>/]")
-_FIRST = re.compile(rb"<(?![?!])")
+_ROOT = pattern(rb"<(?:[\w.-]+:)?CAEXFile[\s>/]")
+_FIRST = pattern(rb"<(?![?!])")
 
 
 def score(source: Source) -> float:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.ir import Graph
+from sysmlc.patterns import pattern
 from sysmlc.sources import Fault, Source, SourceError
 
 if TYPE_CHECKING:
     from sysmlc.frontends.huds.records import Record
 
-_ROOT = re.compile(
+_ROOT = pattern(
     rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>\[]*(\[.*?\])?\s*>\s*)*<packet[\s>]",
     re.DOTALL,
 )

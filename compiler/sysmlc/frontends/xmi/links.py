@@ -1,10 +1,9 @@
 """Which files a document refers to; found without parsing it, before the unit is known."""
 
-import re
-
+from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 
-_HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+_HREF = pattern(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
 
 
 def links(source: Source) -> list[str]:

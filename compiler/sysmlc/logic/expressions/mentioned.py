@@ -1,19 +1,19 @@
 """Texts and numbers that a behaviour compares its values with, or gives them."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.expressions.enumerations import Enumerations
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
 BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
 _KEYS = ("guard", "body", "condition", "value")
-_TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
+_TEXT = pattern(r'"((?:[^"\\]|\\.)*)"')
 _NAME = r"[^\W\d][\w.]*"
 _VALUE = rf"-?\d+(?![\w.])|{_NAME}::\w+"
-_AFTER = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
-_BEFORE = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
+_AFTER = pattern(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
+_BEFORE = pattern(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
 _GREATEST = 255
 """Numbers further from zero widen no range: a domain has a place for each of its values."""
 

@@ -10,9 +10,10 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
-_DOTTED = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+_DOTTED = pattern(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
 @dataclass(frozen=True, slots=True)

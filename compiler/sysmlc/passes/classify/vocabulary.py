@@ -10,6 +10,7 @@ from functools import cache
 
 from sysmlc.ir import Edge
 from sysmlc.passes.standins import libraries
+from sysmlc.patterns import pattern
 
 
 class Family(StrEnum):
@@ -24,10 +25,10 @@ class Family(StrEnum):
 
 
 _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
-    (Family.SYSMLC, re.compile(r"urn:sysmlc:profile:|pathmap://SYSMLC_PROFILES/")),
+    (Family.SYSMLC, pattern(r"urn:sysmlc:profile:|pathmap://SYSMLC_PROFILES/")),
     (
         Family.SYSML,
-        re.compile(
+        pattern(
             r"""https?://www\.omg\.org/spec/SysML/
             | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)
             | https?://www\.sparxsystems\.com/profiles/SysML
@@ -41,7 +42,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
     ),
     (
         Family.STANDARD,
-        re.compile(
+        pattern(
             r"""https?://www\.eclipse\.org/uml2/[\d.]+/UML/Profile/
             | https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/StandardProfile
             | pathmap://UML_PROFILES/
@@ -54,7 +55,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
         # MARTE has a FlowPort and an Allocate of its own, and Papyrus writes its sub-profiles
         # as /papyrus/GCM/1 and so on.
         Family.FOREIGN,
-        re.compile(
+        pattern(
             r"""https?://www\.omg\.org/spec/(MARTE|UTP|FUML)
             | https?://www\.eclipse\.org/papyrus/(MARTE\w*|GCM|Alloc|FCM|HLAM|HRM|HwLayout|GRM
               |GQAM|SAM|PAM|SRM|RSM|NFPs|Time|VSL|C_Cpp|Codegen|FMIProfile|umlrt)/
@@ -66,7 +67,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
     ),
     (
         Family.TOOL,
-        re.compile(
+        pattern(
             r"""https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/MagicDraw
             | https?://www\.magicdraw\.com/schemas/(DSL_Customization|Validation_Profile
               |Dependency_Matrix_Profile|Matrix_Templates_Profile|matrix_templates)
@@ -208,8 +209,8 @@ def is_role_or_kept(name: str) -> bool:
 
 def family(namespace: str) -> Family:
     """Whose stereotypes a namespace (or the file of a profile) holds."""
-    for found, pattern in _NAMESPACES:
-        if pattern.match(namespace):
+    for found, namespaces in _NAMESPACES:
+        if namespaces.match(namespace):
             return found
     return Family.CUSTOM
 
