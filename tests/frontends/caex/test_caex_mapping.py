@@ -734,11 +734,31 @@ def test_a_group_may_hold_groups():
         '<InternalElement Name="m" ID="m" RefBaseSystemUnitPath="a"/>'
         f"{playing(BASE_ROLE + '/Group')}</InternalElement>"
     )
-    reading = showing("Group", inner, '<InternalElement Name="a" ID="a"/>')
+    facet = f'<InternalElement Name="f" ID="f">{playing(BASE_ROLE + "/Facet")}</InternalElement>'
+    reading = showing("Group", inner, f'<InternalElement Name="a" ID="a"/>{facet}')
     assert reading.owned("Plant::cell::s") == ["Group g"]
     assert reading.to("Plant::cell::s::g", "references") == ["Plant::cell::a"]
     assert reading.one("Plant::cell::s::g").attrs["associated_facet"] == "f"
     assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    ("facet", "findings"),
+    [
+        ("plc", []),
+        (
+            "plcs",
+            [
+                "SM639: the group 'Plant::cell::s' is for facets called 'plcs', and none is; "
+                "did you mean 'plc'?"
+            ],
+        ),
+    ],
+)
+def test_a_group_for_a_facet_that_there_is_not_is_told(facet, findings):
+    beside = f'<InternalElement Name="plc" ID="f">{playing(BASE_ROLE + "/Facet")}</InternalElement>'
+    reading = showing("Group", value("AssociatedFacet", facet), beside)
+    assert reading.findings == findings
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.suggest import did_you_mean
 
 DESCRIBED_MIRROR = rule(
     "SM638",
@@ -24,6 +25,18 @@ DESCRIBED_MIRROR = rule(
     wrong='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c">'
     "<Description>the left one</Description></InternalElement>\nin a group",
     right='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c"/>\nin a group',
+)
+
+UNKNOWN_FACET = rule(
+    "SM639",
+    "group-of-unknown-facet",
+    Severity.WARNING,
+    "the group '{element}' is for facets called '{facet}', and none is; {hint}",
+    why="The value of AssociatedFacet is the name of facets of the elements that the group shows: "
+    "only these facets are of interest there. Of a name that none has nobody knows what is meant.",
+    wrong='<Attribute Name="AssociatedFacet"><Value>PLCFacte</Value></Attribute>\n'
+    "in a group, where the facet is called PLCFacet",
+    right='<Attribute Name="AssociatedFacet"><Value>PLCFacet</Value></Attribute>',
 )
 
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
@@ -109,6 +122,18 @@ def show(context: Context, site: Site) -> None:
                 called.append((one.id, node.name, id))
     if called:
         context.graph.set(element, mirrors=tuple(called))
+
+
+def report_facets(context: Context, sites: list[Site]) -> None:
+    """Tell of groups that are for a facet that there is not."""
+    elements = [context.graph[site.part] for site in sites]
+    facets = sorted({one.name for one in elements if one.kind is Kind.FACET})
+    for site, element in zip(sites, elements, strict=True):
+        facet = str(element.attrs.get("associated_facet", ""))
+        if facet and facet not in facets:
+            facts = {"element": path_of(site.node), "facet": facet}
+            hint = did_you_mean(facet, facets)
+            context.report(UNKNOWN_FACET, site.document, site.node, hint=hint, **facts)
 
 
 def _verdict(context: Context, site: Site, node: Node, master: Node) -> Verdict:

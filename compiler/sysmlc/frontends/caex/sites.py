@@ -188,6 +188,7 @@ class Sites:
             self._mirror(site)
         for site in self._showing:
             groups.show(self._context, site)
+        groups.report_facets(self._context, self._showing)
         sites = [site for site in self._all if site.instance]
         instances = list(map(self.instance, sites))
         self._tie(Edge.INSTANCE_OF, sites, instances)
