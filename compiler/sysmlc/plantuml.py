@@ -18,11 +18,16 @@ _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
 """PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
 _ALWAYS = frozenset('"\\<>~%$&{')
-_PAIRS = frozenset(["**", "//", "__", "--", "[[", "/'", "'/", "''"])
+_TRAPS = re.compile(
+    r'["\\<>~%$&{]|^[^A-Za-z0-9]|(?<=\*)\*|(?<=/)/|(?<=_)_|(?<=-)-|(?<=\[)\[|(?<=/)\'|(?<=\')[/\']|[^\x00-\x7f]'
+)
+"""Markup, what a line may not begin with, second characters of pairs, what may not be seen."""
 _HARMLESS_FIRST = frozenset("«([:/≤≥→←…✕⚡")
 _UNSEEN = frozenset(["Cf", "Zl", "Zp", "Co", "Cn"])
 _HARMLESS = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.,:;()=+]|[ _-](?=[A-Za-z0-9.,:;()=+]))*")
 """Text that stays as it is; most names are such, and to look at each character takes long."""
+_BLANKS = re.compile(r"[\t\n\x0b\x0c\r]|  |^ | $|^$")
+"""Blanks other than one between two words."""
 _JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
@@ -32,7 +37,7 @@ def plain(text: str) -> str:
     if len(text) <= _LONGEST and _HARMLESS.fullmatch(text):
         return text
     line = " ".join(_visible(_shortened(text)).split())
-    return "".join(_character(line, index) for index in range(len(line)))
+    return _TRAPS.sub(_untrapped, line)
 
 
 @lru_cache(_REMEMBERED)
@@ -91,20 +96,16 @@ def _is_invalid(char: str) -> bool:
     return unicodedata.category(char) in ("Cc", "Cs") or ord(char) & 0xFFFE == 0xFFFE
 
 
-def _character(line: str, index: int) -> str:
-    char = line[index]
-    if line[index : index + 2] == "\\t":
-        return _BACKSLASH_BEFORE_T
-    if char in _ALWAYS or _is_markup(line, index) or unicodedata.category(char) in _UNSEEN:
-        return _escaped(char)
-    return char
-
-
-def _is_markup(line: str, index: int) -> bool:
-    char = line[index]
-    if index == 0:
-        return not (char.isalnum() or char in _HARMLESS_FIRST or ord(char) > 0x2FF)
-    return line[index - 1 : index + 1] in _PAIRS
+def _untrapped(found: re.Match[str]) -> str:
+    """What stands for a character that PlantUML may read as something else."""
+    char = found[0]
+    if char == "\\":
+        return _BACKSLASH_BEFORE_T if found.string.startswith("t", found.end()) else _escaped(char)
+    if found.start() == 0 and char not in _ALWAYS:
+        is_shown = char.isalnum() or char in _HARMLESS_FIRST or char > "\u02ff"
+    else:
+        is_shown = not char.isascii()
+    return char if is_shown and unicodedata.category(char) not in _UNSEEN else _escaped(char)
 
 
 def _escaped(char: str) -> str:
@@ -112,8 +113,23 @@ def _escaped(char: str) -> str:
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    rows = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+    if _BLANKS.search(text):
+        rows = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+    else:
+        rows = _filled(text.split(" "), width)
     return [piece for row in rows for piece in _pieces(row, width)]
+
+
+def _filled(words: list[str], width: int) -> list[str]:
+    """Rows of words with one blank between, each as full as it can be."""
+    rows, row = [], words[0]
+    for word in words[1:]:
+        if len(row) + 1 + len(word) <= width:
+            row = f"{row} {word}"
+        else:
+            rows.append(row)
+            row = word
+    return [*rows, row]
 
 
 def _pieces(row: str, width: int) -> list[str]:

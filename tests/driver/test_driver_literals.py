@@ -9,12 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from edited_units import assert_is_as_from_a_clean_build, compiled_units, edited, files, sysmlc
 
-from sysmlc import cache, resources
-from sysmlc.cli import group
-from sysmlc.driver import compilation
-from sysmlc.language import library
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.contracts import Contracts
 
@@ -77,44 +73,7 @@ LITERAL = re.compile(
 @pytest.fixture
 def runs(monkeypatch, tmp_path):
     """A cache of its own and a folder with a model; the list of units that were compiled."""
-    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
-    monkeypatch.setenv(library.VARIABLE, str(resources.path("metamodels", "core")))
-    monkeypatch.chdir(tmp_path)
-    Path("unit").mkdir()
-    Path("unit/line.sysml").write_text(LINE)
-    Path("unit/parts.sysml").write_text(PARTS)
-    happened, real = [], compilation._Run.compilation
-
-    def counted(run):
-        happened.append(run)
-        return real(run)
-
-    monkeypatch.setattr(compilation._Run, "compilation", counted)
-    return happened
-
-
-def sysmlc(*arguments):
-    result = CliRunner().invoke(group.sysmlc, list(arguments))
-    return result.exit_code, result.stdout, result.stderr
-
-
-def files(folder: str) -> dict[str, str]:
-    return {p.relative_to(folder).as_posix(): p.read_text() for p in Path(folder).rglob("*.*")}
-
-
-def assert_is_as_from_a_clean_build(*options):
-    """The outputs and every finding are those of a run without a cache."""
-    shutil.rmtree("clean", ignore_errors=True)
-    told = sysmlc("unit", "-o", "out", *options, "--format", "json")
-    assert told == sysmlc("unit", "-o", "clean", *options, "--format", "json", "--no-cache")
-    assert files("out") == files("clean")
-
-
-def edited(name: str, old: str, new: str) -> None:
-    path = Path("unit") / name
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
+    return compiled_units(monkeypatch, tmp_path, {"line.sysml": LINE, "parts.sysml": PARTS})
 
 
 def is_compiled(runs, *options) -> bool:

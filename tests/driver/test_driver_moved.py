@@ -9,12 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from edited_units import assert_is_as_from_a_clean_build, compiled_units, edited, files, sysmlc
 
-from sysmlc import cache, resources
-from sysmlc.cli import group
-from sysmlc.driver import compilation
-from sysmlc.language import library
+from sysmlc.driver import recall
+from sysmlc.driver.manifest import MANIFEST
 
 LINE = """\
 package Line {
@@ -46,44 +44,7 @@ NOTES = ("// note\n", "//* note */", "\n", " ", "\t", "\r\n", "\n\n// größer {
 @pytest.fixture
 def runs(monkeypatch, tmp_path):
     """A cache of its own and a folder with a model; the list of units that were compiled."""
-    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
-    monkeypatch.setenv(library.VARIABLE, str(resources.path("metamodels", "core")))
-    monkeypatch.chdir(tmp_path)
-    Path("unit").mkdir()
-    Path("unit/line.sysml").write_text(LINE)
-    Path("unit/parts.sysml").write_text(PARTS)
-    happened, real = [], compilation._Run.compilation
-
-    def counted(run):
-        happened.append(run)
-        return real(run)
-
-    monkeypatch.setattr(compilation._Run, "compilation", counted)
-    return happened
-
-
-def sysmlc(*arguments):
-    result = CliRunner().invoke(group.sysmlc, list(arguments))
-    return result.exit_code, result.stdout, result.stderr
-
-
-def files(folder: str) -> dict[str, str]:
-    return {p.relative_to(folder).as_posix(): p.read_text() for p in Path(folder).rglob("*.*")}
-
-
-def assert_is_as_from_a_clean_build(*options):
-    """The outputs and every finding are those of a run without a cache."""
-    shutil.rmtree("clean", ignore_errors=True)
-    told = sysmlc("unit", "-o", "out", *options, "--format", "json")
-    assert told == sysmlc("unit", "-o", "clean", *options, "--format", "json", "--no-cache")
-    assert files("out") == files("clean")
-
-
-def edited(name: str, old: str, new: str) -> None:
-    path = Path("unit") / name
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
+    return compiled_units(monkeypatch, tmp_path, {"line.sysml": LINE, "parts.sysml": PARTS})
 
 
 @pytest.mark.parametrize(
@@ -245,3 +206,19 @@ def test_it_is_the_same_whatever_the_seed_of_hashes(runs):
     moved = run("2", "-o", "out")
     assert moved == run("3", "-o", "clean", "--no-cache")
     assert files("out") == files("clean")
+
+
+def test_texts_that_stay_are_kept_as_they_were(runs, monkeypatch):
+    sysmlc("unit", "-o", "out")
+    before = files("out")
+    edited("line.sysml", "part arm", "part hand")
+    packed, real = [], recall._compressed
+    monkeypatch.setattr(recall, "_compressed", lambda text: packed.append(text) or real(text))
+    sysmlc("unit", "-o", "out")
+    after = files("out")
+    same = {path for path, text in after.items() if before.get(path) == text}
+    assert len(runs) == 2
+    assert same
+    assert same.isdisjoint(path for path, text in after.items() if text in packed)
+    assert {path for path in after if after[path] in packed} == after.keys() - same - {MANIFEST}
+    assert_is_as_from_a_clean_build()

@@ -318,10 +318,16 @@ class _Run:
         levels = self._request.config.passes.get("recipe", {}).get("levels")
         if not isinstance(levels, dict) or len(self._request.config.models) > 1:
             return
-        names = {self._graph.qualified_name(element) for element in self._graph}
-        for name in levels:
-            if name not in names and name not in self._graph:
-                yield name, did_you_mean(name, names)
+        unknown = [name for name in levels if not self._is_known(name)]
+        names = {self._graph.qualified_name(one) for one in self._graph} if unknown else set()
+        for name in unknown:
+            yield name, did_you_mean(name, names)
+
+    def _is_known(self, name: str) -> bool:
+        """Whether an element has the id or the qualified name; few have the last part of it."""
+        last = name.rpartition("::")[2]
+        alike = (one for one in self._graph if (one.name or f"<{one.kind}>").endswith(last))
+        return name in self._graph or any(self._graph.qualified_name(one) == name for one in alike)
 
 
 def _cuts_short(found: Diagnostic) -> bool:

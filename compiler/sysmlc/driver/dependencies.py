@@ -35,6 +35,10 @@ class Dependencies:
         said = [(name, wordings.get(name, digest), by) for name, digest, by in self.inputs]
         return _digest([self.others, *map(repr, said)])
 
+    def unit(self) -> str:
+        """Digest of what it is that was compiled, whatever the inputs say."""
+        return _digest(["unit", self.others, *(repr((name, by)) for name, _, by in self.inputs)])
+
 
 def depends_on(
     opened: Opened, request: Request, wanted: Sequence[str], has_files: bool

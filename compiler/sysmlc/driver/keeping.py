@@ -41,7 +41,7 @@ def keep(
 
     With what was ``recorded`` it is also kept by the shapes of its texts, without literals.
     """
-    remember(cache, on.key(), outcome)
+    remember(cache, on.key(), outcome, on.unit())
     if outcome.exit_code() == FAILED or not _is_still(outcome, backends):
         return
     wordings = dict(_wordings(opened))

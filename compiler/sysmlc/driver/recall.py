@@ -20,22 +20,37 @@ _LENGTH = 8
 """Bytes that say how long a part of an entry is: the outcome, its texts' lengths; then texts."""
 
 
-def remember(cache: Cache, key: str, outcome: Outcome) -> None:
-    """Keep an outcome, unless a fault of ours or of the machine is part of it."""
+def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
+    """Keep an outcome, unless a fault of ours or of the machine is part of it.
+
+    Texts that the last outcome of the ``unit`` has, too, are taken from there, compressed.
+    """
     if outcome.exit_code() == 2:
         return
-    texts = dict(_packed_texts(outcome.texts))
+    texts = dict(_packed_texts(outcome, _last_texts(cache, unit)))
     parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
     lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
     cache.put(key, b"".join([*lengths, *parts, *texts.values()]))
+    if unit:
+        cache.put(unit, key.encode())
 
 
-def _packed_texts(texts: Mapping[str, str]) -> Iterator[tuple[str, bytes]]:
+def _packed_texts(outcome: Outcome, known: Mapping[str, bytes]) -> Iterator[tuple[str, bytes]]:
     """Each text compressed; what an earlier outcome holds is so already."""
-    known = texts if isinstance(texts, Packed) else None
-    for path in texts:
-        kept = known.packed(path) if known is not None else None
-        yield path, _compressed(texts[path]) if kept is None else kept
+    before = outcome.texts if isinstance(outcome.texts, Packed) else None
+    for file in outcome.files:
+        kept = known.get(file.sha256) if before is None else before.packed(file.path)
+        yield file.path, _compressed(outcome.texts[file.path]) if kept is None else kept
+
+
+def _last_texts(cache: Cache, unit: str) -> dict[str, bytes]:
+    """Compressed texts of the last outcome of a unit by their digests."""
+    key = cache.get(unit) if unit else None
+    entry = cache.get(key.decode()) if key else None
+    if entry is None:
+        return {}
+    form, texts = _opened(entry)
+    return {file["sha256"]: texts.packed(file["path"]) for file in form["files"]}
 
 
 def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
@@ -43,11 +58,16 @@ def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
     entry = cache.get(key)
     if entry is None:
         return None
+    form, texts = _opened(entry)
+    return _outcome(form, root, texts)
+
+
+def _opened(entry: bytes) -> "tuple[dict[str, Any], _Texts]":
     lengths = [int.from_bytes(entry[at : at + _LENGTH], "big") for at in (0, _LENGTH)]
     start = 2 * _LENGTH
     middle, end = start + lengths[0], start + sum(lengths)
     texts = _Texts(entry[end:], _unpacked(entry[middle:end]))
-    return _outcome(_unpacked(entry[start:middle]), root, texts)
+    return _unpacked(entry[start:middle]), texts
 
 
 def _packed(value: object) -> bytes:
@@ -116,7 +136,7 @@ class _Texts(Packed):
     def _starts(self) -> dict[str, int]:
         return dict(zip(self.lengths, accumulate(self.lengths.values(), initial=0), strict=False))
 
-    def packed(self, path: str) -> bytes | None:
+    def packed(self, path: str) -> bytes:
         """The text at the path, compressed."""
         start = self._starts[path]
         return self.all[start : start + self.lengths[path]]

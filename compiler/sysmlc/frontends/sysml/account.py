@@ -1,5 +1,6 @@
 """Every node of a document is counted once, and what is lost is listed with the reason."""
 
+from collections import Counter
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Coverage, Rule, Verdict
@@ -22,8 +23,9 @@ def account(low: Lowering, document: Document, coverage: Coverage) -> None:
     """Count each node; what has no verdict of its own shares that of its owner."""
     counts = coverage.file(document.path)
     found = list(_verdicts(low, document.root))
-    for node, verdict, _ in found:
-        counts.count(node.kind, verdict)
+    numbers = Counter((node.kind, verdict) for node, verdict, _ in found)
+    for (kind, verdict), number in numbers.items():
+        counts.count(kind, verdict, number)
     if coverage.is_detailed:
         counts.losses.extend(_losses(low, document, found))
 

@@ -24,7 +24,10 @@ def references(node: Node, *kinds: str) -> list[Reference]:
 
 def reference(node: Node, *kinds: str) -> Reference | None:
     """The first of them."""
-    return next(iter(references(node, *kinds)), None)
+    for one in node.relations:
+        if one.kind in kinds:
+            return one.reference
+    return None
 
 
 def target(node: Node, *kinds: str) -> Node | None:

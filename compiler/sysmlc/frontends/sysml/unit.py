@@ -15,7 +15,7 @@ from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.strays import tell
-from sysmlc.frontends.sysml.usage import accepted, flowing
+from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.pins import pin_subkind
 from sysmlc.language.tree import Document, Node
@@ -35,12 +35,13 @@ def lower(
     """Add the elements of all documents to the graph and account for every node of them."""
     low = Lowering(documents, model, graph, sink, HANDLERS)
     low.literals = literals
-    low.accepted = accepted(documents)
-    low.flowing = flowing(documents)
+    found = by_kind(documents)
+    low.accepted = accepted(found)
+    low.flowing = flowing(found)
     for document in documents:
         with room_for(_depth(document.root)):
             low.lower_all(document.root.members, None)
-    low.last(lambda: _give_pins(low, documents))
+    low.last(lambda: _give_pins(low, found))
     low.finish()
     low.end_branches()
     _say_pins(graph)
@@ -60,15 +61,12 @@ def _depth(root: Node) -> int:
     return depth
 
 
-def _give_pins(low: Lowering, documents: Sequence[Document]) -> None:
+def _give_pins(low: Lowering, found: ByKind) -> None:
     """Give steps the output pins whose values other steps and guards speak of (``pick.ok``)."""
-    for document in documents:
-        for node in document.root.walk():
-            if node.kind == "FeatureChainExpression":
-                steps = [low.element(one) for one in steps_of_value(node)]
-                for step, feature in pairwise(steps):
-                    if step is not None and feature is not None and step.kind is Kind.ACTION:
-                        _give_pin(low, step, feature)
+    for node in found.get("FeatureChainExpression", ()):
+        for step, feature in pairwise(low.element(one) for one in steps_of_value(node)):
+            if step is not None and feature is not None and step.kind is Kind.ACTION:
+                _give_pin(low, step, feature)
 
 
 def _give_pin(low: Lowering, step: Element, feature: Element) -> None:

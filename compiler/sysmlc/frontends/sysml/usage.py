@@ -1,56 +1,60 @@
 """How definitions and features are used in the unit, found out before anything is lowered."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.connections import steps_of
 from sysmlc.language.tree import Document, Node
 
-_FLOWS = frozenset({"FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow"})
+_FLOWS = ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow")
+ByKind = Mapping[str, Sequence[Node]]
 
 
-def accepted(documents: Iterable[Document]) -> set[int]:
+def by_kind(documents: Iterable[Document]) -> ByKind:
+    """All nodes of the documents by metaclass, those of one in the order of the text."""
+    found: dict[str, list[Node]] = {}
+    for one in documents:
+        for node in one.root.walk():
+            found.setdefault(node.kind, []).append(node)
+    return found
+
+
+def accepted(found: ByKind) -> set[int]:
     """Identities of the item definitions that are signals.
 
     They are sent, accepted, or specialised by one that is; or no feature is typed by them and
     they have no parts.
     """
-    all_nodes = [node for one in documents for node in one.root.walk()]
-    found = {id(one) for node in all_nodes for one in _payloads(node)}
-    typing = {id(one) for node in all_nodes for one in _types(node)}
-    for node in all_nodes:
-        if node.kind == "ItemDefinition" and id(node) not in typing:
-            found.add(id(node))
-    return found
+    signals = {id(one) for one in _payloads(found)}
+    items = {id(one) for one in found.get("ItemDefinition", ())}
+    return signals | (items - {id(one) for one in _types(found)} if items else items)
 
 
-def flowing(documents: Iterable[Document]) -> set[int]:
+def flowing(found: ByKind) -> set[int]:
     """Identities of the features at which flows begin or end."""
-    found: set[int] = set()
-    for one in documents:
-        for node in one.root.walk():
-            if node.kind in _FLOWS:
-                ends = (steps_of(end) for end in nodes.ends_of(node))
-                found.update(id(steps[-1]) for steps in ends if steps and steps[-1] is not None)
-    return found
+    flows = (node for kind in _FLOWS for node in found.get(kind, ()))
+    ways = (steps_of(end) for node in flows for end in nodes.ends_of(node))
+    return {id(steps[-1]) for steps in ways if steps and steps[-1] is not None}
 
 
-def _payloads(node: Node) -> Iterable[Node]:
-    if node.kind == "AcceptActionUsage":
+def _payloads(found: ByKind) -> Iterator[Node]:
+    for node in found.get("AcceptActionUsage", ()):
         for one in nodes.held(node, "ParameterMembership"):
             yield from _targets(one, "FeatureTyping")
-    elif node.kind in ("ConstructorExpression", "InvocationExpression"):
-        yield from _targets(node, "Membership", "FeatureTyping")
-    elif nodes.is_message(node):
+    for kind in ("ConstructorExpression", "InvocationExpression"):
+        for node in found.get(kind, ()):
+            yield from _targets(node, "Membership", "FeatureTyping")
+    for node in filter(nodes.is_message, found.get("FlowUsage", ())):
         for one in node.members:
             yield from _targets(one, "FeatureTyping")
 
 
-def _types(node: Node) -> Iterable[Node]:
-    if node.kind.endswith("Usage") and not _is_payload(node):
-        yield from _targets(node, "FeatureTyping")
-    if node.kind == "PayloadFeature":
-        yield from _targets(node, "FeatureTyping")
+def _types(found: ByKind) -> Iterator[Node]:
+    for kind, ours in found.items():
+        if kind.endswith("Usage") or kind == "PayloadFeature":
+            for node in ours:
+                if kind == "PayloadFeature" or not _is_payload(node):
+                    yield from _targets(node, "FeatureTyping")
 
 
 def _is_payload(node: Node) -> bool:
