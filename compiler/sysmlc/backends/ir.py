@@ -2,7 +2,8 @@
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph, print_text
+from sysmlc.ir import Graph
+from sysmlc.ir.text import print_text
 from sysmlc.output import Output
 from sysmlc.values import dataclass
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.text import IrSyntaxError, parse_text
 from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 from sysmlc.values import dataclass
@@ -44,6 +43,8 @@ class IrFrontend:
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read each file; one that is broken is reported and left out whole."""
+        from sysmlc.ir.text import IrSyntaxError, parse_text
+
         for source in sources:
             try:
                 part = parse_text(source.data.decode("utf-8"))

@@ -1,12 +1,17 @@
 """The graph IR: one typed property graph for SysML v1, SysML v2 and AutomationML."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.identity import derived_id
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.reference import Reference
-from sysmlc.ir.text import IrSyntaxError, parse_text, print_text
 from sysmlc.ir.verify import verify
+
+if TYPE_CHECKING:
+    from sysmlc.ir.text import IrSyntaxError, parse_text, print_text
 
 __all__ = [
     "AttrValue",
@@ -21,3 +26,10 @@ __all__ = [
     "print_text",
     "verify",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """The text form is imported when somebody asks for it: most runs neither read nor write it."""
+    if name in ("IrSyntaxError", "parse_text", "print_text"):
+        return getattr(import_module("sysmlc.ir.text"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

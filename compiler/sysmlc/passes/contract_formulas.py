@@ -6,14 +6,12 @@ from functools import cached_property
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.requirements.derivation import with_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
-from sysmlc.logic.texts.formal import is_formal, read_formal, told
 from sysmlc.values import replace
 
 _ACTIONS = (Kind.ACTIVITY, Kind.OPERATION)
@@ -88,7 +86,11 @@ def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Co
 
 def _is_formula(constraint: Element) -> bool:
     body = str(constraint.attrs.get("body", ""))
-    return bool(body) and is_formal(str(constraint.attrs.get("language", "")), body)
+    if not body:
+        return False
+    from sysmlc.logic.texts.formal import is_formal
+
+    return is_formal(str(constraint.attrs.get("language", "")), body)
 
 
 class _Performed:
@@ -142,8 +144,10 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
+    from sysmlc.logic.classes import classified
     from sysmlc.logic.reduction.reduce import is_reducible, remembering
     from sysmlc.logic.spelling import FormulaError
+    from sysmlc.logic.texts.formal import read_formal, told
 
     name = constraint.name or "<Constraint>"
     scope = _scope(graph, contract)

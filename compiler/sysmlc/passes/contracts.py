@@ -21,7 +21,6 @@ from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.statements import statements
 from sysmlc.logic.services import conditions
 from sysmlc.logic.services import derivation as services
-from sysmlc.logic.texts.formal import is_formal
 from sysmlc.passes.contract_formulas import add_formulas, report_general
 from sysmlc.values import dataclass, replace
 
@@ -122,6 +121,10 @@ def _is_submachine(graph: Graph, machine: Element) -> bool:
 
 def _is_formula(constraint: Element) -> bool:
     body, language = (str(constraint.attrs.get(key, "")) for key in ("body", "language"))
+    if not language:
+        return False
+    from sysmlc.logic.texts.formal import is_formal
+
     return is_formal(language, body)
 
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.uc_relations import use_case_relations
 from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.plantuml import keyword_label, label, lines, padded, plain, small, stack
@@ -46,6 +45,8 @@ def actors(graph: Graph) -> set[str]:
 
 def _relations(graph: Graph) -> list[Relation]:
     """Lines between use cases and actors."""
+    from sysmlc.backends.plantuml.uc_relations import use_case_relations
+
     between = [*relations(graph), *use_case_relations(graph)]
     return [r for r in between if {graph[r.source].kind, graph[r.target].kind} <= set(FIGURES)]
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import detect, links
+from sysmlc.frontends.xmi import detect
 from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
@@ -30,7 +30,11 @@ class XmiFrontend:
 
     def links(self, source: Source) -> Sequence[str]:
         """The files that its hrefs name; those of a snapshot are in the same archive."""
-        return [] if is_snapshot(source) else links.links(source)
+        if is_snapshot(source):
+            return []
+        from sysmlc.frontends.xmi.links import links
+
+        return links(source)
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph; references are left for the pass ``resolve``.

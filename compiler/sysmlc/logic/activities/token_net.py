@@ -13,7 +13,6 @@ borders of regions and data stores are no places of such a net.
 from collections.abc import Iterable
 
 from sysmlc.logic.activities.net import Net, net_of
-from sysmlc.logic.activities.net_reductions import reduce
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.values import dataclass
 
@@ -50,6 +49,8 @@ def check(graph: TokenGraph, region: str, limit: int) -> Safety:
     whole = search(net, min(limit, _SMALL))
     if whole.is_complete or any(move.resets for move in net.moves):
         return whole if whole.is_complete else search(net, limit)
+    from sysmlc.logic.activities.net_reductions import reduce
+
     reduce(net)
     return search(net, limit)
 

@@ -5,12 +5,10 @@ from collections.abc import Iterable, Iterator
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
-from sysmlc.logic.classes import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
-from sysmlc.logic.requirements.meaning import is_temporal, meaning
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import (
     Statement,
@@ -33,6 +31,8 @@ def derive(
     """
     known = {one.component: one for one in behaviours}
     for subject, said in statements(graph):
+        from sysmlc.logic.requirements.meaning import meaning
+
         component = component_of(graph, subject)
         behaviour = known.get(component)
         definition, within = definition_of(graph, subject), redefining(graph, subject)
@@ -71,6 +71,9 @@ def _classified(
 def _parts(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[tuple[Class, Formula]]:
+    from sysmlc.logic.classes import classified
+    from sysmlc.logic.requirements.meaning import is_temporal
+
     if is_temporal(statement.constraint):
         yield from classified(formula)
     elif is_assumed and scope.is_input(formula):

@@ -9,7 +9,6 @@ from enum import StrEnum
 from functools import cache
 
 from sysmlc.ir import Edge
-from sysmlc.passes.standins import libraries
 from sysmlc.patterns import pattern
 
 
@@ -227,6 +226,8 @@ def parents(name: str) -> tuple[str, ...]:
 
     ``name`` and the result are names as XML tags show them.
     """
+    from sysmlc.passes.standins import libraries
+
     found = (up for library in _LIBRARIES for up in libraries().generals(library, name))
     return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)
 

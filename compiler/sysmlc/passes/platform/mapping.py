@@ -4,9 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.passes.platform.binding import bind
 from sysmlc.passes.platform.context import Context
-from sysmlc.passes.platform.offering import offers
 from sysmlc.recipe.model import Model
 from sysmlc.recipe.plant import PlantElement
 from sysmlc.recipe.platform import Binding, Offer, Platform, Unused, Used
@@ -18,6 +16,9 @@ def mapping(graph: Graph, sink: Sink) -> None:
     context = Context(graph, models, sink)
     if not (models and context.has_plant()):
         return
+    from sysmlc.passes.platform.binding import bind
+    from sysmlc.passes.platform.offering import offers
+
     bound = bind(context)
     offered = offers(context, bound)
     graph.store(Platform, [_platform(context, bound, offered)])

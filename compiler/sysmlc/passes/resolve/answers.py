@@ -1,6 +1,7 @@
 """What each reference means: an element of the unit, or a stand-in for one outside it."""
 
 from dataclasses import field
+from typing import TYPE_CHECKING
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
@@ -12,11 +13,12 @@ from sysmlc.passes.resolve.libraries import (
     primitive,
     split,
 )
-from sysmlc.passes.resolve.outside import add, known
 from sysmlc.passes.resolve.targets import Targets
 from sysmlc.passes.resolve.uses import Use, by_target
-from sysmlc.passes.standins import StandIn
 from sysmlc.values import dataclass
+
+if TYPE_CHECKING:
+    from sysmlc.passes.standins import StandIn
 
 
 @dataclass(slots=True)
@@ -27,7 +29,7 @@ class Answers:
     targets: Targets
     outside: dict[str, list[Use]] = field(default_factory=dict)
     """Uses of elements outside the unit, by the href of the stand-in."""
-    known: dict[str, StandIn] = field(default_factory=dict)
+    known: "dict[str, StandIn]" = field(default_factory=dict)
     """Those of ``outside`` that are elements of a known library."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
     _stubs: dict[str, str] = field(default_factory=dict)
@@ -60,6 +62,8 @@ class Answers:
         return not self.targets.files(file, split(target)[0])
 
     def _canonical(self, target: str, uses: list[Use]) -> str:
+        from sysmlc.passes.resolve.outside import known
+
         # All uses are asked, for the order in which they come must not matter.
         said = {(use.path, use.kind) for use in uses}
         name = max({primitive(target, path, kind) for path, kind in said})
@@ -75,6 +79,8 @@ class Answers:
 
     def _add(self, href: str, uses: list[Use]) -> None:
         if href in self.known:
+            from sysmlc.passes.resolve.outside import add
+
             origin = min(uses, key=Use.place).holder.id
             add(self.graph, self.known[href], origin)
         else:
