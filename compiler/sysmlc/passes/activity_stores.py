@@ -56,8 +56,8 @@ WRITTEN = rule(
     "SM544",
     "guard-reads-what-is-written",
     Severity.INFO,
-    "'{activity}' reads '{name}', which {writers} {verb}, but {reason}: the contract leaves its "
-    "value to the environment",
+    "the contract of '{activity}' leaves '{name}' to the environment, although {writers} {verb} "
+    "it: {reason}",
     why="The contract follows what actions assign to the activity's own features and those of "
     "its block, as far as they have finitely many values, are written nowhere else, and get values "
     "that can be read. Else it holds for all values, and has ways that are never taken.",
@@ -204,6 +204,15 @@ class _Following:
         owner = self.graph.owner(feature.element)
         return owner is not None and owner.kind in query.BEHAVIORS
 
+    def _is_shared(self, name: str) -> bool:
+        """Whether another behaviour of the block writes what the contract could follow else."""
+        feature = self.features[name]
+        is_able = feature.domain is not None and not feature.is_assumed
+        return is_able and not self._is_local(feature) and self._other_writer(feature) is not None
+
+    def _other_writer(self, feature: Feature) -> Element | None:
+        return _writer_elsewhere(self.graph, self, feature)
+
     def _refusal(self, name: str) -> str:
         """Why the contract cannot follow the variable; empty when it can."""
         feature = self.features[name]
@@ -217,8 +226,8 @@ class _Following:
             return "it belongs to another object"
         if name in self.refused:
             return self.refused[name]
-        other = None if self._is_local(feature) else _writer_elsewhere(self.graph, self, feature)
-        return f"'{other.name or other.subkind}' writes it too" if other is not None else ""
+        other = None if self._is_local(feature) else self._other_writer(feature)
+        return "" if other is None else f"'{_called(self.graph, other)}' writes it too"
 
     def _store(self, name: str) -> Store:
         feature = self.features[name]
@@ -231,7 +240,7 @@ class _Following:
         """What is read and written and not followed, with the reason."""
         found = []
         for name, writes in self.assigned.items():
-            reason = self._refusal(name) if name in self.read else ""
+            reason = self._refusal(name) if name in self.read or self._is_shared(name) else ""
             if reason:
                 labels = dict.fromkeys(self.nodes[one.action.id].label for one in writes)
                 found.append(Unfollowed(self.features[name].element, reason, tuple(labels)))
@@ -277,6 +286,11 @@ def _writer_elsewhere(graph: Graph, own: _Following, feature: Feature) -> Elemen
         if owner in family and any(each.name == name for each in assigned(graph, one)):
             return one
     return None
+
+
+def _called(graph: Graph, one: Element) -> str:
+    """What is named, or what a nameless effect or action is in."""
+    return next((each.name for each in (one, *graph.ancestors(one)) if each.name), one.subkind)
 
 
 def _may_write(graph: Graph, one: Element, feature: Element) -> bool:

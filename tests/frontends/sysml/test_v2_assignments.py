@@ -149,8 +149,8 @@ def test_only_what_can_leave_its_range_is_told():
 def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
     graph, sink = v2(V2.replace(old, new))
     assert next(one.message for one in sink if one.rule.code == "SM544") == (
-        f"'work' reads 'n', which action 'count' writes, but {reason}: the contract leaves its "
-        "value to the environment"
+        "the contract of 'work' leaves 'n' to the environment, although action 'count' writes it: "
+        f"{reason}"
     )
     owners = {one.name: one.owner for one in contract(graph).variables}
     assert owners["n"] is Owner.ENVIRONMENT
@@ -161,8 +161,10 @@ def test_what_two_behaviours_write_is_nobodys_own():
     text = V2.replace("action work {", f"{other}\n        action work {{")
     graph, sink = v2(text.replace("if n < 3", "if total < 9"))
     assert [one.message for one in sink if one.rule.code == "SM544"] == [
-        "'work' reads 'total', which action 'add' writes, but 'clear' writes it too: the contract "
-        "leaves its value to the environment"
+        "the contract of 'reset' leaves 'total' to the environment, although action 'clear' writes "
+        "it: 'add' writes it too",
+        "the contract of 'work' leaves 'total' to the environment, although action 'add' writes "
+        "it: 'clear' writes it too",
     ]
     assert "total" not in [
         one.name for one in contract(graph).variables if one.owner is Owner.SYSTEM
@@ -191,3 +193,22 @@ def test_the_rule_reports_its_wrong_model_and_not_its_right_one():
         graph, sink = parse_text(text), Sink()
         pipeline.run(graph, sink, verify_each=True)
         assert ("SM544" in [one.rule.code for one in sink]) is expected
+
+
+def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
+    machine = """exhibit state life {
+            entry; then idle;
+            state idle;
+            transition first idle accept after 1 do assign total := 0 then idle;
+        }"""
+    graph, sink = v2(V2.replace("action work {", f"{machine}\n        action work {{"))
+    assert [one.message.rpartition(": ")[2] for one in sink if one.rule.code == "SM544"] == [
+        "'life' writes it too"
+    ]
+    owners = [
+        one.owner
+        for made in graph.derived(Contract)
+        for one in made.variables
+        if one.name == "total"
+    ]
+    assert owners == [Owner.SYSTEM]
