@@ -276,3 +276,17 @@ def test_limits_are_amounts(here, word):
     made = here.sysmlc("synth", "lamp.gr1.json", word)
     assert made.exit_code == 2
     assert "Error: Invalid value for '--" in made.stderr
+
+
+def test_a_wide_number_is_no_list_of_its_values(here):
+    wide = {
+        "variables": {
+            "y": {"owner": "env", "type": [0, 100_000_000]},
+            "x": {"owner": "sys", "type": [1, 100_000_001]},
+        },
+        "guarantees": {"safety": ["x' = y' + 1"]},
+    }
+    here.write("wide.gr1.json", json.dumps(wide))
+    made = here.sysmlc("synth", "wide.gr1.json", "--time-limit", "60")
+    assert made.exit_code == 0
+    assert made.stdout.endswith("2 modes, checked\n")

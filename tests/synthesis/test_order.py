@@ -2,7 +2,7 @@
 
 from contracts_in_lines import contract
 
-from sysmlc.synthesis import Manager, Symbols, make_game
+from sysmlc.synthesis import Manager, Symbols, make_game, solve
 from sysmlc.synthesis.bdd.order import laid
 
 
@@ -42,3 +42,14 @@ def test_the_order_of_a_crowd_is_that_of_its_conjuncts():
     bits = make_game(contract(f"{text}\n{rules}"), Manager()).manager.bits
     places = {bit: place for place, bit in enumerate(bits)}
     assert all(abs(places[f"a{n}.0"] - places[f"b{n}.0"]) == 2 for n in range(25))
+
+
+def test_wide_numbers_are_interleaved_whatever_their_ranges():
+    assert order("env y: 0..127\nsys on: bool\nsys x: 0..200")[-3:] == ["y.6", "x.7", "on.0"]
+
+
+def test_wide_numbers_are_decided_as_fast_as_narrow_ones():
+    manager = Manager()
+    wide = "env y: 0..1000000000\nsys x: 0..1000000001\npromise always x'=y'+1"
+    assert solve(make_game(contract(wide), manager)).is_realizable
+    assert manager.usage().peak < 5_000

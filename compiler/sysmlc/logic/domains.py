@@ -7,13 +7,13 @@ from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Inte
 from sysmlc.logic.formula import Literal
 
 
-def values(domain: Domain) -> tuple[Literal, ...]:
-    """All values, the least or first declared one first."""
+def values(domain: Domain) -> Sequence[Literal]:
+    """All values, the least or first declared one first; those of a range are not listed."""
     match domain:
         case BooleanDomain():
             return (False, True)
         case IntegerDomain(low, high):
-            return tuple(range(low, high + 1))
+            return range(low, high + 1)
         case EnumerationDomain(literals):
             return literals
 

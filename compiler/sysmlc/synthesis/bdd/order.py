@@ -2,18 +2,22 @@
 
 Numbers with one range are positions, targets, angles of alike things: what is said compares them,
 so their bits are interleaved, the most significant ones first. Relations between three and more
-of them are then a fifth of what they are with one variable after the other. Other variables stay
-where they are declared. Of many variables (tokens of an activity, what runs, what is done) those
+of them are then a fifth of what they are with one variable after the other. Wide numbers are laid
+so whatever their ranges, since two of them that are compared one behind the other need as many
+nodes as they have values. Other variables stay where they are declared. Of many variables (tokens of an activity, what runs, what is done) those
 that conjuncts speak of together come close together: FORCE (Aloul, Markov, Sakallah 2003).
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from itertools import zip_longest
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Domain, IntegerDomain, Variable
 
 MANY = 5
 """Fewer variables with one range stay apart: their relations are small in any order."""
+BROAD = 7
+"""Bits of a number from which on it is interleaved with all that have as many or more."""
 CROWD = 40
 """Variables from which on they are laid by what speaks of them."""
 LONG = 300
@@ -29,19 +33,22 @@ def ordered(
 ) -> tuple[str, ...]:
     """All bits, those of variables with the same range interleaved; ``together`` are names of
     variables that something is said of."""
-    groups: dict[Domain | str, list[str]] = {}
+    groups: dict[Domain | str | int, list[str]] = {}
     for variable in variables:
         is_number = isinstance(variable.domain, IntegerDomain) and domains.size(variable.domain) > 2
-        groups.setdefault(variable.domain if is_number else variable.name, []).append(variable.name)
+        is_broad = is_number and len(bits[variable.name]) >= BROAD
+        key = BROAD if is_broad else variable.domain if is_number else variable.name
+        groups.setdefault(key, []).append(variable.name)
     if len(bits) >= CROWD and all(len(names) < MANY for names in groups.values()):
         return tuple(bit for name in laid(tuple(bits), tuple(together)) for bit in bits[name])
     return tuple(bit for names in groups.values() for bit in _laid([bits[one] for one in names]))
 
 
 def _laid(rows: list[tuple[str, ...]]) -> Iterable[str]:
-    if len(rows) < MANY:
+    if len(rows) < MANY and len(rows[0]) < BROAD:
         return (bit for row in rows for bit in row)
-    return (bit for column in zip(*rows, strict=True) for bit in column)
+    columns = list(zip_longest(*(reversed(row) for row in rows), fillvalue=""))
+    return (bit for column in reversed(columns) for bit in column if bit)
 
 
 def laid(names: Sequence[str], together: Sequence[Collection[str]]) -> tuple[str, ...]:
