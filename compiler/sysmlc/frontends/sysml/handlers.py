@@ -1,21 +1,19 @@
 """Which part of the lowering reads which metaclass; what a usage is depends on its owner."""
 
+from importlib import import_module
+
 from sysmlc.frontends.sysml import (
     actions,
     activities,
     annotations,
     connections,
-    constraints,
     definitions,
-    interactions,
     loops,
     nodes,
     objectflows,
     relations,
-    requirements,
     states,
     usages,
-    usecases,
 )
 from sysmlc.frontends.sysml.definitions import marked
 from sysmlc.frontends.sysml.features import in_classifier
@@ -29,6 +27,15 @@ _STEPPED = ACTIVITIES
 _BEHAVING = frozenset({Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGION, Kind.RECEPTION})
 
 
+def _late(module: str, name: str) -> Handler:
+    """A reader of what many models do not have, imported with the first that is there."""
+
+    def read(low: Lowering, node: Node, owner: Element | None) -> None:
+        getattr(import_module(f"sysmlc.frontends.sysml.{module}"), name)(low, node, owner)
+
+    return read
+
+
 def _feature(low: Lowering, node: Node, owner: Element | None) -> None:
     """A structural usage by what owns it."""
     if node.kind == "OccurrenceUsage" and marked(node, Kind.CLASS)[0] is Kind.INTERACTION:
@@ -40,7 +47,7 @@ def _feature(low: Lowering, node: Node, owner: Element | None) -> None:
     elif owner.kind in _STEPPED or owner.kind in _BEHAVING:
         in_behaviour(low, node, owner)
     elif owner.kind in _INTERACTING:
-        interactions.member(low, node, owner)
+        _late("interactions", "member")(low, node, owner)
     else:
         low.unsupported(node)
 
@@ -99,7 +106,7 @@ def _binding(low: Lowering, node: Node, owner: Element | None) -> None:
 
 def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
     if owner is not None and owner.kind in _INTERACTING:
-        interactions.message(low, node, owner)
+        _late("interactions", "message")(low, node, owner)
     elif owner is not None and owner.kind in _STEPPED:
         objectflows.flow(low, node, owner)
     elif nodes.is_message(node) and (owner is None or not nodes.events_of(node)):
@@ -110,16 +117,16 @@ def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
 
 def _event(low: Lowering, node: Node, owner: Element | None) -> None:
     if owner is not None and owner.kind in _INTERACTING:
-        interactions.event(low, node, owner)
+        _late("interactions", "event")(low, node, owner)
     elif owner is not None and owner.kind is Kind.USE_CASE:
-        usecases.extension_point(low, node, owner)
+        _late("usecases", "extension_point")(low, node, owner)
     else:
         low.unsupported(node)
 
 
 def _succession(low: Lowering, node: Node, owner: Element | None) -> None:
     if owner is not None and owner.kind in _INTERACTING:
-        interactions.order(low, node, owner)
+        _late("interactions", "order")(low, node, owner)
     else:
         low.unsupported(node)
 
@@ -160,13 +167,9 @@ def _definition(role: str) -> Handler:
 def _expression(low: Lowering, node: Node, owner: Element | None) -> None:
     """A result expression; any other is read with what it belongs to."""
     if node.membership == "ResultExpressionMembership" and owner is not None:
-        constraints.result(low, node, owner)
+        _late("constraints", "result")(low, node, owner)
     elif node.membership == "ElementFilterMembership":
         low.ignored(node)
-
-
-def _objective(low: Lowering, node: Node, owner: Element | None) -> None:
-    requirements.requirement(low, node, owner)
 
 
 def _ignored(low: Lowering, node: Node, owner: Element | None) -> None:
@@ -200,22 +203,22 @@ HANDLERS: dict[str, Handler] = {
     "AssociationStructure": connections.association,
     "AllocationDefinition": connections.allocation_definition,
     "FlowDefinition": connections.flow_definition,
-    "UseCaseDefinition": usecases.use_case,
-    "UseCaseUsage": usecases.use_case,
-    "IncludeUseCaseUsage": usecases.include,
+    "UseCaseDefinition": _late("usecases", "use_case"),
+    "UseCaseUsage": _late("usecases", "use_case"),
+    "IncludeUseCaseUsage": _late("usecases", "include"),
     "EventOccurrenceUsage": _event,
     "SuccessionAsUsage": _succession,
     "Succession": _succession,
     "Usage": _feature,
-    "RequirementDefinition": requirements.requirement,
-    "RequirementUsage": requirements.requirement,
-    "ConcernDefinition": requirements.requirement,
-    "ConcernUsage": requirements.requirement,
-    "SatisfyRequirementUsage": requirements.satisfy,
-    "ConstraintUsage": constraints.constraint,
-    "AssertConstraintUsage": constraints.constraint,
-    "Invariant": constraints.constraint,
-    "BooleanExpression": constraints.constraint,
+    "RequirementDefinition": _late("requirements", "requirement"),
+    "RequirementUsage": _late("requirements", "requirement"),
+    "ConcernDefinition": _late("requirements", "requirement"),
+    "ConcernUsage": _late("requirements", "requirement"),
+    "SatisfyRequirementUsage": _late("requirements", "satisfy"),
+    "ConstraintUsage": _late("constraints", "constraint"),
+    "AssertConstraintUsage": _late("constraints", "constraint"),
+    "Invariant": _late("constraints", "constraint"),
+    "BooleanExpression": _late("constraints", "constraint"),
     "ActionUsage": _action,
     "PerformActionUsage": _action,
     "CalculationUsage": _action,

@@ -3,8 +3,7 @@
 from codecs import BOM_UTF8
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
-from sysmlc.language.text import hints, rules
-from sysmlc.language.text.grammar_words import expectation
+from sysmlc.language.text import rules
 from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.text.scan import Fault, Tokens
 from sysmlc.sources import Source
@@ -68,6 +67,9 @@ class Errors:
 
     def unexpected(self, at: int, expected: list[str]) -> None:
         """A token does not fit."""
+        from sysmlc.language.text import hints
+        from sysmlc.language.text.grammar_words import expectation
+
         said = expectation(expected, self.beginnings)
         found = self._found(at)
         advice = hints.slip(self._tokens, at, expected, self.beginnings)
@@ -86,6 +88,8 @@ class Errors:
         if meant == "NAME":
             self.report(rules.KEYWORD, start, word=word, language=_LANGUAGES[self._language])
             return
+        from sysmlc.language.text import hints
+
         advice = f"{hints.INITIAL}: here only '{meant}' can stand"
         if word == "==":
             advice = f"'==' compares two values; {hints.INITIAL}"
@@ -99,6 +103,8 @@ class Errors:
         said = self._found(before)
         advice = f"put {words} there"
         if words == "';'":
+            from sysmlc.language.text import hints
+
             about = hints.missing(self._tokens, before, at, self.beginnings)
             advice = about or "put ';' there, or a body in braces"
         self.report(rules.MISSING, max(end - 1, 0), missing=words, before=said, advice=advice)
