@@ -71,8 +71,10 @@ class _Checker:
         stated = [branch for branch in branches if not branch.is_else]
         if node.firing is not Firing.CHOICE or not branches:
             return node
-        open_sets = self._open_sets(stated)
         has_else = len(stated) < len(branches)
+        # One guard beside an else is neither too few nor too many: most decisions are such.
+        is_plain = has_else and len(stated) == 1
+        open_sets = None if is_plain else self._open_sets(stated)
         is_exhaustive = has_else or (open_sets is not None and all(open_sets))
         if not is_exhaustive:
             self._report_missing(node, stated)
