@@ -3,9 +3,10 @@
 Numbers with one range are positions, targets, angles of alike things: what is said compares them,
 so their bits are interleaved, the most significant ones first. Relations between three and more
 of them are then a fifth of what they are with one variable after the other. Wide numbers are laid
-so whatever their ranges, since two of them that are compared one behind the other need as many
-nodes as they have values. Other variables stay where they are declared. Of many variables (tokens of an activity, what runs, what is done) those
-that conjuncts speak of together come close together: FORCE (Aloul, Markov, Sakallah 2003).
+so whatever their ranges: two that are compared, one behind the other, need as many nodes as they
+have values. Other variables stay where they are declared. Of many variables (tokens of an activity,
+what runs, what is done) those that conjuncts speak of together come close together: FORCE (Aloul,
+Markov, Sakallah 2003).
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
