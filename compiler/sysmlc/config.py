@@ -1,6 +1,7 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -79,12 +80,32 @@ def load(file: Path | None) -> Config:
     """The configuration of a file; the defaults when there is none. Raises ConfigError."""
     if file is None:
         return Config()
-    text = _read(file)
-    table: object = _parsed(file, text)
+    return _config(file.resolve(), _table(file, _read(file)))
+
+
+def _table(file: Path, text: str) -> dict[str, Any]:
+    """The settings of a file. Raises ConfigError.
+
+    Those that were right before are kept: to parse TOML takes 8 ms, and jsonschema imports for
+    0.1 s.
+    """
+    import json
+    from hashlib import sha256
+
+    schema = resources.text("metamodels", "sysmlc-config.schema.json")
+    store = cache.default()
+    key = sha256(f"table {len(schema)}:{schema}{file.name}:{text}".encode()).hexdigest()
+    kept = None if store is None else store.get(key)
+    if kept is not None:
+        return cast("dict[str, Any]", json.loads(kept))
+    table = _parsed(file, text)
     if file.name == "pyproject.toml":
-        table = _tool_table(cast("dict[str, Any]", table)) or {}
-    _check(file, text, table)
-    return _config(file.resolve(), cast("dict[str, Any]", table))
+        table = _tool_table(table) or {}
+    _validate(file, text, table, schema)
+    if store is not None:
+        with suppress(TypeError):  # an option of a plug-in may be a date
+            store.put(key, json.dumps(table).encode())
+    return table
 
 
 def _read(file: Path) -> str:
@@ -107,19 +128,6 @@ def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
     tool = project.get("tool")
     table = tool.get("sysmlc") if isinstance(tool, dict) else None
     return table if isinstance(table, dict) else None
-
-
-def _check(file: Path, text: str, table: object) -> None:
-    """Raises ConfigError. What was right before is not checked: jsonschema imports for 0.1 s."""
-    from hashlib import sha256
-
-    schema = resources.text("metamodels", "sysmlc-config.schema.json")
-    store = cache.default()
-    key = sha256(f"{len(schema)}:{schema}{file.name}:{text}".encode()).hexdigest()
-    if store is None or store.get(key) is None:
-        _validate(file, text, table, schema)
-        if store is not None:
-            store.put(key, b"right")
 
 
 def _validate(file: Path, text: str, table: object, schema: str) -> None:

@@ -28,6 +28,21 @@ def test_what_was_right_is_not_checked_again(checked, tmp_path):
     assert checked == ['output = "made"\n', 'output = "other"\n']
 
 
+def test_what_was_right_is_not_parsed_again(checked, tmp_path, monkeypatch):
+    file = tmp_path / "sysmlc.toml"
+    file.write_text("[passes.contracts]\nrange = [0, 3]\nshare = 0.5\n")
+    first = config.load(file)
+    monkeypatch.setattr(config, "_parsed", None)
+    assert config.load(file) == first
+
+
+def test_what_no_json_says_is_parsed_every_time(checked, tmp_path):
+    file = tmp_path / "sysmlc.toml"
+    file.write_text("[passes.plugin]\nsince = 2024-05-01\n")
+    assert config.load(file) == config.load(file)
+    assert len(checked) == 2
+
+
 def test_what_is_wrong_is_told_every_time(checked, tmp_path):
     file = tmp_path / "sysmlc.toml"
     file.write_text("outputs = 'x'\n")

@@ -23,7 +23,6 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplified
-from sysmlc.logic.texts.formal import is_formal
 from sysmlc.values import dataclass
 
 _TANK = """\
@@ -98,7 +97,12 @@ def _is_condition(constraint: Element) -> bool:
     body = constraint.attrs.get("body")
     if not isinstance(body, str) or constraint.subkind not in _KINDS:
         return False
-    return not is_formal(str(constraint.attrs.get("language", "")), body)
+    language = str(constraint.attrs.get("language", ""))
+    if not language:
+        return True
+    from sysmlc.logic.texts.formal import is_formal
+
+    return not is_formal(language, body)
 
 
 def _performed(graph: Graph, owner: Element) -> Iterator[Element]:
