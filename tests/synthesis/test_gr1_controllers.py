@@ -9,8 +9,9 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.table import Table
 from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.synthesise import synthesised
+from sysmlc.synthesis.synthesise import Form, synthesised
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 OPTIONS = Options(limits=Limits(seconds=300))
@@ -55,3 +56,12 @@ def test_large_contracts_have_machines(name):
     assert told == []
     assert isinstance(made.machine, Machine)
     assert made.machine.size <= LARGE[name]
+
+
+def test_what_consists_of_parts_has_a_table_of_their_strategies():
+    name = "chase/Robotic_Arm_Joints.ltl"
+    contracts = formats.read((FOLDER / name).read_text(encoding="utf-8"), name, Sink())
+    joints = next(one for one in contracts if one.component.endswith(".Joints"))
+    made = synthesised(joints, lambda origin: Subject(), Sink(), OPTIONS, Form.TABLE).machine
+    assert isinstance(made, Table)
+    assert (len(made.modes), len(made.nodes) < 2_000) == (1, True)

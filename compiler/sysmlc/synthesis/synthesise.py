@@ -16,6 +16,7 @@ from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.memory import reached, registers
 from sysmlc.synthesis.controllers.minimise import minimised
 from sysmlc.synthesis.controllers.settled import settled
+from sysmlc.synthesis.controllers.side_by_side import apart
 from sysmlc.synthesis.controllers.strategy import Strategy, strategy
 from sysmlc.synthesis.controllers.table import Table, tabled
 from sysmlc.synthesis.controllers.verify import Fault, faults
@@ -112,20 +113,22 @@ def controller(
 def made(contract: Contract, game: Game, plan: Strategy, form: Form = Form.ANY) -> Controller:
     """A strategy in the form that is wanted, not checked yet. Raises LimitError."""
     if form is Form.TABLE:
-        return tabled(plan)
+        return tabled(apart(game) or plan)
     try:
         with game.manager.at_most(MOST_NODES):
             return _listed(contract, game, plan, form)
     except TooLargeError:
         if form is Form.LISTED:
             raise
-    return tabled(plan)
+    return tabled(apart(game) or plan)
 
 
 def _listed(contract: Contract, game: Game, plan: Strategy, form: Form) -> Machine:
     found = reached(plan, nodes(game.init_assumptions), nodes(game.assumptions))
     counting = () if form is Form.LISTED else registers(found)
-    return machine(minimised(listed(found, counting)), contract)
+    # What is listed are many small diagrams: to look for a better order takes longer than they do.
+    with game.manager.calm():
+        return machine(minimised(listed(found, counting)), contract)
 
 
 def _fresh(manager: Manager, options: Options) -> Manager:

@@ -6,6 +6,7 @@ value, which lies directly below it in the order.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from copy import copy
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain, Owner, Variable
@@ -43,6 +44,12 @@ class Symbols:
         manager.declare([one for bit in order for one in (bit, next_bit(bit))])
         self._to_next = {bit: manager.var(next_bit(bit)) for bit in order}
         self._to_present = {next_bit(bit): manager.var(bit) for bit in order}
+
+    def only(self, names: Collection[str]) -> "Symbols":
+        """The same bits, as if there were no other variables than these."""
+        found = copy(self)
+        found.variables = {name: one for name, one in self.variables.items() if name in names}
+        return found
 
     def bits(self, name: str, primed: bool = False) -> tuple[str, ...]:
         """The bits of a variable, the most significant one first."""
@@ -246,10 +253,9 @@ def _bits(variable: Variable) -> tuple[str, ...]:
 
 def _value(variable: Variable, bits: list[bool]) -> Literal:
     place = sum(bit << at for at, bit in enumerate(reversed(bits)))
-    values = domains.values(variable.domain)
-    if place >= len(values):
+    if place >= domains.size(variable.domain):
         raise SymbolError(f"{variable.name} has no value with the code {place}")
-    return values[place]
+    return domains.values(variable.domain)[place]
 
 
 def _and(manager: Manager, parts: list[Node]) -> Node:

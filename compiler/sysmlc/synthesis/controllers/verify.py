@@ -7,11 +7,13 @@ a relation over a variable for its state (``closed``), and fair runs are looked 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
+from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem, Universe
 from sysmlc.synthesis.algebra.traces import lasso, one, shortest
+from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.closed import Controller, memory, relation
 from sysmlc.synthesis.controllers.glance import Closed, Glance
@@ -88,8 +90,27 @@ class _Check:
         if not self._answers_first() or not all(self.starts <= node for node in first):
             return False
         closed = Closed(self.symbols, self.starts, self.allowed, self.moves, self.fairness)
+        return all(
+            self._is_plain_of(
+                closed.about(names),
+                closed.speaking(safe, names),
+                closed.speaking(recurring, names),
+            )
+            for names in self._groups(closed, (*safe, *recurring))
+        )
+
+    def _groups(self, closed: Closed, promised: Iterable[Node]) -> list[frozenset[str]]:
+        """Variables that have to be looked at together; a state that is the only one ties none."""
+        said = (*closed.allowed, *closed.moves, *closed.fairness, *promised)
+        is_only = domains.size(self.memory.domain) == 1
+        lone = frozenset([self.memory.name] if is_only else [])
+        together = [closed.spoken(node) - lone for node in said]
+        return [names | lone for names in tied(self.symbols.variables, together)]
+
+    def _is_plain_of(self, closed: Closed, safe: list[Node], recurring: list[Node]) -> bool:
         seen = Glance(closed, safe, recurring)
-        if seen.is_possible(self._stuck(), self.allowed) or not seen.keeps_each_step():
+        stuck = self._stuck(closed.moves)
+        if seen.is_possible(stuck, closed.allowed) or not seen.keeps_each_step():
             return False
         return not any(has_fair_run(seen, seen.reachable & ~node) for node in recurring)
 
@@ -103,17 +124,17 @@ class _Check:
     def _unanswered(self) -> Iterator[Fault]:
         if not self._answers_first():
             yield Fault(None)
-        yield from self._stepping(None, self._stuck(), self.allowed)
+        yield from self._stepping(None, self._stuck(self.moves), self.allowed)
 
     def _answers_first(self) -> bool:
         """Whether there is an answer to all first inputs."""
         answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
         return self.inputs <= answered(self.manager.true)
 
-    def _stuck(self) -> Node:
+    def _stuck(self, moves: Iterable[Node]) -> Node:
         """Steps and next inputs to which there is no answer."""
         after = self.symbols.all_bits(self._own(), primed=True)
-        return ~Product(self.manager, self.moves, after)(self.manager.true)
+        return ~Product(self.manager, moves, after)(self.manager.true)
 
     def _own(self) -> tuple[str, ...]:
         variables = self.symbols.variables.values()
@@ -168,7 +189,7 @@ def has_fair_run(runs: Runs | Glance, within: Node) -> bool:
     while found != runs.manager.false:
         fewer = found
         for goal in runs.goals:
-            fewer = fewer & runs.after(_led_to(runs, fewer, fewer & goal))
+            fewer = fewer & _later(runs, fewer, fewer & goal)
         if fewer == found:
             return True
         found = fewer
@@ -176,13 +197,14 @@ def has_fair_run(runs: Runs | Glance, within: Node) -> bool:
     return False
 
 
-def _led_to(runs: Runs | Glance, within: Node, start: Node) -> Node:
-    """The states that steps from the start lead to without leaving others."""
-    found = front = start
+def _later(runs: Runs | Glance, within: Node, start: Node) -> Node:
+    """The states that one step leads to, or more that do not leave others before the last one."""
+    found, front, after = start, start, runs.manager.false
     while front != runs.manager.false:
-        front = within & runs.after(front) & ~found
+        after = after | runs.after(front)
+        front = within & after & ~found
         found = found | front
-    return found
+    return after
 
 
 _SEARCHES = {
