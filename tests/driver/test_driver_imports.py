@@ -17,6 +17,23 @@ except SystemExit:
 print("imported:", *sorted(sys.modules))
 """
 
+LAMP = """
+package Lamps {
+    part def Lamp {
+        attribute level : ScalarValues::Integer;
+        state def Glow {
+            entry; then off;
+            state off;
+            accept after 5 then on;
+            state on;
+        }
+        exhibit state glow : Glow;
+        action blink { first start; then action wait; then done; }
+    }
+}
+"""
+"""A part, its states and its steps; nothing is wrong with the text."""
+
 
 def imported(model: Path, folder: Path) -> set[str]:
     """The modules that a compile of the model has imported."""
@@ -44,6 +61,53 @@ def test_a_model_of_uml_brings_no_readers_of_other_things(uml_modules, module):
 def uml_modules(tmp_path_factory):
     model = EXAMPLES / "baygate-behaviour" / "baygate-behaviour.uml"
     return imported(model, tmp_path_factory.mktemp("out"))
+
+
+NOT_IN_A_RUN_OF_SYSML = [
+    "sysmlc.backends.plantuml.uc_relations",
+    "sysmlc.frontends.sysml.interactions",
+    "sysmlc.frontends.sysml.requirements",
+    "sysmlc.frontends.sysml.usecases",
+    "sysmlc.frontends.xmi.links",
+    "sysmlc.ir.text",
+    "sysmlc.language.text.foreign",
+    "sysmlc.language.text.grammar_words",
+    "sysmlc.language.text.hints",
+    "sysmlc.logic.activities.net_reductions",
+    "sysmlc.logic.requirements.meaning",
+    "sysmlc.logic.texts.formal",
+    "sysmlc.passes.platform.offering",
+    "jsonschema",
+    "lark",
+    "lxml",
+    "networkx",
+    "pyecore",
+]
+
+
+def test_a_model_of_sysml_v2_brings_no_readers_of_what_it_does_not_have(tmp_path):
+    model = tmp_path / "lamp.sysml"
+    model.write_text(LAMP, encoding="utf-8")
+    found = imported(model, tmp_path / "out")
+    assert {"sysmlc.frontends.sysml.states", "sysmlc.passes.contracts"} <= found
+    assert sorted(found.intersection(NOT_IN_A_RUN_OF_SYSML)) == []
+
+
+def test_a_model_with_them_brings_them(tmp_path):
+    model = tmp_path / "lamp.sysml"
+    model.write_text(LAMP.replace("part", "requirement def Lit; use case def Read; part", 1))
+    found = imported(model, tmp_path / "out")
+    assert {"sysmlc.frontends.sysml.requirements", "sysmlc.frontends.sysml.usecases"} <= found
+
+
+def test_settings_that_were_right_before_are_not_parsed(tmp_path, monkeypatch):
+    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "sysmlc.toml").write_text('output = "made"\n')
+    model = tmp_path / "lamp.sysml"
+    model.write_text(LAMP, encoding="utf-8")
+    first, then = (imported(model, tmp_path / "out") for _ in range(2))
+    assert {"tomllib", "jsonschema"} <= first
+    assert then.isdisjoint({"tomllib", "jsonschema"})
 
 
 def test_a_plant_with_an_overlay_brings_both_readers(tmp_path):

@@ -1,6 +1,5 @@
 """The command ``sysmlc``: finds the command word, or compiles when there is none."""
 
-import gc
 import os
 import sys
 from collections.abc import Callable
@@ -29,8 +28,6 @@ COMMANDS = (
 """Command words; each is a module of this package with a click command ``command``."""
 
 _OWN_OPTIONS = frozenset({"--help", "-h", "--version"})
-_NEW_OBJECTS = 200_000
-"""New objects before the garbage collector looks for cycles: a compilation makes hardly any."""
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
@@ -83,7 +80,6 @@ def sysmlc() -> None:
 
 def main() -> None:
     """Run the command line; a fault of our own is one sentence and exit code 2."""
-    gc.set_threshold(_NEW_OBJECTS)
     try:
         _guarded(sysmlc, prog_name="sysmlc")
     except SystemExit as end:
