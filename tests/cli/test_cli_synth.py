@@ -290,3 +290,16 @@ def test_a_wide_number_is_no_list_of_its_values(here):
     made = here.sysmlc("synth", "wide.gr1.json", "--time-limit", "60")
     assert made.exit_code == 0
     assert made.stdout.endswith("2 modes, checked\n")
+
+
+def test_bounds_of_a_wide_number_are_looked_for_not_listed(here):
+    wide = {
+        "variables": {
+            "y": {"owner": "env", "type": [0, 10**21]},
+            "x": {"owner": "sys", "type": [0, 10**21 - 1]},
+        },
+        "guarantees": {"safety": ["x' != y'"]},
+    }
+    here.write("wide.gr1.json", json.dumps(wide))
+    made = here.sysmlc("synth", "wide.gr1.json", "--time-limit", "60")
+    assert made.stdout.endswith("machine: 2 states, 3 moves, checked\n")

@@ -5,8 +5,10 @@ is free for the rest. From one value all that is true of it is taken, what is sp
 left out where the rest suffices: ``xpos<xtarget`` rather than the cells for which that is so.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import combinations
+from sys import maxsize
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Owner
@@ -77,8 +79,15 @@ class _Fact:
     """Something that is true of some values."""
 
     formula: Formula
-    looser: tuple[Formula, ...] = ()
-    """The same with other bounds, the furthest one first."""
+    looser: Sequence[Formula | Literal] = ()
+    """The same with other bounds, the furthest one first, or the bounds alone."""
+    bounded: Callable[[Literal], Formula] = Const
+    """The same with a bound."""
+
+    def loosened(self, at: int) -> Formula:
+        """The fact with one of the bounds."""
+        found = self.looser[at]
+        return found if isinstance(found, Formula) else self.bounded(found)
 
 
 class _Writer:
@@ -152,12 +161,12 @@ class _Writer:
 
     def _loosened(self, fact: _Fact, without: Node) -> Formula:
         """The fact, with the bound that is furthest and still keeps out what has to be kept out."""
-        bounds, found = fact.looser, fact.formula
-        low, high = 0, len(bounds)
+        found, low, high = fact.formula, 0, len(fact.looser)
         while low < high:
             middle = (low + high) // 2
-            if without & self._symbols.bdd(bounds[middle]) == self._manager.false:
-                found, high = bounds[middle], middle
+            bound = fact.loosened(middle)
+            if without & self._symbols.bdd(bound) == self._manager.false:
+                found, high = bound, middle
             else:
                 low = middle + 1
         return found
@@ -181,8 +190,8 @@ class _Writer:
         known = domains.values(self._symbols.variables[one.name].domain)
         place = known.index(value)
         for op, looser in ((Op.GE, known[1:place]), (Op.LE, known[-2:place:-1])):
-            bounds = tuple(compare(op, one, Const(bound)) for bound in looser)
-            yield _Fact(compare(op, one, Const(value)), bounds)
+            bounded = partial(_bounded, op, one)
+            yield _Fact(bounded(value), looser[:maxsize], bounded)
 
     def _comparisons(self, numbers: Sequence[Var], known: Mapping[Var, Literal]) -> Iterator[_Fact]:
         """Numbers that are compared, and what registers are when they have counted."""
@@ -200,6 +209,10 @@ class _Writer:
                 op = Op.LT if left < right else Op.GT if left > right else Op.EQ
                 looser = () if op is Op.EQ else (compare(Op.NE, _shifted(one, shift), other),)
                 yield _Fact(compare(op, _shifted(one, shift), other), looser)
+
+
+def _bounded(op: Op, one: Var, bound: Literal) -> Formula:
+    return compare(op, one, Const(bound))
 
 
 def _shifted(one: Var, shift: int) -> Formula:

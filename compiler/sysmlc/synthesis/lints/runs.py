@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
-from sysmlc.logic.domains import values
+from sysmlc.logic.domains import size, values
 from sysmlc.logic.printing import print_literal
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import FairSystem
@@ -84,7 +84,7 @@ def _frame(game: Game, variable: Variable, states: Node) -> Iterator[Remark]:
 
 def _is_quantity(variable: Variable) -> bool:
     domain = variable.domain
-    return isinstance(domain, IntegerDomain) and len(values(domain)) >= _COUNTED
+    return isinstance(domain, IntegerDomain) and size(domain) >= _COUNTED
 
 
 def _free(game: Game, variable: Variable) -> Node:
