@@ -119,10 +119,7 @@ def _unescaped(text: str | None) -> str:
 
 
 def from_xmi(path: str) -> Graph:
-    """Read a saved graph with pyecore, which is not installed along; the inverse of ``to_xmi``.
-
-    It brings a file that every Python process of the installation reads at its start (0.01 s).
-    """
+    """Read a saved graph with pyecore; the inverse of ``to_xmi``."""
     from pyecore.resources import ResourceSet
 
     files = ResourceSet()
