@@ -180,3 +180,20 @@ def test_the_page_about_robots_shows_the_runs_in_which_claims_do_not_hold(claim)
     shown = found[claim]
     assert shown.reason.partition(": ")[2] in " ".join(text.split())
     assert "".join(f"    {line}\n" for line in shown.run) in text
+
+
+@pytest.mark.parametrize(("within", "is_kept"), [(4, False), (5, True)])
+def test_what_c_s_promises_of_each_target_is_part_of_the_mission(within, is_kept):
+    """Four cells to go: five steps from when the robot has its target."""
+    found, told = made(floor(3, 0, targets=(8,), within=within))
+    assert found.is_good is is_kept
+    reason = "the mission of 'Hall' fails: a robot that is sent to 't0' takes more than 4 steps"
+    assert told == ([] if is_kept else [("SM571", reason)])
+
+
+def test_another_allocation_is_tried_when_ways_are_too_long():
+    """Each robot to one target is done first; one robot to both has short ways only."""
+    found, told = made(floor(5, 0, 4, targets=(1, 2), within=2, rows=1))
+    assert [one.validation.is_slow for one in found.tried] == [True, False]
+    assert found.is_good
+    assert told == []

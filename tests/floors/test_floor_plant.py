@@ -22,6 +22,7 @@ from sysmlc.floors.system import system_contract
 from sysmlc.floors.world import World
 from sysmlc.logic.evaluate import violation
 from sysmlc.synthesis.decide import Options
+from sysmlc.values import replace
 
 
 class Told(World):
@@ -119,3 +120,32 @@ def test_two_robots_with_one_cell_between_them_have_it_in_turn():
     rights = [one["r0_sensor_right"] for one in trace[loop:]]
     lefts = [one["r1_sensor_left"] for one in trace[loop:]]
     assert sorted(zip(rights, lefts, strict=True)) == [(False, True), (True, False)]
+
+
+@pytest.mark.parametrize("start", [(1, 5), (4, 5), (2, 6), (8, 0), (5, 3)])
+def test_ways_are_too_long_exactly_where_a_timer_of_the_system_says_so(start):
+    study = floor(3, None, None, targets=(0, 8))
+    answers = greedy_answers(study)
+    trace, _ = run_of(study, ((0,), (1,)), answers, start)
+    longest = max(timers(study, trace))
+    assert longest > 1
+    for within, is_slow in ((longest, False), (longest - 1, True)):
+        bounded = replace(study, within=within)
+        world = World(bounded, ((0,), (1,)), answers, placed(study, start))
+        failure = Simulation(world).run()
+        assert (failure is not None and failure.is_slow) is is_slow
+
+
+def timers(study, trace):
+    """How long robots have had their targets, in each step."""
+    for robot in study.robots:
+        timer = 0
+        for one in trace:
+            yield timer
+            is_home = one[words.position(robot)] == one[words.target(robot)]
+            timer = 0 if is_home else timer + 1
+
+
+def placed(study, start):
+    cells = range(study.grid.size)
+    return Runs(1, 0, tuple(tuple(int(cell == one) for cell in cells) for one in start), but)

@@ -5,6 +5,8 @@ become of a run depends on its state only, so that each state is gone on with on
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from operator import itemgetter
+from struct import iter_unpack
 from typing import NamedTuple, TypeVar
 
 from sysmlc.floors.answers import Memory
@@ -62,8 +64,7 @@ class States:
         columns = [_column(bits[at : at + _BYTE], count) for at in range(0, len(bits), _BYTE)]
         found = dict(zip(_rows(columns, count), reversed(origins), strict=True))
         found.pop(bytes(len(columns)), None)
-        for row, origin in found.items():
-            self._origins.setdefault(row, origin)
+        self._origins.update(found)
 
     def _bits(self, robot: int, world: World[int]) -> list[int]:
         """The bits of the number of what is known of a robot; 0 is for runs that are none."""
@@ -169,8 +170,7 @@ def _rows(columns: Sequence[bytes], count: int) -> Iterator[bytes]:
     for at, column in enumerate(columns):
         if column:
             table[at::width] = column
-    whole = bytes(table)
-    return (whole[at : at + width] for at in range(0, len(whole), width))
+    return map(itemgetter(0), iter_unpack(f"{width}s", table))
 
 
 _IS = [

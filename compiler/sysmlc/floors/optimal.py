@@ -73,6 +73,7 @@ class _Search:
         self.reached: dict[int, int] = {}
         self.carried = study.carried
         self.carrying = {later: earlier for earlier, later in self.carried.items()}
+        self.earlier = [study.earlier(one) for one in range(len(study.targets))]
         self.least = [self._least(target) for target in range(len(study.targets))]
 
     def _least(self, target: int) -> int:
@@ -117,7 +118,7 @@ class _Search:
                 steps = self.travel.get(robot, own[-1] if own else START, target)
                 if steps is None or not self._is_ready(target):
                     continue
-                earlier = (self.reached[one] for one in self.study.earlier(target))
+                earlier = (self.reached[one] for one in self.earlier[target])
                 time = max(self.reached[own[-1]] if own else 0, *earlier, 0) + steps
                 if (time, robot) >= last:
                     yield time, robot, target, steps
@@ -130,7 +131,7 @@ class _Search:
         return [one for one in open_ if one not in self.reached and one not in self.carrying]
 
     def _is_ready(self, target: int) -> bool:
-        return all(one in self.reached for one in self.study.earlier(target))
+        return all(one in self.reached for one in self.earlier[target])
 
     def _is_hopeless(self, target: int, time: int, total: int) -> bool:
         """Whether nothing better than the best can come of it."""

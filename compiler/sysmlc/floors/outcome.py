@@ -243,8 +243,13 @@ def _report_claims(study: Study, claims: Iterable[Relation], place: Place, sink:
 def _report_no_allocation(study: Study, found: Best | None, place: Place, sink: Sink) -> None:
     reason = "some target is out of the reach of all robots, or waits for what is never done"
     if found is not None:
-        reason = f"the best one that was found takes {found.schedule.duration} steps"
+        reason = f"the best one that was found takes {told_steps(found.schedule.duration)}"
     sink.report(NO_ALLOCATION, place(study.origin), floor=study.component, reason=reason)
+
+
+def told_steps(number: int) -> str:
+    """A number of steps, in words."""
+    return f"{number} step{'' if number == 1 else 's'}"
 
 
 def _report_failure(made: Outcome, place: Place, sink: Sink) -> None:
@@ -253,7 +258,9 @@ def _report_failure(made: Outcome, place: Place, sink: Sink) -> None:
     reason = "robots meet, or one has no answer"
     if late is not None:
         name = study.targets[late].name
-        reason = f"'{name}' is not reached within {last.validation.steps} steps"
+        reason = f"'{name}' is not reached within {told_steps(last.validation.steps)}"
+        if last.validation.is_slow:
+            reason = f"a robot that is sent to '{name}' takes more than {study.within} steps"
     subject = place(study.targets[late].origin if late is not None else study.origin)
     notes = tuple(lines(study, made.run))
     sink.report(NOT_VALIDATED, subject, notes=notes, floor=study.component, reason=reason)

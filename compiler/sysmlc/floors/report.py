@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.floors.mission import mission_contract
-from sysmlc.floors.outcome import Outcome
+from sysmlc.floors.outcome import Outcome, told_steps
 from sysmlc.floors.schedule import Schedule
 from sysmlc.floors.story import cell_text, lines, sequence_diagram
 from sysmlc.floors.study import Study
@@ -38,8 +38,8 @@ def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
 def summary(outcome: Outcome) -> str:
     """The outcome on one line."""
     study = outcome.study
-    head = f"{study.component}: {study.grid.size} cells, {_count(len(study.robots), 'robot')}, "
-    head += _count(len(study.targets), "target")
+    head = f"{study.component}: {_count(study.grid.size, 'cell')}, "
+    head += f"{_count(len(study.robots), 'robot')}, {_count(len(study.targets), 'target')}"
     if outcome.controller.machine is None:
         return f"{head}: no controller"
     if not study.targets:
@@ -50,7 +50,7 @@ def summary(outcome: Outcome) -> str:
     starts = _count(tried.validation.starts, "start")
     if not tried.validation.is_good:
         return f"{head}: the mission fails ({_count(len(outcome.tried), 'allocation')} tried)"
-    return f"{head}: done in {tried.validation.steps} steps at most, from {starts}"
+    return f"{head}: done in {told_steps(tried.validation.steps)} at most, from {starts}"
 
 
 def _count(number: int, what: str) -> str:
@@ -130,7 +130,7 @@ def _allocations(outcome: Outcome) -> Iterator[str]:
     yield from ("", "## Simulation of robots and environment together", "")
     for tried in outcome.tried:
         found = tried.validation
-        words = f"done in {found.steps} steps at most" if found.is_good else "fails"
+        words = f"done in {told_steps(found.steps)} at most" if found.is_good else "fails"
         told = _allocation(outcome.study, tried.schedule)
         yield f"- {told}: {words}, from {_count(found.starts, 'start')}"
 

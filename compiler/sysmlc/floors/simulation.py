@@ -24,6 +24,8 @@ class Validation:
     """The cells in which robots start when the mission fails; empty when it never does."""
     late: int | None = None
     """The target that was not reached in time; None when robots met or had no answer."""
+    is_slow: bool = False
+    """Whether it is one that a robot has for longer than C_S allows."""
 
     @property
     def is_good(self) -> bool:
@@ -37,6 +39,8 @@ class Failure(Generic[P]):
 
     runs: P
     late: int | None = None
+    is_slow: bool = False
+    """Whether a robot has that target for longer than C_S allows."""
 
 
 class Simulation(Generic[P]):
@@ -76,6 +80,9 @@ class Simulation(Generic[P]):
         world, runs = self.world, self.world.runs
         if world.wrong != runs.none:
             return Failure(world.wrong)
+        for number, slow in enumerate(world.slow):
+            if slow != runs.none:
+                return Failure(slow, number, is_slow=True)
         study = world.study
         for number, target in enumerate(study.targets):
             left = runs.but(runs.all, world.done[number])

@@ -57,7 +57,8 @@ def _validation(
     known = (one for one in reached if one is not None)
     steps = simulation.world.time if failure else max(known, default=0)
     late = failure.late if failure else None
-    return Validation(number, steps, tuple(reached), failed, late)
+    is_slow = failure.is_slow if failure else False
+    return Validation(number, steps, tuple(reached), failed, late, is_slow)
 
 
 @dataclass(frozen=True, slots=True)

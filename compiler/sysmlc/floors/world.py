@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Generic
 
 from sysmlc.floors.answers import Answers, Memory
+from sysmlc.floors.journeys import is_slow
 from sysmlc.floors.paths import hop
 from sysmlc.floors.planes import P, Runs, any_of
 from sysmlc.floors.study import WAYS, Study
@@ -64,6 +65,8 @@ class World(Generic[P]):
         self.wrong = none
         """In which runs two robots met, one was offered a cell that is taken or offered to another
         one, one left its target without another one, or a machine had no answer."""
+        self.slow = [none] * len(study.targets)
+        """By target: a robot sets out to it that will have it for longer than C_S allows."""
         self.taken = self._taken()
         """By cell: a robot is there."""
         self.over = none
@@ -174,11 +177,24 @@ class World(Generic[P]):
             traffic.reserve(body.aside)
         open_ = [self._open(number, idle[number]) for number in range(len(self.bodies))]
         decided = traffic.send(open_)
+        if self.study.within is not None:
+            self._note_slow(decided.out, self.study.within)
         for number, body in enumerate(self.bodies):
             pairs = zip(body.sent, decided.out[number], strict=True)
             body.sent = [one | more for one, more in pairs]
             sides = zip(body.aside, decided.aside[number], strict=True)
             body.aside = [one | more for one, more in sides]
+
+    def _note_slow(self, out: Sequence[Sequence[P]], within: int) -> None:
+        """In which runs robots set out on ways that are too long (the timer of C_S)."""
+        for number, own in enumerate(self.allocation):
+            for target, sent in zip(own, out[number], strict=True):
+                for cell, here in enumerate(self.bodies[number].places):
+                    both, goal = here & sent, self.study.targets[target].cell
+                    if both != self.runs.none and is_slow(
+                        self.study.grid, self.answers[number], cell, goal, within
+                    ):
+                        self.slow[target] = self.slow[target] | both
 
     def _open(self, number: int, idle: P) -> list[P]:
         """By place in its list: the robot could set out to that target now."""
