@@ -303,3 +303,18 @@ def test_bounds_of_a_wide_number_are_looked_for_not_listed(here):
     here.write("wide.gr1.json", json.dumps(wide))
     made = here.sysmlc("synth", "wide.gr1.json", "--time-limit", "60")
     assert made.stdout.endswith("machine: 2 states, 3 moves, checked\n")
+
+
+def test_a_counter_strategy_in_sysml_keeps_ranges(here):
+    stuck = {
+        "variables": {
+            "go": {"owner": "env", "type": "bool"},
+            "at": {"owner": "sys", "type": [-2, 3]},
+        },
+        "guarantees": {"safety": ["at' = at"], "liveness": ["at = 3", "at = -2"]},
+    }
+    here.write("stuck.gr1.json", json.dumps(stuck))
+    here.sysmlc("synth", "stuck.gr1.json", "-o", "out")
+    assert "assert constraint { -2 <= 'at' and 'at' <= 3 }" in here.read("out/stuck.counter.sysml")
+    checked = here.sysmlc("check", "out/stuck.counter.sysml")
+    assert [checked.exit_code, checked.stderr] == [0, "no findings\n"]

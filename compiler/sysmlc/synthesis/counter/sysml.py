@@ -2,7 +2,14 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from sysmlc.logic.contract import BooleanDomain, Contract, EnumerationDomain, Owner, Variable
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Contract,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.synthesis.counter.drawing import by_next, told
@@ -47,6 +54,10 @@ def _attribute(variable: Variable, first: Literal | None, named: Named) -> Itera
     if element:
         yield f"        /* {_comment(f'{variable.name} is {element}')} */"
     yield f"        {side} attribute {_quoted(variable.name)} : {kind}{value};"
+    if isinstance(variable.domain, IntegerDomain):
+        name, domain = _quoted(variable.name), variable.domain
+        bounds = f"{domain.low} <= {name} and {name} <= {domain.high}"
+        yield f"        assert constraint {{ {bounds} }}"
 
 
 def _machine(counter: Counter) -> Iterator[str]:
