@@ -14,13 +14,14 @@ from sysmlc.sources import Source
 
 _Packed = tuple[Any, ...]
 _SIZE = 12
+_NEW = Node.__new__
 _PACKAGES = frozenset({"Package", "LibraryPackage"})
 
 
 class StoredNode(Node):
     """A node of a stored tree: members, relations and facts are made when they are asked for."""
 
-    __slots__ = ("_packed",)
+    __slots__ = ("packed",)
 
     def __init__(self, packed: _Packed, owner: Node | None) -> None:
         (
@@ -35,18 +36,18 @@ class StoredNode(Node):
             self.name_start,
         ) = packed[:9]
         self.owner = owner
-        self._packed = packed
+        self.packed = packed
 
     def __getattr__(self, name: str) -> object:
         made: object
         if name == "members":
-            packed = self._packed[9]
+            packed = self.packed[9]
             within = marshal.loads(packed) if isinstance(packed, bytes) else packed
             made = [StoredNode(one, self) for one in within]
         elif name == "relations":
-            made = [Relation(k, Reference(c, s, e)) for k, c, s, e in self._packed[10]]
+            made = [Relation(k, Reference(c, s, e)) for k, c, s, e in self.packed[10]]
         elif name == "facts":
-            made = dict(self._packed[11])
+            made = dict(self.packed[11])
         else:
             raise AttributeError(name)
         setattr(self, name, made)
@@ -91,7 +92,7 @@ def _packed(node: Node, members: tuple[_Packed, ...]) -> _Packed:
     )
 
 
-def unpack(data: bytes) -> Node | None:
+def unpack(data: bytes) -> StoredNode | None:
     """The tree that ``pack`` made bytes of; None when it is damaged."""
     try:
         packed = marshal.loads(data)
@@ -101,14 +102,54 @@ def unpack(data: bytes) -> Node | None:
     return StoredNode(packed, None) if whole else None
 
 
-def read(source: Source, path: str, language: str, sink: Sink, cache: Cache | None) -> Document:
-    """The document of a textual file, from the cache when it was parsed without a finding."""
+def _whole(root: StoredNode) -> Node:
+    """A stored tree with all nodes made: less work than one by one where each is asked for."""
+    made = Node(root.kind)
+    waiting = [(made, root.packed)]
+    for one, packed in waiting:
+        (
+            one.kind,
+            one.name,
+            one.short,
+            one.membership,
+            one.role,
+            one.visibility,
+            one.start,
+            one.end,
+            one.name_start,
+            members,
+            relations,
+            facts,
+        ) = packed
+        one.relations = [Relation(k, Reference(c, s, e)) for k, c, s, e in relations]
+        one.facts = dict(facts)
+        within = marshal.loads(members) if isinstance(members, bytes) else members
+        one.members = [_NEW(Node) for _ in within]
+        for member in one.members:
+            member.owner = one
+        waiting += zip(one.members, within, strict=True)
+    return made
+
+
+def read(
+    source: Source,
+    path: str,
+    language: str,
+    sink: Sink,
+    cache: Cache | None,
+    *,
+    is_library: bool = True,
+) -> Document:
+    """The document of a textual file, from the cache when it was parsed without a finding.
+
+    Of a library most elements are never asked for.
+    """
     text = source.data.decode("utf-8-sig", "replace")
     key = f"{source.sha256}-{language}-{code()}" if cache else ""
     entry = cache.get(key) if cache else None
     root = unpack(entry) if entry else None
     if root is not None:
-        return Document(path, language, root, text, source)
+        return Document(path, language, root if is_library else _whole(root), text, source)
     from sysmlc.language.text import parse
 
     before = len(sink)

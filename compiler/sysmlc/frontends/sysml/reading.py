@@ -89,7 +89,7 @@ def _document(source: Source, sink: Sink, cache: "Cache | None", faulty: set[str
     from sysmlc.language.stored import read as read_stored
 
     before = len(sink)
-    found = read_stored(source, source.name, language(source), sink, cache)
+    found = read_stored(source, source.name, language(source), sink, cache, is_library=False)
     if len(sink) > before:
         faulty.add(source.name)
     return found

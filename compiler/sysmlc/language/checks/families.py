@@ -1,6 +1,7 @@
 """Which checks are made for which metaclass, and which for which relation."""
 
 from collections.abc import Callable, Iterable
+from itertools import chain
 from typing import TypeVar
 
 from sysmlc.diagnostics import Sink
@@ -82,15 +83,36 @@ BY_RELATION = _by_key(_RELATED)
 """The checks for each metaclass and for each kind of relation, in the order of the families."""
 
 
+def _without_members(checks: dict[str, tuple[_Entry, ...]]) -> dict[str, tuple[_Entry, ...]]:
+    return {
+        key: tuple([one for one in some if one not in _OF_MEMBERS]) for key, some in checks.items()
+    }
+
+
+_OF_MEMBERS: frozenset[object] = frozenset(
+    {
+        combining.check_multiplicity,
+        duplicates.check,
+        duplicates.check_inherited,
+        passing.check_parameters,
+        single.check,
+    }
+)
+"""Checks that find nothing where an element has no members."""
+_REPORTERS_OF_LEAVES = _without_members(REPORTERS)
+_CHECKS_OF_LEAVES = _without_members(BY_KIND)
+
+
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report what the checks for the metaclass and the relations of ``node`` find."""
-    for reporter in REPORTERS.get(node.kind, ()):
+    kind, has_members = node.kind, bool(node.members)
+    for reporter in (REPORTERS if has_members else _REPORTERS_OF_LEAVES).get(kind, ()):
         reporter(model, document, node, sink)
-    checks = BY_KIND.get(node.kind, ())
-    for relation in node.relations:
-        if relation.kind in BY_RELATION:
-            checks = (*checks, *BY_RELATION[relation.kind])
-    for one in dict.fromkeys(checks):
+    checks = (BY_KIND if has_members else _CHECKS_OF_LEAVES).get(kind, ())
+    related = [BY_RELATION[r.kind] for r in node.relations if r.kind in BY_RELATION]
+    if related:
+        checks = tuple(dict.fromkeys((*checks, *chain.from_iterable(related))))
+    for one in checks:
         for found in one(model, node):
             place = subject(document, node, found.start)
             sink.report(found.rule, place, notes=(), help="", **found.facts)

@@ -10,9 +10,17 @@ _CONNECTORS = kinds_of("Connector")
 INSTANTIATIONS = kinds_of("InstantiationExpression")
 _SKIPPED = INSTANTIATIONS | {"FeatureReferenceExpression", "MetadataAccessExpression"}
 """Expressions that only hold other expressions: no name is looked up in them."""
+_FLOWS = kinds_of("FlowUsage")
+_EVENTS = kinds_of("EventOccurrenceUsage")
 _FEATURE = kinds_of("Feature")
 _TYPE = kinds_of("Type")
 _CLASSIFIER = kinds_of("Classifier")
+
+_METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+_IMPORTS = kinds_of("Import")
+_TYPING = frozenset({"FeatureTyping", "TypeFeaturing"})
+_MEMBER = frozenset({"importedMembership"})
+_IMPORTED = _MEMBER | {"importedNamespace"}
 
 WANTED: dict[str, frozenset[str]] = {
     "Specialization": _TYPE,
@@ -62,7 +70,10 @@ class Start(NamedTuple):
     effective name, which the search is to give. ``before`` is the link of a chain that the
     name follows. ``everything`` looks at private members too, as ``import all`` does.
     ``past_subjects`` passes subjects over: what a requirement is satisfied by is not its subject,
-    which may have the same name.
+    which may have the same name. ``importing`` are the namespaces that the name is imported into:
+    what they import is looked at last, for it may depend on where the name leads. For the same
+    reason the type of metadata (``is_metadata``) is not looked for in what the annotated element
+    implicitly specialises.
     """
 
     scope: Node | None
@@ -73,6 +84,8 @@ class Start(NamedTuple):
     everything: bool = False
     reference: Reference | None = None
     past_subjects: bool = False
+    importing: tuple[Node, ...] = ()
+    is_metadata: bool = False
 
 
 def start(node: Node, relation: Relation) -> Start:
@@ -89,17 +102,29 @@ def _start(node: Node, relation: Relation) -> Start:
     kind = relation.kind
     if kind == "Membership":
         return _membership(node)
-    if kind == "ReferenceSubsetting" and _is_connector_end(node):
+    if kind == "ReferenceSubsetting" and (_is_connector_end(node) or _is_event_of_message(node)):
         return Start(_beyond_transition(node.owner), without=node)
     if kind == "Redefinition":
         return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
-    if kind == "FeatureTyping":
-        return Start(beyond_expressions(node), without=node)
-    if kind == "TypeFeaturing":
-        return Start(node, without=node)
-    everything = kind == "importedMembership" and bool(node.facts.get("isImportAll"))
+    if kind in _TYPING:
+        scope = node if kind == "TypeFeaturing" else beyond_expressions(node)
+        return Start(scope, without=node, is_metadata=node.kind in _METADATA)
+    if kind in _IMPORTED:
+        return _import(node, everything=kind in _MEMBER and bool(node.facts.get("isImportAll")))
     before = _before(node, relation) if kind == "FeatureChaining" else None
-    return Start(namespace(node), without=node, before=before, everything=everything)
+    return Start(namespace(node), without=node, before=before)
+
+
+def _import(node: Node, everything: bool) -> Start:
+    """A filtered import is within a package of its own, which another import owns."""
+    scope = namespace(node)
+    importing = [] if scope is None else [scope]
+    while importing and importing[-1].owner is not None and importing[-1].owner.kind in _IMPORTS:
+        above = namespace(importing[-1].owner)
+        if above is None:
+            break
+        importing.append(above)
+    return Start(scope, without=node, everything=everything, importing=tuple(importing))
 
 
 def _before(node: Node, relation: Relation) -> Relation | None:
@@ -138,6 +163,13 @@ def _is_connector_end(node: Node) -> bool:
         and owner.kind in _CONNECTORS
         and (node.membership == "EndFeatureMembership" or bool(node.facts.get("isEnd")))
     )
+
+
+def _is_event_of_message(node: Node) -> bool:
+    """Whether a message begins or ends with it: ``message from a to b`` (SysML 8.2.2.16.2)."""
+    owner = node.owner
+    is_parameter = node.membership == "ParameterMembership"
+    return is_parameter and owner is not None and owner.kind in _FLOWS and node.kind in _EVENTS
 
 
 def _beyond_transition(connector: Node | None) -> Node | None:

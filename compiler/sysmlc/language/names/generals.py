@@ -35,6 +35,8 @@ class Generals(ABC):
         self._silently: dict[Node, list[Node]] = {}
         self._all_generals: dict[Node, tuple[Node, ...]] = {}
         self._redefining: dict[Node, list[Node]] = {}
+        self._placing: set[Node | tuple[Node, str]] = set()
+        """Features, and roles of owners, whose positions are being looked at."""
         self._positions: dict[Node, list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
 
@@ -44,8 +46,7 @@ class Generals(ABC):
             reference.targets = []
         self.abandoned |= self._active
         self._active.clear()
-        self._positions.clear()
-        self._at_positions.clear()
+        self._placing.clear()
 
     @abstractmethod
     def target(self, node: Node, relation: Relation) -> Node | None:
@@ -167,13 +168,15 @@ class Generals(ABC):
         if known is None:
             if not positions.counts(feature):
                 return self._positions.setdefault(feature, [])
+            if feature in self._placing:
+                self.cuts += 1
+                return []
             before = self.cuts
-            self._positions[feature] = []
+            self._placing.add(feature)
             known = positions.redefined(feature, self) or self._by_role(feature)
+            self._placing.discard(feature)
             if self.cuts == before:
                 self._positions[feature] = known
-            else:
-                del self._positions[feature]
         return known
 
     def at_positions(self, scope: Node, role: str) -> list[Node]:
@@ -181,13 +184,15 @@ class Generals(ABC):
         key = (scope, role)
         known = self._at_positions.get(key)
         if known is None:
+            if key in self._placing:
+                self.cuts += 1
+                return []
             before = self.cuts
-            self._at_positions[key] = []
+            self._placing.add(key)
             known = positions.gather(scope, role, self)
+            self._placing.discard(key)
             if self.cuts == before:
                 self._at_positions[key] = known
-            else:
-                del self._at_positions[key]
         return known
 
     def all_generals(self, node: Node) -> tuple[Node, ...]:

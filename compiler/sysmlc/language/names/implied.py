@@ -48,6 +48,20 @@ def ends(node: Node) -> list[Node]:
     ]
 
 
+_Like = tuple[object, ...]
+_FACTS = ("isNegated", "portionKind", "isEnd", "isReference", "direction", "isComposite")
+
+
+def like(node: Node) -> _Like:
+    """What the candidates of ``node`` follow from: equal for nodes that have the same ones."""
+    kind, owner, facts = node.kind, node.owner, node.facts
+    counted = len(ends(node)) if kind in _CONNECTORS else 0
+    if kind == "IfActionUsage":
+        counted = _clauses(node)
+    said = tuple([facts.get(name) for name in _FACTS]) if facts else ()
+    return kind, node.membership, node.role, owner.kind if owner else "", counted, said
+
+
 def candidates(node: Node) -> list[tuple[str, str]]:
     """Kind of relation and qualified name of what ``node`` may implicitly specialise."""
     kind = node.kind

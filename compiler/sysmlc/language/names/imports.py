@@ -58,7 +58,7 @@ class Imports(Members):
         self._seen[scope, inside, name] = NONE
         hits = self._gather(scope, imports, name, inside)
         self._seen[scope, inside, name] = hits
-        if self.cuts == before or (outermost and not self._active):
+        if self.cuts == before:
             memo[name] = hits
         if outermost:
             self._seen.clear()

@@ -49,12 +49,12 @@ class Lookup(Imports):
         self._active.add(reference)
         targets = self._follow(node, relation)
         self._active.discard(reference)
-        is_whole = len(targets) == len(reference.chain)
-        if not is_whole and self.cuts - before > _MOST:
+        is_whole, cuts = len(targets) == len(reference.chain), self.cuts - before
+        if not is_whole and cuts > _MOST:
             self.given_up.add(reference)
-        if is_whole or not self._active or not 0 < self.cuts - before <= _MOST:
+        if is_whole or not self._active or not 0 < cuts <= _MOST:
             reference.targets = targets
-        return targets[-1] if len(targets) == len(reference.chain) else None
+        return targets[-1] if is_whole else None
 
     def _follow(self, node: Node, relation: Relation) -> list[Node]:
         """The element of each link of the chain, as far as they are found."""
@@ -95,17 +95,11 @@ class Lookup(Imports):
         self, start: contexts.Start, names: tuple[str, ...], kinds: frozenset[str] | None
     ) -> Node | None:
         """The member that a qualified name leads to from a scope, outwards."""
-        first, scope, inherited = names[0], start.scope, start.inherited
+        first, scope = names[0], start.scope
         if first == "$" and len(names) > 1 and not self._is_quoted(start):
             return self.among(self._roots(names[1]), names, 1, kinds)
         while scope is not None:
-            stages: Iterable[Hits]
-            if inherited and scope.kind in TYPES:
-                stages = (self._general_hits(scope, first),)
-            else:
-                stages = self._stages(scope, first, start.without)
-            inherited = False
-            for hits in stages:
+            for hits in self._stages_of(start, scope, first):
                 if start.past_subjects:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
                 found = self.among(hits, names, 0, kinds, start.everything)
@@ -114,7 +108,22 @@ class Lookup(Imports):
                 if len(names) > 1 and any(map(self._is_namespace, hits)):
                     return None
             scope = contexts.outer(scope)
-        return self.among(self._roots(first), names, 0, kinds)
+        found = self.among(self._roots(first), names, 0, kinds)
+        for importing in start.importing if found is None else ():
+            hits = self.imported(importing, first, inside=True)
+            found = found or self.among(hits, names, 0, kinds, start.everything)
+        return found
+
+    def _stages_of(self, start: contexts.Start, scope: Node, name: str) -> Iterable[Hits]:
+        """Members by one name in a scope, as far as a search looks at them there."""
+        if scope in start.importing:
+            return self._without_imports(scope, name)
+        if scope is start.scope and scope.kind in TYPES:
+            if start.inherited:
+                return (self._general_hits(scope, name),)
+            if start.is_metadata:
+                return self._without_implied(scope, name)
+        return self._stages(scope, name, start.without)
 
     def descend(
         self,

@@ -73,6 +73,19 @@ class Members(Generals):
             yield self.inherited(scope, name)
         yield self.imported(scope, name, inside=True)
 
+    def _without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
+        """All own members by one name, and inherited ones."""
+        yield self.own(scope, name)
+        if scope.kind in TYPES:
+            yield self.inherited(scope, name)
+
+    def _without_implied(self, scope: Node, name: str) -> Iterator[Hits]:
+        """Members by one name, inherited ones only of what the text says that a type is."""
+        yield self.own(scope, name)
+        for general in self.generals(scope):
+            yield self._heritable(general, name)
+        yield self.imported(scope, name, inside=True)
+
     def inside(self, scope: Node, name: str) -> Iterator[Node]:
         """Members by one name as seen from inside: all own ones, inherited, imported."""
         for hits in self._stages(scope, name, None):

@@ -27,6 +27,7 @@ class Model:
                     self._named.setdefault(str(name), []).append(member)
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
+        self._likes: dict[tuple[object, ...], list[tuple[str, Node]]] = {}
         self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
         self._types: dict[tuple[Node, ...], list[Node]] = {}
         self._supers: dict[Node, dict[Node, None]] = {}
@@ -55,12 +56,18 @@ class Model:
 
     def find(self, qualified_name: str) -> Node | None:
         """The element with a qualified name such as ``Parts::Part``, here or in the library."""
-        if qualified_name not in self._found:
-            names = tuple(part.strip("'") for part in qualified_name.split("::"))
-            hits = self._roots(names[0])
-            found = self.lookup.among(hits, names, 0, None)
-            self._found[qualified_name] = self.lookup.element(found) if found else None
-        return self._found[qualified_name]
+        if qualified_name in self._found:
+            return self._found[qualified_name]
+        names, before = (
+            tuple(part.strip("'") for part in qualified_name.split("::")),
+            self.lookup.cuts,
+        )
+        hits = self._roots(names[0])
+        hit = self.lookup.among(hits, names, 0, None)
+        found = self.lookup.element(hit) if hit else None
+        if self.lookup.cuts == before:
+            self._found[qualified_name] = found
+        return found
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """The element that a relation of ``node`` leads to; None when it was not found."""
@@ -166,11 +173,22 @@ class Model:
         if node.kind not in TYPES:
             return []
         before = self.lookup.cuts
-        named = [(kind, self.find(name)) for kind, name in implied.candidates(node)]
-        known = [(kind, one) for kind, one in named if one is not None and one is not node]
-        known = [*_accepted(node), *semantic.bases(node, self.lookup), *known]
+        found = [pair for pair in self._alike(node) if pair[1] is not node]
+        known = [*_accepted(node), *semantic.bases(node, self.lookup), *found]
         if self.lookup.cuts == before:
             self._implied[node] = known
+        return known
+
+    def _alike(self, node: Node) -> list[tuple[str, Node]]:
+        """What ``node`` and all that is like it may implicitly specialise."""
+        like = implied.like(node)
+        known = self._likes.get(like)
+        if known is None:
+            before = self.lookup.cuts
+            named = [(kind, self.find(name)) for kind, name in implied.candidates(node)]
+            known = [(kind, one) for kind, one in named if one is not None]
+            if self.lookup.cuts == before:
+                self._likes[like] = known
         return known
 
     def candidates(self, node: Node) -> list[tuple[str, Node]]:

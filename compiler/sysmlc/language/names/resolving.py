@@ -22,9 +22,11 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     gc.disable()
     sys.setrecursionlimit(max(depth, _DEPTH))
     try:
-        for document in model.documents:
-            _resolve(document, model, sink)
-        _settle(model)
+        walked = [(document, list(document.root.walk())) for document in model.documents]
+        for document, nodes in walked:
+            _resolve(document, nodes, model, sink)
+        for _, nodes in walked:
+            _settle(nodes, model)
         _report_cycles(model, sink)
         if library.is_core:
             _report_core(model, sink)
@@ -35,8 +37,8 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     return model
 
 
-def _resolve(document: Document, model: Model, sink: Sink) -> None:
-    for node in document.root.walk():
+def _resolve(document: Document, nodes: Sequence[Node], model: Model, sink: Sink) -> None:
+    for node in nodes:
         for relation in node.relations:
             if relation.reference.target is None:
                 _resolve_one(document, node, relation, model, sink)
@@ -56,17 +58,16 @@ def _resolve_one(
         sink.report(TOO_DEEP, place, name=str(relation.reference))
 
 
-def _settle(model: Model) -> None:
+def _settle(nodes: Sequence[Node], model: Model) -> None:
     """Find out what leads through many elements while Python may still call itself that deep."""
     lookup = model.lookup
-    for document in model.documents:
-        for node in document.root.walk():
-            try:
-                if node.relations:
-                    lookup.generals(node)
-                lookup.by_position(node)
-            except RecursionError:
-                lookup.abandon()
+    for node in nodes:
+        try:
+            if node.relations:
+                lookup.generals(node)
+            lookup.by_position(node)
+        except RecursionError:
+            lookup.abandon()
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
