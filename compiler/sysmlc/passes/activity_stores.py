@@ -19,6 +19,8 @@ from sysmlc.values import dataclass, replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
 _Way = tuple[Formula, Formula, bool]
+_MOST_CASES = 64
+"""Most cases of what an action leaves in a variable: assignments in a row multiply them."""
 
 
 def _counting(body: str) -> str:
@@ -115,6 +117,7 @@ class _Following:
         self.assigned: dict[str, list[Assigned]] = {}
         self.writes: dict[str, list[Write]] = {}
         self.refused: dict[str, str] = {}
+        self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
         for action in graph.subtree(activity):
             if action.kind is Kind.ACTION and action.id in self.nodes:
@@ -137,12 +140,11 @@ class _Following:
                 stops[name] = tuple(when for when, _, is_bound in ways if is_bound)
             else:
                 left.pop(name, None)
-                what = one.text or "its value"
-                self.refused.setdefault(name, f"'{what}' is not known" if one.text else _UNKNOWN)
-        texts = {one.name: one.text for one in statements}
+                said = f"'{one.text}' is not known, or has too many cases"
+                self.refused.setdefault(name, said if one.text else _UNKNOWN)
+        text = statements[0].text if len(statements) == 1 else ""
         for name, cases in left.items():
             node = statements[0].action.id
-            text = texts[self.assigned[name][-1].name]
             self.writes.setdefault(name, []).append(Write(node, text, cases, stops[name]))
 
     def _cases(self, one: Assigned, feature: Feature, left: dict[str, _Cases]) -> list[_Way]:
@@ -158,8 +160,11 @@ class _Following:
         after = (way for t in found.terms for way in _after(t.condition, t.value, left))
         ways: list[_Way] = []
         for case, value in after:
-            ways += _within(case, value, feature.domain, found.domain)
-        return [way for way in ways if way[0] != f.FALSE]
+            found_ways = _within(case, value, feature.domain, found.domain)
+            ways += [way for way in found_ways if way[0] != f.FALSE]
+            if len(ways) > _MOST_CASES:
+                return []
+        return ways
 
     # -- which of them are followed ------------------------------------------------------------
 
@@ -211,7 +216,10 @@ class _Following:
         return is_able and not self._is_local(feature) and self._other_writer(feature) is not None
 
     def _other_writer(self, feature: Feature) -> Element | None:
-        return _writer_elsewhere(self.graph, self, feature)
+        name = feature.variable
+        if name not in self.others:
+            self.others[name] = _writer_elsewhere(self.graph, self, feature)
+        return self.others[name]
 
     def _refusal(self, name: str) -> str:
         """Why the contract cannot follow the variable; empty when it can."""

@@ -143,7 +143,7 @@ def test_only_what_can_leave_its_range_is_told():
     ("old", "new", "reason"),
     [
         ("assert constraint { 0 <= n and n <= 3 }", "", "it has no range"),
-        ("n := n + 1", "n := measure(n)", "'measure(n)' is not known"),
+        ("n := n + 1", "n := measure(n)", "'measure(n)' is not known, or has too many cases"),
     ],
 )
 def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
@@ -212,3 +212,15 @@ def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
         if one.name == "total"
     ]
     assert owners == [Owner.SYSTEM]
+
+
+def test_assignments_in_a_row_are_one_value_as_long_as_they_have_few_cases():
+    def of(body):
+        graph, sink = v1(V1.replace("n := n + 1", body))
+        told = [one.message for one in sink if one.rule.code == "SM544"]
+        return [one for one in said(contract(graph)) if "'count'" in one], told
+
+    assert of("n := 2; n := n + 1") == (["When action 'count' is done, 'n' becomes 3."], [])
+    _, told = of("; ".join(["n := n + 1"] * 80))
+    assert len(told) == 1
+    assert told[0].endswith("'n + 1' is not known, or has too many cases")

@@ -57,7 +57,7 @@ def _and(condition: Formula) -> str:
 
 
 def _shown(write: Write, value: Formula) -> str:
-    return write.text if len(write.values) == 1 else print_formula(value)
+    return write.text if write.text and len(write.values) == 1 else print_formula(value)
 
 
 def _ways(game: Game, store: Store, write: Write) -> Iterator[Formula]:

@@ -179,7 +179,8 @@ class Write:
 
     ``values`` are pairs of a condition and the value that it then gives, over what holds at that
     time; one of the conditions holds, and under those in ``stops`` the value is a bound of the
-    range that it would leave. ``text`` is how the modeller writes the value.
+    range that it would leave. ``text`` is how the modeller writes the value, empty where
+    earlier assignments are in it.
     """
 
     node: str
