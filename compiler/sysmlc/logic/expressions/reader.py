@@ -25,9 +25,10 @@ from sysmlc.logic.expressions.expression import (
     Statement,
     Unary,
 )
+from sysmlc.patterns import pattern
 
 _BLANK = re.compile(r"(?:\s|//[^\n]*|/\*[\s\S]*?\*/)*")
-_IF, _ELSE, _SEND, _TO = (re.compile(rf"{word}\b") for word in ("if", "else", "send", "to"))
+_IF, _ELSE, _SEND, _TO = (pattern(rf"{word}\b") for word in ("if", "else", "send", "to"))
 _NAME = re.compile(r"[^\W\d]\w*|'(?:\\.|[^'\\\n])+'")
 _LITERAL = re.compile(
     r"(?P<true>(?:true|TRUE)\b)|(?P<false>(?:false|FALSE)\b)"
@@ -40,7 +41,7 @@ _BETWEEN = re.compile(
 )
 _BEHIND = re.compile(r"[.(\[#]")
 _OPEN, _CLOSE, _END_OF_INDEX = re.compile(r"\("), re.compile(r"\)"), re.compile(r"[\])]")
-_COMMA, _QUESTION, _SEMICOLON = re.compile(","), re.compile(r"\?"), re.compile(";")
+_COMMA, _QUESTION, _SEMICOLON = re.compile(","), pattern(r"\?"), re.compile(";")
 _COLONS, _BECOMES = re.compile("::"), re.compile(":=|=(?!=)")
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _WEAKEST = min(STRENGTH.values())
