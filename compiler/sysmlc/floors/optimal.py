@@ -96,8 +96,10 @@ class _Search:
             if made is not None:
                 self.offer(made)
             return
+        left, soonest = self._left(), self._soonest()
         for time, robot, target, steps in sorted(self._options(last)):
-            if self._is_hopeless(target, time, total + steps):
+            more = left - self.least[target]
+            if self._is_hopeless(max(time, soonest), total + steps + more):
                 continue
             self.lists[robot].append(target)
             self.reached[target] = time
@@ -133,13 +135,17 @@ class _Search:
     def _is_ready(self, target: int) -> bool:
         return all(one in self.reached for one in self.earlier[target])
 
-    def _is_hopeless(self, target: int, time: int, total: int) -> bool:
+    def _left(self) -> int:
+        """The fewest steps that are still to go to all targets."""
+        every = enumerate(self.least)
+        return sum(steps for target, steps in every if target not in self.reached)
+
+    def _soonest(self) -> int:
+        """When the mission is done at the soonest, when robots share what is left alike."""
+        ends = sum(self.reached[own[-1]] for own in self.lists if own)
+        shared = -(-(ends + self._left()) // len(self.lists))
+        return max(shared, *self.reached.values(), 0)
+
+    def _is_hopeless(self, duration: int, total: int) -> bool:
         """Whether nothing better than the best can come of it."""
-        if self.best is None:
-            return False
-        left = [at for at in range(len(self.least)) if at not in self.reached and at != target]
-        ends = [self.reached[own[-1]] if own else 0 for own in self.lists]
-        more = sum(self.least[at] for at in left)
-        shared = -(-(sum(ends) + more + self.least[target]) // len(ends))
-        duration = max(time, *self.reached.values(), shared, 0)
-        return (duration, total + more) >= self.best.cost
+        return self.best is not None and (duration, total) >= self.best.cost

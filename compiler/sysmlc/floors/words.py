@@ -1,6 +1,6 @@
 """Variables of the contracts of a floor, and what is said of them again and again."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from sysmlc.floors.study import COMMANDS, STAY, WAYS, Grid, Robot, Study, Target
 from sysmlc.logic import formula as f
@@ -16,49 +16,32 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formula import Formula, Op
 
 
-def position(robot: Robot) -> str:
-    """The cell that a robot is in."""
-    return f"{robot.word}_position"
+def _of(what: str) -> Callable[[Robot], str]:
+    """The name of something of a robot."""
+    return lambda robot: f"{robot.word}_{what}"
 
 
-def target(robot: Robot) -> str:
-    """The cell that it is to reach."""
-    return f"{robot.word}_target"
-
-
-def command(robot: Robot) -> str:
-    """What it does."""
-    return f"{robot.word}_command"
+position = _of("position")
+"""The cell that a robot is in."""
+target = _of("target")
+"""The cell that it is to reach."""
+command = _of("command")
+"""What it does."""
+steps = _of("steps")
+"""How many cells it has gone (thesis 4.3.1)."""
+timer = _of("timer")
+"""How many steps it has had its target."""
+place = _of("place")
+"""The target that it reached last."""
+goal = _of("goal")
+"""The target that it is to reach next."""
+clock = _of("clock")
+"""How many steps it has been on its way."""
 
 
 def sensor(robot: Robot, way: str) -> str:
     """Whether the cell next to it on that side is offered to it."""
     return f"{robot.word}_sensor_{way}"
-
-
-def steps(robot: Robot) -> str:
-    """How many cells it has gone (thesis 4.3.1)."""
-    return f"{robot.word}_steps"
-
-
-def timer(robot: Robot) -> str:
-    """How many steps it has had its target."""
-    return f"{robot.word}_timer"
-
-
-def place(robot: Robot) -> str:
-    """The target that it reached last."""
-    return f"{robot.word}_place"
-
-
-def goal(robot: Robot) -> str:
-    """The target that it is to reach next."""
-    return f"{robot.word}_goal"
-
-
-def clock(robot: Robot) -> str:
-    """How many steps it has been on its way."""
-    return f"{robot.word}_clock"
 
 
 def done(target: Target) -> str:
