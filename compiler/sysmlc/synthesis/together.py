@@ -84,10 +84,18 @@ def _composed(
         _report_open(composite, one, place, sink)
     for failure in found.failures:
         subject = place(failure.conjunct.origin or composite.origin)
-        report_failure(BREAK, failure, composite.component, subject, sink)
+        report_failure(BREAK, failure, composite.component, subject, sink, _unreliable(found))
     for loss in found.losses:
         report_failure(LOST, loss, composite.component, place(composite.origin), sink)
     return found
+
+
+def _unreliable(found: Composition) -> tuple[str, ...]:
+    """That runs do not count on parts whose assumptions are open."""
+    names = " and ".join(dict.fromkeys(f"'{one.part.name}'" for one in found.open))
+    if not names:
+        return ()
+    return (f"what {names} may promise is not counted on: what it takes for granted is open",)
 
 
 def _report_conflict(composite: Composite, found: Composition, place: Place, sink: Sink) -> None:

@@ -30,14 +30,19 @@ def said(conjunct: Conjunct) -> str:
 
 
 def report_failure(
-    rule: Rule, failure: Failure, component: str, subject: Subject, sink: Sink
+    rule: Rule,
+    failure: Failure,
+    component: str,
+    subject: Subject,
+    sink: Sink,
+    notes: tuple[str, ...] = (),
 ) -> None:
-    """Report a conjunct that is not kept, with the run that shows it."""
+    """Report a conjunct that is not kept, with the run that shows it, then what else is noted."""
     conjunct = failure.conjunct
     sink.report(
         rule,
         subject,
-        notes=tuple(lines(failure.trace, conjunct)),
+        notes=(*lines(failure.trace, conjunct), *notes),
         component=component,
         formula=print_formula(conjunct.formula),
         said=said(conjunct),

@@ -40,6 +40,8 @@ def test_what_nothing_promises_is_told_with_a_run():
         "('Takes' assumes it)"
     )
     assert found[0].notes[0].startswith("step 1: feeder.ready=false")
+    not_counted = "what 'picker' may promise is not counted on: what it takes for granted is open"
+    assert found[1].notes[-1] == not_counted
     assert [one.broken.text for one in result.witnesses] == [
         "'Takes' assumes it.",
         "'Works' demands it.",
