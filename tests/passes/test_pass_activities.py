@@ -12,11 +12,7 @@ from sysmlc.passes.activity_sketch import sketch
 
 LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """What the models of rules about limits are over."""
-RULES = {
-    code: rule
-    for code, rule in catalogue().items()
-    if "SM450" <= code <= "SM479"
-}
+RULES = {code: rule for code, rule in catalogue().items() if "SM450" <= code <= "SM479"}
 
 
 def tokens(text: str, **options):
