@@ -166,3 +166,13 @@ def test_a_controller_is_made_of_each_contract(here, text, rule, component, mach
     assert made.stdout.startswith(f"{component}: realizable (")
     assert made.stdout.endswith(f"machine: {machine}\n")
     assert (here.folder / "out" / f"{component.replace('::', '.')}.machine.json").is_file()
+
+
+@pytest.mark.parametrize(("rule", "code"), [("G F state=Closed", 0), ("G F state=Shut", 1)])
+def test_a_requirement_that_is_not_understood_is_no_success(here, rule, code):
+    """What is left out of the contract could be what cannot be kept."""
+    here.write("plant.uml", MODEL.format(DOOR.replace("{rule}", rule)))
+    made = here.sysmlc("synth", "plant.uml", "-c", "Plant::Door", "--realizable")
+    assert made.stdout.startswith("Plant::Door: realizable")
+    assert made.exit_code == code
+    assert ("error[SM522" in made.stderr) is (code == 1)

@@ -31,8 +31,8 @@ Examples:
   sysmlc synth cart.gr1.json --deadline timer
   sysmlc synth amba.tlsf --realizable --time-limit 60
 
-Exit codes: 0 realizable, 1 unrealizable, 2 outside GR(1), beyond a limit,
-no machine, or the work could not be done.""",
+Exit codes: 0 realizable, 1 unrealizable or the model has errors, 2 outside
+GR(1), beyond a limit, no machine, or the work could not be done.""",
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
@@ -231,4 +231,5 @@ def _told(
 
     show(read, settings, (verdict.text() for verdict in verdicts))
     code = max((verdict.exit_code for verdict in verdicts), default=2)
-    return code if read.is_whole else 2
+    has_errors = any(one.diagnostic.is_error for one in read.findings)
+    return max(code, int(has_errors)) if read.is_whole else 2
