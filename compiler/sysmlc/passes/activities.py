@@ -20,6 +20,7 @@ from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
 from sysmlc.passes.activity_stores import follow, report_unfollowed
+from sysmlc.passes.activity_unknown import report_unknown
 from sysmlc.passes.activity_usages import drawn_of, has_steps
 from sysmlc.values import dataclass, replace
 
@@ -91,6 +92,7 @@ class Activities:
         tokens, unfollowed = follow(graph, activity, tokens, scope)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         report_unfollowed(graph, activity, unfollowed, sink)
+        report_unknown(graph, activity, (node.id for node in tokens.workers()), sink)
         report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)

@@ -1,0 +1,64 @@
+"""Names that actions assign to although nobody has them (SM545)."""
+
+from collections.abc import Iterable, Iterator
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Element, Graph, query
+from sysmlc.passes.activity_written import assigned
+from sysmlc.suggest import did_you_mean
+
+
+def _filling(body: str) -> str:
+    return f"""\
+Package p "Plant"
+  Class c "Cell" role="block"
+    Property n "full"
+      -> typed-by bool
+    Activity a "work"
+      Control i subkind="initial"
+      Action w "fill" subkind="opaque" body="{body}"
+      Control e subkind="final"
+      ControlFlow iw
+        -> flow-source i
+        -> flow-target w
+      ControlFlow we
+        -> flow-source w
+        -> flow-target e
+  DataType bool "Boolean"
+"""
+
+
+UNKNOWN = rule(
+    "SM545",
+    "assigns-to-nobody",
+    Severity.INFO,
+    "action '{action}' assigns to '{name}', which '{activity}' does not know; {suggestion}",
+    why="An action assigns to features of its activity and of the block that has it. The contract "
+    "leaves out what it cannot find, so that the assignment has no effect there.",
+    help="correct the name, or give the block or the activity a property of that name",
+    wrong=_filling("ful := true"),
+    right=_filling("full := true"),
+)
+
+
+def report_unknown(graph: Graph, activity: Element, played: Iterable[str], sink: Sink) -> None:
+    """Report each name that an action among those played (ids) assigns to and nobody has."""
+    ids = set(played)
+    actions = [one for one in graph.subtree(activity) if one.id in ids]
+    written = [(one, each.name) for one in actions for each in assigned(graph, one)]
+    if not written:
+        return
+    known = set(_known(graph, activity))
+    for action, name in written:
+        if name.partition(".")[0] not in known:
+            suggestion = did_you_mean(name, known)
+            subject = graph.subject(action)
+            named = {"action": action.name, "activity": activity.name}
+            sink.report(UNKNOWN, subject, name=name, suggestion=suggestion, **named)
+
+
+def _known(graph: Graph, activity: Element) -> Iterator[str]:
+    """Names of what the activity has, and of features of the classifiers that it is in."""
+    owners = (one for one in graph.ancestors(activity) if one.kind in query.CLASSIFIERS)
+    features = (one for owner in owners for one in query.features(graph, owner))
+    return (one.name for one in (*features, *graph.subtree(activity)) if one.name)
