@@ -304,6 +304,42 @@ Package p "Plant"
 """
 
 
+PERFORMED = """
+Package p "Plant"
+  Class c "Cell" role="block"
+    -> classifier-behavior c.w
+    Activity c.w "fill"
+      -> specializes f
+  Activity f "Fill"
+"""
+
+
+STARTED = """
+Package p "Plant"
+  Signal s "start"
+  Class c "Cell" role="block"
+    -> classifier-behavior c.m
+    StateMachine c.m "life"
+      Region r
+        State a "idle"
+        State b "busy"
+        Transition t
+          -> flow-source a
+          -> flow-target b
+          -> trigger t.s
+          Trigger t.s subkind="signal"
+            -> typed-by s
+"""
+
+
+def test_a_signal_called_as_what_each_state_inherits_is_named_with_its_package():
+    assert "transition first idle accept Plant::start then busy;" in text_of(STARTED)
+
+
+def test_what_a_block_performs_is_typed_by_the_activity_that_it_specialises():
+    assert "perform action fill : Fill;" in text_of(PERFORMED)
+
+
 def test_state_machines_are_exhibited_states():
     assert lines_of(STATES)[3:] == [
         "part def Gate {",

@@ -62,13 +62,16 @@ def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head
     prefixes = visibility(book, element)
     prefixes += _kinds_of_life(element)
     head = Head(prefixes, entry.shape.keyword, quoted(entry.name) if entry.name else "")
-    head.subsets = [] if is_quantity else _generals(book, entry)
+    if not is_quantity:
+        head.types, head.subsets = _generals(book, entry)
     return head
 
 
-def _generals(book: Book, entry: Entry) -> list[str]:
+def _generals(book: Book, entry: Entry) -> tuple[list[str], list[str]]:
+    """Types, which a usage has where a definition specialises; and what else is specialised."""
     element = _element(entry)
-    found = []
+    types: list[str] = []
+    found: list[str] = []
     for general in book.graph.targets(element, Edge.SPECIALIZES):
         other = book.plan.entry(general)
         if scalar_of(general) is not None:
@@ -81,8 +84,9 @@ def _generals(book: Book, entry: Entry) -> list[str]:
                 book.beside(entry, f"#{mark} dependency from {quoted(entry.name)} to {name}")
         else:
             name = book.name(entry.parent, element, Edge.SPECIALIZES, general)
-            found += [] if name is None else [name]
-    return found
+            is_type = other is not None and other.shape.is_definition > entry.shape.is_definition
+            (types if is_type else found).extend([] if name is None else [name])
+    return types, found
 
 
 def _is_odd(plan: Plan, general: Entry, specific: Entry) -> bool:

@@ -8,8 +8,6 @@ from sysmlc.backends.sysml.rules import RENAMED
 from sysmlc.backends.sysml.words import writable
 from sysmlc.ir import Kind
 
-_TAKEN_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
-
 
 def name_all(plan: Plan) -> None:
     """Give every member a name of its own in its namespace, if it needs one."""
@@ -19,8 +17,7 @@ def name_all(plan: Plan) -> None:
     stack = list(plan.tops)
     while stack:
         top = stack.pop()
-        is_behaviour = top.shape.plain in ("action", "state", "verification", "occurrence")
-        _name(plan, top.members, set(_TAKEN_IN_BEHAVIOURS if is_behaviour else ()))
+        _name(plan, top.members, set(top.shape.inherited))
         stack.extend(top.members)
 
 

@@ -27,7 +27,7 @@ def lookup(plan: Plan, scope: Entry | None, name: str) -> Entry | None:
     """What a name means in a namespace (None: outside of all packages)."""
     for space in _outwards(scope):
         found = visible(plan, space).get(name)
-        if found is not None:
+        if found is not None or name in space.shape.inherited:
             return found
     if scope is not None and name in IMPORTED:
         return None

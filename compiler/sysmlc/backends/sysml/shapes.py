@@ -30,6 +30,15 @@ class Shape:
         """The keyword of the usages of a definition."""
         return self.keyword.removesuffix(" def")
 
+    @property
+    def inherited(self) -> frozenset[str]:
+        """Names that members have from the standard library, whatever the element specialises."""
+        return _IN_BEHAVIOURS if self.plain in _RUNNING else frozenset()
+
+
+_RUNNING = ("action", "state", "verification", "occurrence")
+_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
+
 
 _NAMESPACES = frozenset(
     {"package", "library package", "comment", "doc", "dependency", "import", "start"}
