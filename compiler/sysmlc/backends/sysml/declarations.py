@@ -84,7 +84,8 @@ def _generals(book: Book, entry: Entry) -> tuple[list[str], list[str]]:
                 book.beside(entry, f"#{mark} dependency from {quoted(entry.name)} to {name}")
         else:
             name = book.name(entry.parent, element, Edge.SPECIALIZES, general)
-            is_type = other is not None and other.shape.is_definition > entry.shape.is_definition
+            is_definition = other is not None and other.shape.is_definition
+            is_type = is_definition and not entry.shape.is_definition
             (types if is_type else found).extend([] if name is None else [name])
     return types, found
 
