@@ -12,6 +12,7 @@ from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import token_game, token_net
 from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.net_reductions import reduce
 from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes import activity_drawing, activity_tokens
 from sysmlc.passes.activities import Activities
@@ -54,7 +55,7 @@ def test_reductions_keep_the_answer(tokens):
     """Only an end that forestalls the next firing may make the reduced net more careful."""
     whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
     net = token_net.net_of(tokens, ACTIVITY_REGION)
-    token_net.reduce(net)
+    reduce(net)
     quick = token_net.search(net, 100_000)
     ends = {edge.source for edge in tokens.ends(ACTIVITY_REGION)}
     if whole.unsafe or not ends:
@@ -94,7 +95,7 @@ def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):
     canvas.graph = activity(block)
     tokens = drawn(canvas)
     net = token_net.net_of(tokens, ACTIVITY_REGION)
-    token_net.reduce(net)
+    reduce(net)
     assert len(net.places) <= 3
     assert not token_net.search(net, 10).unsafe
 

@@ -39,5 +39,8 @@ def _typed(book: Book, scope: Entry, element: Element) -> str:
     if other.shape.is_definition:
         name = book.name(scope, element, Edge.TYPED_BY, target)
         payload = element.attrs.get("payload")
-        return f"{quoted(str(payload))} : {name}" if payload else str(name)
+        if payload:
+            return f"{quoted(str(payload))} : {name}"
+        # The toolkit reads no payload that begins with the root.
+        return f": {name}" if str(name).startswith("$") else str(name)
     return f"{quoted(other.name)} : {book.ours(scope, 'Call')}"
