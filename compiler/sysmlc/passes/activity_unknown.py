@@ -52,9 +52,14 @@ def report_unknown(graph: Graph, activity: Element, played: Iterable[str], sink:
     for action, name in written:
         if name.partition(".")[0] not in known:
             suggestion = did_you_mean(name, known)
-            subject = graph.subject(action)
-            named = {"action": action.name, "activity": activity.name}
-            sink.report(UNKNOWN, subject, name=name, suggestion=suggestion, **named)
+            sink.report(
+                UNKNOWN,
+                graph.subject(action),
+                action=action.name,
+                activity=activity.name,
+                name=name,
+                suggestion=suggestion,
+            )
 
 
 def _known(graph: Graph, activity: Element) -> Iterator[str]:
