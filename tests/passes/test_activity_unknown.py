@@ -55,3 +55,10 @@ def test_a_misspelt_name_is_told_with_the_one_that_was_meant():
 )
 def test_features_of_the_block_of_its_generals_and_of_parts_and_parameters_are_known(body):
     assert told(body) == []
+
+
+def test_what_a_write_action_refers_to_is_no_name():
+    writing = MODEL.replace('subkind="opaque" body="{body}"', 'subkind="write"\n        -> calls x')
+    graph, sink = parse_text(writing), Sink()
+    pipeline.run(graph, sink)
+    assert not [one for one in sink if one.rule is UNKNOWN]

@@ -44,7 +44,9 @@ UNKNOWN = rule(
 def report_unknown(graph: Graph, activity: Element, played: Iterable[str], sink: Sink) -> None:
     """Report each name that an action among those played (ids) assigns to and nobody has."""
     ids = set(played)
-    actions = [one for one in graph.subtree(activity) if one.id in ids]
+    # What a write action writes is a reference, no name.
+    inside = graph.subtree(activity)
+    actions = [one for one in inside if one.id in ids and one.subkind != "write"]
     written = [(one, each.name) for one in actions for each in assigned(graph, one)]
     if not written:
         return
