@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
@@ -14,6 +14,7 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.path import saturated
 from sysmlc.logic.simplify import substitute
 from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_writers import called, writer_elsewhere
 from sysmlc.passes.activity_written import Assigned, assigned
 from sysmlc.values import dataclass, replace
 
@@ -218,7 +219,7 @@ class _Following:
     def _other_writer(self, feature: Feature) -> Element | None:
         name = feature.variable
         if name not in self.others:
-            self.others[name] = _writer_elsewhere(self.graph, self, feature)
+            self.others[name] = writer_elsewhere(self.graph, self.activity, feature)
         return self.others[name]
 
     def _refusal(self, name: str) -> str:
@@ -235,7 +236,7 @@ class _Following:
         if name in self.refused:
             return self.refused[name]
         other = None if self._is_local(feature) else self._other_writer(feature)
-        return "" if other is None else f"'{_called(self.graph, other)}' writes it too"
+        return "" if other is None else f"'{called(self.graph, other)}' writes it too"
 
     def _store(self, name: str) -> Store:
         feature = self.features[name]
@@ -279,37 +280,3 @@ def _after(
         when = f.both(*(case[0] for case in combination), substitute(condition, given))
         if when != f.FALSE:
             yield when, substitute(value, given)
-
-
-def _writer_elsewhere(graph: Graph, own: _Following, feature: Feature) -> Element | None:
-    """Another behaviour of the block, or of what specialises it, that writes the feature."""
-    owner = graph.owner(feature.element)
-    inside = {one.id for one in graph.subtree(own.activity)}
-    name = feature.element.name
-    for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
-        if one.id in inside or not _may_write(graph, one, feature.element):
-            continue
-        context = _context(graph, one)
-        family = () if context is None else (context, *query.generals(graph, context))
-        if owner in family and any(each.name == name for each in assigned(graph, one)):
-            return one
-    return None
-
-
-def _called(graph: Graph, one: Element) -> str:
-    """What is named, or what a nameless effect or action is in."""
-    return next((each.name for each in (one, *graph.ancestors(one)) if each.name), one.subkind)
-
-
-def _may_write(graph: Graph, one: Element, feature: Element) -> bool:
-    body = one.attrs.get("body")
-    return (isinstance(body, str) and feature.name in body) or (
-        one.subkind == "write" and graph.target(one, Edge.CALLS) is feature
-    )
-
-
-def _context(graph: Graph, behaviour: Element) -> Element | None:
-    for above in graph.ancestors(behaviour):
-        if above.kind in query.CLASSIFIERS and above.kind not in query.BEHAVIORS:
-            return above
-    return None
