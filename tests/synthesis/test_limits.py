@@ -34,6 +34,15 @@ RUNAWAY = """{
 }"""
 """One conjunct whose diagram no computer can hold: nothing comes between its operations and the end
 but what is looked at within them."""
+FOLLOWER = """{
+  "name": "follower",
+  "variables": {
+    "asked": {"owner": "env", "type": "bool"},
+    "done": {"owner": "sys", "type": "bool"}
+  },
+  "assumptions": {"init": [], "safety": [], "liveness": []},
+  "guarantees": {"init": [], "safety": ["done = asked"], "liveness": ["done | !asked"]}
+}"""
 
 
 def runaway() -> Contract:
@@ -68,6 +77,19 @@ def test_a_limit_ends_what_runs_and_says_what_was_reached(
     assert reached in done.output
     assert "translating the contract" in done.output
     assert not out.exists()
+
+
+def test_a_game_that_is_over_before_the_first_look_at_the_clock_keeps_to_its_nodes(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "follower.gr1.json"
+    file.write_text(FOLLOWER, encoding="utf-8")
+
+    few = CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable", "--nodes", "1"])
+    many = CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable", "--nodes", "1000"])
+
+    assert (few.exit_code, "the limit of 1 nodes was reached" in few.output) == (2, True)
+    assert many.exit_code == 0, many.output
 
 
 def test_comparing_contracts_keeps_limits_too() -> None:

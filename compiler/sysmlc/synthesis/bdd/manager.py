@@ -224,10 +224,12 @@ class Manager:
         """Say what is being done; raises LimitError when a limit is exceeded."""
         if doing and self._progress is not None:
             self._progress(doing)
-        if self.is_over() and self._end is not None:
-            raise self._end()
         # Not when the clock says so: what is decided must not depend on how fast that was.
         nodes = self._nodes if self._alive is None else self._alive()
+        if self._end is None:
+            self._end = exceeded(Usage(nodes, nodes, 0.0), self.limits, 0)
+        if self.is_over() and self._end is not None:
+            raise self._end()
         if nodes > self._reorder_at:
             self.reorder_automatically(True)
 
