@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import Index, every, put_new
+from sysmlc.ir.neighbours import Index, put_new
 from sysmlc.ir.reads import Watched
 
 Row = tuple[str, str, str, str | None, int, str, dict[str, AttrValue]]
@@ -14,6 +14,9 @@ Ends = list[tuple[str, list[str]]]
 """Elements with their neighbours, by id."""
 Rows = tuple[list[Row], dict[str, tuple[Ends, Ends]]]
 """Elements in order, and for each kind of edge the neighbours forwards and backwards."""
+
+_NAMES = {kind: kind.value for kind in Kind}
+"""To ask a member for its value takes a call."""
 
 
 def rows(graph: Graph) -> Rows:
@@ -27,12 +30,15 @@ def rows(graph: Graph) -> Rows:
 
 
 def _row(one: Element) -> Row:
-    attrs = one.attrs.plain() if isinstance(one.attrs, Watched) else one.attrs
-    return one.id, one.kind.value, one.name, one.owner, one.ordinal, one.source, attrs.copy()
+    attrs = one.attrs.plain() if isinstance(one.attrs, Watched) else one.attrs.copy()
+    return one.id, _NAMES[one.kind], one.name, one.owner, one.ordinal, one.source, attrs
 
 
 def _ends(index: Index) -> Ends:
-    return [(id, [one.id for one in every(index, id)]) for id in index]
+    return [
+        (id, [known.id] if isinstance(known, Element) else [one.id for one in known])
+        for id, known in index.items()
+    ]
 
 
 def graph_of(kept: Rows, graph: Graph) -> Graph:
