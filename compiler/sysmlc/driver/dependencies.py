@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -52,14 +53,14 @@ def depends_on(
     return Dependencies(_digest(_others(opened, request, wanted, has_files)), tuple(inputs))
 
 
+@cache
 def tool_digest() -> str:
-    """Digest of the tool itself, plug-ins included: what changes with each version of it."""
-    return _digest(_tool())
+    """Digest of the tool itself, plug-ins included: what changes with each version of it.
 
-
-def _tool() -> Iterator[str]:
-    yield f"{__version__} {sys.version} {sys.platform}"
-    yield from _stamps(_tool_files())
+    Files that change while a process runs are not what it runs.
+    """
+    version = f"{__version__} {sys.version} {sys.platform}"
+    return _digest([version, *_stamps(_tool_files())])
 
 
 def _digest(parts: Iterable[str]) -> str:
@@ -71,7 +72,7 @@ def _others(
     opened: Opened, request: Request, wanted: Sequence[str], has_files: bool
 ) -> Iterator[str]:
     config = request.config
-    yield from _tool()
+    yield tool_digest()
     yield repr(
         (has_files, tuple(wanted), request.strict_input, request.diagrams, len(config.models))
     )
@@ -118,9 +119,21 @@ def _in_package(entry: "EntryPoint") -> Iterator[str]:
 
 
 def _in_folder(folder: Path | None) -> Iterator[str]:
-    for path, folders, files in os.walk(folder) if folder else ():
-        folders[:] = [name for name in folders if name != "__pycache__"]
-        yield from (f"{path}/{name}" for name in files)
+    """Files below a folder; ``os.walk`` takes twice as long for hundreds of them."""
+    folders = [str(folder)] if folder else []
+    for path in folders:
+        for entry in _entries(path):
+            if not entry.is_dir():
+                yield entry.path
+            elif entry.name != "__pycache__" and not entry.is_symlink():
+                folders.append(entry.path)
+
+
+def _entries(folder: str) -> "list[os.DirEntry[str]]":
+    try:
+        return list(os.scandir(folder))
+    except OSError:
+        return []
 
 
 def _stamps(files: Iterable[str]) -> list[str]:
