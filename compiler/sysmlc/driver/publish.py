@@ -73,7 +73,7 @@ def plan(outcome: Outcome, folder: Path) -> Plan:
     When an input could not be read, what an earlier run made of it is kept and listed as such.
     """
     digests = {file.path: file.sha256 for file in outcome.files}
-    left = tuple(p for p in _previous(folder) if p not in digests and (folder / p).is_file())
+    left = tuple(path for path in _previous(folder, digests) if (folder / path).is_file())
     kept, stale = ((), left) if outcome.is_complete else (left, ())
     manifest = manifest_text(outcome, kept)
     digests[MANIFEST] = digest_of(manifest)
@@ -96,8 +96,8 @@ def apply(plan: Plan) -> list[str]:
         raise OutputError(f"cannot write {where}: {problem.strerror or problem}") from problem
 
 
-def _previous(folder: Path) -> list[str]:
-    """What the manifest in the folder lists, as far as it lies in the folder."""
+def _previous(folder: Path, made: Mapping[str, str]) -> list[str]:
+    """What the manifest in the folder lists beside what is made, as far as it lies in there."""
     try:
         manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
         if not str(manifest["schema"]).startswith("sysmlc-manifest/"):
@@ -106,7 +106,7 @@ def _previous(folder: Path) -> list[str]:
         paths = {str(entry["path"]) for entry in entries}
     except (OSError, ValueError, KeyError, TypeError):
         return []
-    return sorted(filter(_inside(folder), paths))
+    return sorted(filter(_inside(folder), paths - made.keys()))
 
 
 def _inside(folder: Path) -> Callable[[str], bool]:
