@@ -30,31 +30,28 @@ class _Search:
 
     def below(self, root: str) -> Iterator[list[str]]:
         """The components that the root reaches and that are not found yet."""
+        found, low, waiting = self.found, self._low, self._waiting
         path = [(root, self._enter(root))]
         while path:
             node, left = path[-1]
-            following = next((one for one in left if self._is_new(node, one)), None)
-            if following is not None:
-                path.append((following, self._enter(following)))
-                continue
-            path.pop()
-            if path:
-                above = path[-1][0]
-                self._low[above] = min(self._low[above], self._low[node])
-            if self._low[node] == self.found[node]:
-                yield self._taken(node)
+            for following in left:
+                if following not in found:
+                    path.append((following, self._enter(following)))
+                    break
+                if following in waiting:
+                    low[node] = min(low[node], found[following])
+            else:
+                path.pop()
+                if path:
+                    above = path[-1][0]
+                    low[above] = min(low[above], low[node])
+                if low[node] == found[node]:
+                    yield self._taken(node)
 
     def _enter(self, node: str) -> Iterator[str]:
         self.found[node] = self._low[node] = len(self.found)
         self._waiting[node] = None
         return iter(self._successors[node])
-
-    def _is_new(self, node: str, other: str) -> bool:
-        if other not in self.found:
-            return True
-        if other in self._waiting:
-            self._low[node] = min(self._low[node], self.found[other])
-        return False
 
     def _taken(self, head: str) -> list[str]:
         component: list[str] = []

@@ -5,6 +5,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.passes.recipe_levels import by_name, followers
 from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass
 
@@ -47,23 +48,28 @@ class Context:
     derived: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that follow from others; what is said wins over them."""
     _segments: dict[str, str] = field(default_factory=dict)
+    _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
+    _able: set[str] = field(default_factory=set)
+    """Ids of what may have a level."""
     _literals: dict[str, list[Element]] = field(default_factory=dict)
     _stated: dict[str, str] = field(default_factory=dict)
-    _ends: set[str] = field(default_factory=set)
+    _chosen: dict[str, str] = field(default_factory=dict)
     _subjects: set[str] = field(default_factory=set)
+    _contents: dict[str, list[Element]] = field(default_factory=dict)
 
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
         """Level that the options, ``classify`` or a stereotype give the element itself."""
-        if element.id not in self._stated:
-            self._stated[element.id] = self._stated_level(element)
-        return self._stated[element.id] or self.derived.get(element.id, "")
+        found = self._stated.get(element.id)
+        if found is None:
+            found = self._stated[element.id] = self._stated_level(element)
+        return found or self.derived.get(element.id, "")
 
     def _stated_level(self, element: Element) -> str:
-        chosen = self._chosen(element) if self.levels else ""
+        chosen = self.levels.get(element.id) or self._named().get(element.id)
         if chosen:
             return chosen
         found = str(element.attrs.get("level", ""))
@@ -71,38 +77,50 @@ class Context:
             return found
         return self._applied_level(element)
 
-    def _chosen(self, element: Element) -> str:
-        """What the options say, by id or by qualified name: few names end as they do there."""
-        if not self._ends:
-            self._ends.update(map(_end, self.levels))
-        is_named = _end(self._segment(element)) in self._ends
-        named = self.levels.get(self.name(element)) if is_named else None
-        return self.levels.get(element.id) or named or ""
+    def _named(self) -> dict[str, str]:
+        """What the options say by qualified names."""
+        if not self._chosen:
+            self._chosen.update(by_name(self.graph, self.levels, self._segment))
+        return self._chosen
 
     def _applied_level(self, element: Element) -> str:
-        if not self._subjects:
-            self._subjects.update(_subjects(self.graph))
-        if element.id not in self._subjects:
+        if element.id not in self._typed():
             return ""
         found = query.applications(self.graph, element)
         names = {name for one in found for name in _stereotypes(one)}
         return next((level for name, level in LEVELS.items() if name in names), "")
 
+    def _typed(self) -> set[str]:
+        """Ids of what stereotypes are applied to."""
+        if not self._subjects:
+            self._subjects.update(_subjects(self.graph))
+        return self._subjects
+
     def level(self, element: Element | None) -> str:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
         if element is None:
             return ""
-        if element.id not in self._levels:
+        found = self._levels.get(element.id)
+        if found is None:
             self._levels[element.id] = ""
-            self._levels[element.id] = self._level(element)
-        return self._levels[element.id]
+            found = self._levels[element.id] = self._level(element)
+        return found
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""
         if not self._of_level:
-            for element in self.graph:
+            self._of_level[""] = []
+            for element in self._may_have_one():
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
+
+    def _may_have_one(self) -> list[Element]:
+        """What may have a level, in the order of the graph: most of a model has none."""
+        named = {*self.levels, *self._named(), *self._typed(), *self.derived}
+        said = [one for one in self.graph if "level" in one.attrs or one.id in named]
+        own = [one for one in said if one.id not in self._able and self.own_level(one)]
+        self._able.update(followers(self.graph, own))
+        return [one for one in self.graph if one.id in self._able]
 
     def literal(self, name: str) -> Element | None:
         """The enumeration literal ``Enumeration::literal``; None where two are called so."""
@@ -113,10 +131,13 @@ class Context:
         return found[0] if len(found) == 1 else None
 
     def _level(self, element: Element) -> str:
-        family = [element, *query.generals(self.graph, element)]
-        own = next((found for one in family if (found := self.own_level(one))), "")
+        own = self.own_level(element)
         if own:
             return own
+        for general in query.generals(self.graph, element):
+            own = self.own_level(general)
+            if own:
+                return own
         definition = self.definition(element)
         if element.kind is Kind.OPERATION:
             definition = self.graph.target(element, Edge.METHOD)
@@ -127,6 +148,15 @@ class Context:
         if element.kind is Kind.ACTION:
             return self.graph.target(element, Edge.CALLS)
         return query.type_of(self.graph, element)
+
+    # -- contents ------------------------------------------------------------------------------
+
+    def contents(self, activity: Element) -> list[Element]:
+        """What an activity owns, and behind each inlined node what that owns."""
+        found = self._contents.get(activity.id)
+        if found is None:
+            found = self._contents[activity.id] = list(contents(self.graph, activity))
+        return found
 
     # -- stereotypes and tagged values ---------------------------------------------------------
 
@@ -146,8 +176,12 @@ class Context:
 
     def name(self, element: Element) -> str:
         """Qualified name; an unnamed part shows its kind, siblings of one name get ``#2``."""
-        path = [element, *self.graph.ancestors(element)]
-        return "::".join(self._segment(part) for part in reversed(path))
+        found = self._names.get(element.id)
+        if found is None:
+            owner, segment = self.graph.owner(element), self._segment(element)
+            found = segment if owner is None else f"{self.name(owner)}::{segment}"
+            self._names[element.id] = found
+        return found
 
     def label(self, element: Element) -> str:
         """Own name; an unnamed element shows its kind and number among its siblings."""
@@ -166,11 +200,6 @@ class Context:
         return self._segments[element.id]
 
 
-def _end(name: str) -> str:
-    """The last part of a qualified name."""
-    return name.rpartition("::")[2]
-
-
 def _subjects(graph: Graph) -> Iterator[str]:
     """Ids of what stereotypes are applied to; the empty one, so that it is never nothing."""
     yield ""
@@ -187,7 +216,7 @@ def _stereotypes(application: Element) -> tuple[str, ...]:
 
 def activity_nodes(context: Context, activity: Element) -> list[Element]:
     """Nodes of the activity, those in for-each regions and plain blocks too."""
-    return [one for one in contents(context.graph, activity) if one.kind in _NODES]
+    return [one for one in context.contents(activity) if one.kind in _NODES]
 
 
 @dataclass(frozen=True, slots=True)

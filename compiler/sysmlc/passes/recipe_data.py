@@ -2,12 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import field
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, is_input, parameter, read, read_time
 from sysmlc.passes.recipe_paths import feature_at, with_values
-from sysmlc.passes.recipe_regions import contents, is_inlined
+from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.patterns import pattern
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
@@ -28,17 +29,21 @@ class Data:
     shared: frozenset[str]
     dotted: frozenset[str] = frozenset()
     """Names ``action.pin`` by which the activity's expressions speak of output pins."""
+    outputs: tuple[Element, ...] = ()
+    """Output pins of its actions."""
+    _renamed: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, context: Context, activity: Element) -> "Data":
         """The data of an activity."""
-        inside = contents(context.graph, activity)
+        inside = context.contents(activity)
         kinds = (Kind.PARAMETER, Kind.PROPERTY)
         names = {context.label(one) for one in inside if one.kind in kinds}
-        pins = Counter(context.label(pin) for pin in _outputs(context, activity))
+        outputs = tuple(_outputs(context, activity))
+        pins = Counter(map(context.label, outputs))
         shared = {name for name, count in pins.items() if count > 1}
         spoken = _spoken(context, activity)
-        return cls(context, activity, frozenset(names), frozenset(shared - names), spoken)
+        return cls(context, activity, frozenset(names), frozenset(shared - names), spoken, outputs)
 
     # -- what an action reads and writes -------------------------------------------------------
 
@@ -62,12 +67,17 @@ class Data:
         found = with_values(self.context, self.activity, read(text))
         if not self.dotted:
             return found
-        names = {
-            f"{self.context.label(owner)}.{self.context.label(pin)}": self.variable(pin)
-            for pin in _outputs(self.context, self.activity)
-            if (owner := self.context.graph.owner(pin)) is not None
-        }
-        return _renamed(found, names)
+        if not self._renamed:
+            self._renamed.update(self._names_of_outputs())
+        return _renamed(found, self._renamed)
+
+    def _names_of_outputs(self) -> Iterator[tuple[str, str]]:
+        """Names ``action.pin`` of output pins, with the variables that these set."""
+        for pin in self.outputs:
+            owner = self.context.graph.owner(pin)
+            if owner is not None:
+                label = f"{self.context.label(owner)}.{self.context.label(pin)}"
+                yield label, self.variable(pin)
 
     def variable(self, pin: Element) -> str:
         """Variable that an output pin sets."""
@@ -120,7 +130,7 @@ class Data:
 
     def variables(self) -> tuple[Parameter, ...]:
         """Attributes of the activity, and what output pins declare, by name."""
-        inside = contents(self.context.graph, self.activity)
+        inside = self.context.contents(self.activity)
         attributes = [
             one for one in inside if one.kind is Kind.PROPERTY and is_data(self.context, one)
         ]
@@ -130,7 +140,7 @@ class Data:
             if one.name in heads and not is_input(self.context, one):
                 found[one.name] = parameter(self.context, one)
         names = self.declared
-        for pin in _outputs(self.context, self.activity):
+        for pin in self.outputs:
             name = self.variable(pin)
             if name not in names and is_data(self.context, pin):
                 made = parameter(self.context, pin)
@@ -185,7 +195,7 @@ def _renamed(expression: Expr, names: Mapping[str, str]) -> Expr:
 def _spoken(context: Context, activity: Element) -> frozenset[str]:
     """Dotted names in the values, guards and texts of an activity."""
     texts: list[object] = []
-    for node in contents(context.graph, activity):
+    for node in context.contents(activity):
         if node.kind is Kind.COMMENT:
             continue
         texts += [node.attrs.get(key) for key in ("guard", "body", "default", "collection")]
@@ -204,7 +214,7 @@ def data_parameters(context: Context, element: Element, *directions: str) -> tup
 
 
 def _outputs(context: Context, activity: Element) -> Iterator[Element]:
-    for node in contents(context.graph, activity):
+    for node in context.contents(activity):
         for pin in context.graph.owned(node) if node.kind is Kind.ACTION else ():
             if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
                 yield pin

@@ -7,7 +7,7 @@ from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_draft import Draft, add_ends, add_results, close_region, open_region
-from sysmlc.passes.recipe_regions import contents, is_inlined
+from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.passes.recipe_steps import (
     activity_flows,
     flow_ends,
@@ -168,7 +168,7 @@ def _item(context: Context, flow: Element) -> str:
 
 def _bounds(context: Context, activity: Element, draft: Draft) -> dict[str, int]:
     found: dict[str, int] = {}
-    for element in contents(context.graph, activity):
+    for element in context.contents(activity):
         bound = context.tags(element, "Loop").integer("maxIterations")
         if bound is not None and bound > 0:
             found[draft.first.get(element.id, element.id)] = bound

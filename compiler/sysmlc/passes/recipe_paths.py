@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import value_type
-from sysmlc.passes.recipe_regions import contents
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import EnumType, Scalar
 
@@ -15,7 +14,7 @@ _HEADS = (Kind.PARAMETER, Kind.PROPERTY)
 def feature_at(context: Context, activity: Element, name: str) -> Element | None:
     """The parameter, variable or feature that a dotted name of an activity means; None if none."""
     head, *rest = name.split(".")
-    inside = contents(context.graph, activity)
+    inside = context.contents(activity)
     found = next((one for one in inside if one.kind in _HEADS and one.name == head), None)
     for part in rest:
         type_ = None if found is None else query.type_of(context.graph, found)

@@ -6,7 +6,7 @@ from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import SERVICES, Context, activity_nodes
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import assignments, optional, read_time
-from sysmlc.passes.recipe_regions import contents, is_block, is_for_each
+from sysmlc.passes.recipe_regions import is_block, is_for_each
 from sysmlc.recipe.model import Node
 from sysmlc.values import replace
 
@@ -182,7 +182,7 @@ _MAKERS: dict[str, _Maker] = {
 def activity_flows(context: Context, activity: Element) -> list[Element]:
     """Control flows and object flows of the activity, inlined regions included."""
     kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-    return [one for one in contents(context.graph, activity) if one.kind in kinds]
+    return [one for one in context.contents(activity) if one.kind in kinds]
 
 
 def end_node(context: Context, end: Element | None) -> Element | None:

@@ -7,11 +7,11 @@ from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import (
     Tables,
-    derived,
     functions_of,
     mode_range,
     modes,
     refined_range,
+    same_machine,
 )
 from sysmlc.recipe.flow import reachable
 from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
@@ -130,12 +130,13 @@ def _disagreement(service: Service, provider: Provider, found: Range) -> Finding
 def groups(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC010: groups are as derived again, and one machine can do each of them."""
     for task in model.recipe.tasks:
-        again = derived(task, tables)
-        if (again and again.same_machine) != (task.derived and task.derived.same_machine):
+        graph = tables.service_graphs.get(task.implementation)
+        again = None if graph is None else same_machine(graph, tables)
+        if again != (task.derived and task.derived.same_machine):
             problem = "its same-machine groups are not those that follow from its functions"
             yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})
         elif again is not None:
-            for group in again.same_machine:
+            for group in again:
                 yield from _without_machine(task, group.nodes, tables)
 
 

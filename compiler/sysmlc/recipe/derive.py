@@ -1,6 +1,8 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import field
+from functools import partial
 
 from sysmlc.recipe.expression import Lit
 from sysmlc.recipe.flow import duration, forward_edges, reachable
@@ -31,6 +33,7 @@ class Tables:
     functions: Mapping[str, Function]
     service_graphs: Mapping[str, FlowGraph]
     function_graphs: Mapping[str, FlowGraph]
+    _times: dict[tuple[str, ...], Range | None] = field(default_factory=dict)
 
     @classmethod
     def of(cls, model: Model) -> "Tables":
@@ -45,6 +48,17 @@ class Tables:
     def service(self, node: Node) -> Service | None:
         """The service that a node calls."""
         return self.services.get(node.ref) if node.kind == "service" else None
+
+    def time(self, key: tuple[str, ...], find: Callable[[], Range | None]) -> Range | None:
+        """How long something takes, found out once."""
+        if key not in self._times:
+            self._times[key] = find()
+        return self._times[key]
+
+    def without(self, graph: str) -> "Tables":
+        """The same without one of the graphs of functions."""
+        left = {id: one for id, one in self.function_graphs.items() if id != graph}
+        return Tables(self.services, self.functions, self.service_graphs, left)
 
 
 def derive(model: Model) -> Model:
@@ -215,7 +229,10 @@ def service_range(service: Service, tables: Tables, machines: tuple[str, ...] = 
 def refined_range(service: Service, tables: Tables) -> Range | None:
     """How long the functions of a service take together; None when they do not say it."""
     graph = tables.function_graphs.get(service.implementation)
-    return None if graph is None else duration(graph, lambda node: node_range(node, tables))
+    if graph is None:
+        return None
+    find = partial(duration, graph, lambda node: node_range(node, tables))
+    return tables.time(("service", service.implementation), find)
 
 
 def mode_range(task: Task, mode: Mode, tables: Tables) -> Range | None:
@@ -245,8 +262,11 @@ def _call(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None
     graph = tables.function_graphs.get(node.ref)
     if graph is None:
         return _NO_TIME
-    inner = {key: one for key, one in tables.function_graphs.items() if key != node.ref}
-    rest = replace(tables, function_graphs=inner)
+    return tables.time(("call", node.ref, *machines), partial(_of_helper, graph, tables, machines))
+
+
+def _of_helper(graph: FlowGraph, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+    rest = tables.without(graph.id)
     return duration(graph, lambda one: node_range(one, rest, machines))
 
 
