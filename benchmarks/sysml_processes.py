@@ -166,11 +166,16 @@ def text(folder: Path, content: str, rounds: int) -> list[float]:
     return edited(["check", str(path)], folder, rounds, (path, package))
 
 
-def laboratory(corpus: Path, folder: Path, rounds: int) -> list[float]:
-    """``sysmlc`` of a copy of the ICE laboratory: the first time, and each of the edits."""
-    unit = folder / "ice"
+def copied(corpus: Path, unit: Path) -> Path:
+    """A copy of the ICE laboratory with the names of its levels."""
     shutil.copytree(corpus / "sysml2" / "ice-lab", unit)
     (unit / "sysmlc.toml").write_text(_LEVELS, "utf-8")
+    return unit
+
+
+def laboratory(corpus: Path, folder: Path, rounds: int) -> list[float]:
+    """``sysmlc`` of a copy of the ICE laboratory: the first time, and each of the edits."""
+    unit = copied(corpus, folder / "ice")
     arguments = [str(unit), "-o", str(folder / "out")]
     edits = ((unit / file, edit) for file, edit in LABORATORY.values())
     return edited(arguments, folder, rounds, *edits)

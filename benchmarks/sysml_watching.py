@@ -1,0 +1,81 @@
+"""CPU seconds of ``sysmlc watch`` for each edit of the ICE laboratory: the process stays.
+
+A rebuild is over when the process has said what became of the outputs and has come to rest.
+What it used is read from Linux; elsewhere there is nothing to tell.
+"""
+
+import os
+import subprocess
+import sysconfig
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from sysml_processes import LABORATORY, Edit, copied
+
+_PROCESSES = Path("/proc")
+_TICKS = os.sysconf("SC_CLK_TCK")
+_REST = 0.1
+_IDLE = 0.01
+"""Seconds that a process may use in those of rest: it looks at files now and then."""
+
+
+class Watched:
+    """A process that compiles again at every save."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+
+    def used(self) -> float:
+        """CPU time so far, user and system, also of threads that are no more."""
+        fields = (_PROCESSES / str(self._process.pid) / "stat").read_text().rpartition(")")[2]
+        user, system = fields.split()[11:13]
+        return (int(user) + int(system)) / _TICKS
+
+    def settle(self) -> float:
+        """Wait for the line that ends a rebuild and for rest; CPU time so far."""
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            if line.endswith(("changed\n", "the model has errors\n")):
+                break
+        before, used = -1.0, self.used()
+        while used - before > _IDLE:
+            time.sleep(_REST)
+            before, used = used, self.used()
+        return before
+
+
+@contextmanager
+def watching(unit: Path, folder: Path) -> Iterator[Watched]:
+    """``sysmlc watch`` of a unit, built once."""
+    script = str(Path(sysconfig.get_path("scripts")) / "sysmlc")
+    command = [script, "watch", str(unit), "-o", str(folder / "watched"), "--settle", "0"]
+    environment = {**os.environ, "SYSMLC_CACHE": str(folder / "watch-cache")}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment, text=True
+    ) as process:
+        try:
+            watched = Watched(process)
+            watched.settle()
+            yield watched
+        finally:
+            process.terminate()
+
+
+def laboratory(corpus: Path, folder: Path, rounds: int) -> list[float]:
+    """For each of the edits the least of ``rounds``; empty where it cannot be told."""
+    if not _PROCESSES.is_dir():
+        return []
+    unit = copied(corpus, folder / "watched-ice")
+    found = []
+    with watching(unit, folder) as watched:
+        for file, edit in LABORATORY.values():
+            found.append(min(_rebuilt(watched, unit / file, edit) for _ in range(rounds)))
+    return found
+
+
+def _rebuilt(watched: Watched, file: Path, edit: Edit) -> float:
+    before, text = watched.used(), file.read_text("utf-8")
+    file.write_text(edit(text), "utf-8")
+    return watched.settle() - before
