@@ -1,0 +1,93 @@
+"""The order in which files are named says nothing: the same bytes and findings come out."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from edited_units import files, sysmlc
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+CELLS = {
+    "cells.sysml": """\
+package Cells {
+    private import Arms::*;
+    alias Reach for Shared;
+    part def Cell { part arm : Arm; part lost : Nowhere; port out1 : Tray; }
+    part line { part one : Cell; part two : Cell; connect one.out1 to two.out1; }
+}
+""",
+    "arms.sysml": """\
+package Arms {
+    public import Cells::Reach;
+    part def Arm { attribute load; action pick { first start; then action grip; then done; } }
+    part def Shared :> Arm;
+}
+""",
+    "again.sysml": """\
+package Cells { part def Cell { part other : Arms::Arm; } }
+package Arms { port def Tray; }
+""",
+    "trays.sysml": """\
+package Trays { private import Cells::**; part def Tray; part tray : Tray; part cell : Cell; }
+""",
+}
+CLASSES = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<uml:Model xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+    xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmi:id="m" name="{name}">
+  <packagedElement xmi:type="uml:Class" xmi:id="{name}_c" name="Cell">
+    <generalization xmi:type="uml:Generalization" xmi:id="g">
+      <general xmi:type="uml:Class" href="{next}.uml#{next}_c"/>
+    </generalization>
+    <ownedAttribute xmi:type="uml:Property" xmi:id="p" name="part" type="gone"/>
+  </packagedElement>
+</uml:Model>
+"""
+MODELS = {
+    f"{name}.uml": CLASSES.format(name=name, next=after)
+    for name, after in (("one", "two"), ("two", "three"), ("three", "four"), ("four", "one"))
+}
+PLANT = """\
+<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="{name}.aml">
+  <ExternalReference Path="{next}.aml" Alias="Next"/>
+  <InstanceHierarchy Name="Plant">
+    <InternalElement Name="Cell" ID="1" RefBaseSystemUnitPath="Next@Lib/{next}"/>
+  </InstanceHierarchy>
+  <SystemUnitClassLib Name="Lib">
+    <SystemUnitClass Name="{name}" RefBaseClassPath="Lib/Gone"/>
+  </SystemUnitClassLib>
+</CAEXFile>
+"""
+PLANTS = {
+    f"{name}.aml": PLANT.format(name=name, next=after)
+    for name, after in (("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"))
+}
+
+
+@pytest.mark.parametrize("texts", [CELLS, MODELS, PLANTS], ids=["v2", "xmi", "aml"])
+@settings(
+    max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(chance=st.randoms(use_true_random=False))
+def test_files_named_in_any_order_give_the_same_bytes_and_findings(
+    tmp_path, monkeypatch, texts, chance
+):
+    monkeypatch.chdir(tmp_path)
+    known = _compiled(sorted(texts), texts)
+    named = sorted(texts)
+    chance.shuffle(named)
+    assert _compiled(named, texts) == known
+    assert known[1][0] == 1, "findings are in an order, too"
+
+
+def _compiled(named, texts):
+    """The outputs, and what is said, of files that are written and named in an order."""
+    for folder in ("unit", "out"):
+        shutil.rmtree(folder, ignore_errors=True)
+    Path("unit").mkdir()
+    for name in named:
+        Path("unit", name).write_text(texts[name])
+    paths = [f"unit/{name}" for name in named]
+    said = sysmlc(*paths, "-o", "out", "--emit", "+ir", "--no-cache", "--format", "json")
+    return files("out"), said
