@@ -6,6 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sysmlc.ir import Edge, Element, Graph, Kind, parse_text, verify
+from sysmlc.ir.shared import Shared
 
 LINE = """
 Package line
@@ -106,3 +107,16 @@ def test_elements_that_front_ends_make_stand_below_their_owner_in_order_however_
     assert graph.new("n3", Kind.CLASS, "again", "top", 40, "a.uml") is None
     graph.add(Element("late", Kind.CLASS, "late", "top"))
     assert [child.name for child in graph.owned(graph["top"])] == [*names, "late"]
+
+
+def test_attributes_that_elements_share_are_set_for_one_of_them_alone() -> None:
+    graph, attrs = Graph(), Shared(role="part")
+    for name in ("one", "two"):
+        graph.new(name, Kind.PROPERTY, name, None, 0, "a.aml", attrs)
+    graph.set(graph["one"], role=None, unit="m")
+    assert graph["one"].attrs == {"unit": "m"}
+    assert graph["two"].attrs == {"role": "part"}
+    with pytest.raises(TypeError):
+        graph["two"].attrs["role"] = "value"
+    with pytest.raises(TypeError):
+        graph["two"].attrs.update(role="value")

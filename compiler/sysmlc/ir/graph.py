@@ -10,6 +10,7 @@ from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new, with_each_new
 from sysmlc.ir.reads import Reads
 from sysmlc.ir.reference import End, Reference, References
+from sysmlc.ir.shared import NOTHING, Shared
 
 _T = TypeVar("_T")
 
@@ -176,11 +177,12 @@ class Graph:
         owner: str | None,
         ordinal: int,
         source: str,
-        attrs: dict[str, AttrValue] | None = None,
+        attrs: dict[str, AttrValue] = NOTHING,
     ) -> Element | None:
         """Add a new element below an owner that is there; None when the id is empty or taken.
 
-        The way for front ends that make hundreds of thousands of elements: ``attrs`` are copied.
+        The way for front ends that make hundreds of thousands of elements: ``attrs`` are taken
+        over, and are ``Shared`` where several elements have them.
         """
         made = _bare(Element)
         if not id or self._elements.setdefault(id, made) is not made:
@@ -192,7 +194,7 @@ class Graph:
         made.owner = owner
         made.ordinal = ordinal
         made.source = source
-        made.attrs = attrs.copy() if attrs else {}
+        made.attrs = attrs
         self._fresh.append(made)
         if owner is not None:
             owned = self._owned
@@ -297,6 +299,8 @@ class Graph:
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Set attributes; ``_`` in a keyword is kept. None removes the attribute."""
+        if isinstance(element.attrs, Shared):
+            element.attrs = {**element.attrs}
         for key, value in attrs.items():
             if value is None:
                 element.attrs.pop(key, None)

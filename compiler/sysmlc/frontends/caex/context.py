@@ -12,6 +12,7 @@ from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
+from sysmlc.ir.shared import NOTHING, Shared
 
 if TYPE_CHECKING:
     from sysmlc.frontends.caex.plain import Plain
@@ -20,6 +21,7 @@ Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
 
 _MAPPED = Verdict.MAPPED
+_BUILT_IN: dict[str, AttrValue] = {"external": True, "library": True}
 
 _ROOTS = frozenset({*LIBRARIES, "InstanceHierarchy"})
 _REFERENCES = {
@@ -87,14 +89,19 @@ class Context:
             key: value for key, value in attrs.items() if value not in (None, "", ())
         }
         element = self.add_at(kind, document, node.row, owner, id)
-        if given:
-            element.attrs.update(given)
+        element.attrs = {**element.attrs, **given}
         return element
 
     def add_at(
-        self, kind: Kind, document: Document, row: int, owner: str | None, id: str = ""
+        self,
+        kind: Kind,
+        document: Document,
+        row: int,
+        owner: str | None,
+        id: str = "",
+        attrs: dict[str, AttrValue] = NOTHING,
     ) -> Element:
-        """Add the element of a row, without attributes."""
+        """Add the element of a row."""
         name, ordinal = document.attributes[row].get("Name", ""), document.ordinals[row]
         if not id:
             id = document.ids[row]
@@ -102,13 +109,11 @@ class Context:
                 id = self.id_at(document, row, owner)
         source = document.name
         if document.is_built_in:
-            source, ordinal = "", -1
-        element = self.graph.new(id, kind, name, owner, ordinal, source)
+            source, ordinal, attrs = "", -1, Shared({**_BUILT_IN, **attrs})
+        element = self.graph.new(id, kind, name, owner, ordinal, source, attrs)
         if element is None:
             id = self.free(id, document.node(row))
-            element = self.graph.add(Element(id, kind, name, owner, ordinal, source))
-        if document.is_built_in:
-            element.attrs = {"external": True, "library": True}
+            element = self.graph.add(Element(id, kind, name, owner, ordinal, source, attrs))
         document.elements[row] = id
         document.verdicts[row] = _MAPPED
         return element

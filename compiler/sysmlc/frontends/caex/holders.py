@@ -4,11 +4,16 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.shared import Shared
 
 # To look a member of an enumeration up takes ten times as long as to look these up.
 _INSTANCE = Kind.INSTANCE
 _REPRESENTS = Edge.REPRESENTS
+
+_CLASS = Shared(subkind="internal-element", role="block")
+_PART = Shared(aggregation="composite", role="part")
+_VALUES = Shared(subkind="part")
 
 
 def own(context: Context, site: Site) -> Type:
@@ -19,8 +24,7 @@ def own(context: Context, site: Site) -> Type:
     graph, document = context.graph, site.document
     owner = own(context, above).id if above is not None else graph[site.instance].owner
     base = document.ids[site.row] or f"{owner}/{site.name}"
-    made = _add(context, site, f"{base}#class", Kind.CLASS, owner, subkind="internal-element")
-    made.attrs["role"] = "block"
+    made = _add(context, site, f"{base}#class", Kind.CLASS, owner, _CLASS)
     site.own = Type(made.id, document, site.row, Family.SYSTEM_UNIT)
     site.own.base = site.declared
     _retype(site, site.own)
@@ -32,17 +36,16 @@ def own(context: Context, site: Site) -> Type:
 
 
 def _add(
-    context: Context, site: Site, id: str, kind: Kind, owner: str | None, **attrs: AttrValue
+    context: Context, site: Site, id: str, kind: Kind, owner: str | None, attrs: Shared
 ) -> Element:
     """An element that stands for an internal element beside the one that has its ID."""
     document = site.document
     ordinal = document.ordinals[site.row]
-    made = context.graph.new(id, kind, site.name, owner, ordinal, document.name)
+    made = context.graph.new(id, kind, site.name, owner, ordinal, document.name, attrs)
     if made is None:
         id = context.free(id, site.node)
-        made = Element(id, kind, site.name, owner, ordinal, document.name)
+        made = Element(id, kind, site.name, owner, ordinal, document.name, attrs)
         context.graph.add(made)
-    made.attrs = attrs
     return made
 
 
@@ -50,8 +53,7 @@ def _redefine_part(context: Context, site: Site, above: Site, type_: Element) ->
     """A part of the class whose instance has more in it: redefined, with the other type."""
     graph, owner = context.graph, own(context, above)
     part = f"{type_.id}#part"
-    made = _add(context, site, part, Kind.PROPERTY, owner.id, aggregation="composite")
-    made.attrs["role"] = "part"
+    made = _add(context, site, part, Kind.PROPERTY, owner.id, _PART)
     graph.connect(Edge.TYPED_BY, made, type_)
     graph.connect(Edge.REDEFINES, made, site.part)
     member = Member(made.id, site.own, site.document, site.row)
@@ -92,7 +94,7 @@ def _add_instance(context: Context, site: Site) -> None:
     owner = None if above is None else above.instance or own(context, above).id
     document = site.document
     id = context.id_at(document, site.row, owner) if site.is_known else f"{site.part}#values"
-    made = _add(context, site, id, _INSTANCE, owner, subkind="part")
+    made = _add(context, site, id, _INSTANCE, owner, _VALUES)
     context.graph.connect_new(_REPRESENTS, made, context.graph[site.part])
     site.instance, site.instance_made = made.id, made
     if site.is_known:

@@ -107,7 +107,7 @@ def set_apart(context: Context) -> None:
         for node in document.root.of(*LIBRARIES):
             if node.name in STANDARD:
                 for element in graph.subtree(graph[node.element]):
-                    element.attrs.update(external=True, library=True)
+                    graph.set(element, external=True, library=True)
 
 
 def in_order_of_parts(context: Context, types: list[Type]) -> list[Type]:

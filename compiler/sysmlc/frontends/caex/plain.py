@@ -12,9 +12,11 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import documents, fitting, measures, mirrors, ports, sameness, special
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.plans import KEPT
 from sysmlc.frontends.caex.types import Missing, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.shared import Shared
 
 _Stated = tuple[str, str, str]
 """Data type, attribute type and unit of an attribute, or nothing."""
@@ -33,8 +35,10 @@ class _Shape(NamedTuple):
     type: Type | None
     target: Element | None
     """What types them; None where it is a primitive of UML."""
-    attrs: dict[str, AttrValue]
+    attrs: Shared
     read: Callable[[str], AttrValue] | None
+    given: dict[str, Shared]
+    """Attributes by the text of the value."""
 
 
 _Named = tuple[str, str, _Shape | None]
@@ -62,7 +66,7 @@ class Plain:
         self._defaults = document.texts["DefaultValue"]
         self._ports: dict[str, _PortShape | None] = {}
         self._more: dict[tuple[int, Type | None, bool], bool] = {}
-        self._told: dict[tuple[int, str | None], dict[str, AttrValue]] = {}
+        self._told: dict[tuple[int, str | None], Shared] = {}
         self._sources: list[Element] = []
         self._targets: list[Element] = []
 
@@ -81,10 +85,7 @@ class Plain:
             return False
         text = self._values.get(row)
         if text:
-            try:
-                made.attrs["default"] = text if shape.read is None else shape.read(text)
-            except ValueError:
-                made.attrs["default"] = self._unfit(row, text, data_type, shape)
+            made.attrs = shape.given.get(text) or self._given(row, text, data_type, shape)
         if shape.target is not None:
             self._sources.append(made)
             self._targets.append(shape.target)
@@ -102,13 +103,22 @@ class Plain:
         found = self._named[self.document.alike[row]] = name, data_type, shape
         return found
 
+    def _given(self, row: int, text: str, stated: str, shape: _Shape) -> dict[str, AttrValue]:
+        """Attributes with a value; those of frequent values are kept for all that have them."""
+        try:
+            value = text if shape.read is None else shape.read(text)
+        except ValueError:
+            return {**shape.attrs, "default": self._unfit(row, text, stated, shape)}
+        given: dict[str, AttrValue] = {**shape.attrs, "default": value}
+        if len(shape.given) < KEPT:
+            given = shape.given[text] = Shared(given)
+        return given
+
     def _unfit(self, row: int, text: str, stated: str, shape: _Shape) -> AttrValue:
         data_type = fitting.data_type_of(stated, shape.type)
         return fitting.unfit(self._context, self.document, row, text, data_type, stated)
 
-    def new(
-        self, id: str, name: str, owner: str, row: int, attrs: dict[str, AttrValue]
-    ) -> Element | None:
+    def new(self, id: str, name: str, owner: str, row: int, attrs: Shared) -> Element | None:
         """Add an attribute; None when the graph has the id."""
         document = self.document
         source, ordinal = document.name, document.ordinals[row]
@@ -131,7 +141,8 @@ class Plain:
                 attrs["data_type"] = data_type
             measures.multiply(attrs, declared)
             target = measures.target(context, document.node(row), document, declared, attrs)
-            shape = _Shape(declared, target, attrs, fitting.reader(data_type, declared))
+            read = fitting.reader(data_type, declared)
+            shape = _Shape(declared, target, Shared(attrs), read, {})
             fitting.know(context, document, row, data_type)
         self._shapes[stated] = shape
         return shape
@@ -188,19 +199,19 @@ class Plain:
         types, node = self._context.types, self.document.node(row)
         return any(True for _ in sameness.more_than_values(types, self.document, node, type))
 
-    def _said(self, row: int) -> dict[str, AttrValue]:
+    def _said(self, row: int) -> Shared:
         """What the attributes of an interface say, told once of a single one and its value."""
         document, context = self.document, self._context
         if document.ends[row] > row + 2 or row + 1 in self._defaults:
-            return ports.said_of(context, document.node(row))
+            return Shared(ports.said_of(context, document.node(row)))
         key = document.alike[row + 1], self._values.get(row + 1)
         known = self._told.get(key)
         if known is None:
             unfit = len(context.unfit)
-            known = ports.said_of(context, document.node(row))
+            known = Shared(ports.said_of(context, document.node(row)))
             if len(context.unfit) == unfit and key[1] not in {text for _, _, text in context.unfit}:
                 self._told[key] = known
-        return known.copy()
+        return known
 
     def _mean(self, meaning: str, owner: Type, made: Element, row: int) -> None:
         """What a port of a special class is for; it may name a file of another language."""

@@ -3,12 +3,27 @@
 from sysmlc.frontends.caex import fitting
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.types import Member, Type
+from sysmlc.ir.shared import Shared
+
+KEPT = 64
+"""Texts of an attribute that are remembered: those that come often are among the first."""
 
 
 class Known:
     """An attribute of a class, and how instances repeat it."""
 
-    __slots__ = ("_inner", "alike", "element", "member", "name", "read", "stated", "suffix", "text")
+    __slots__ = (
+        "_inner",
+        "alike",
+        "element",
+        "member",
+        "name",
+        "read",
+        "said",
+        "stated",
+        "suffix",
+        "text",
+    )
 
     def __init__(self, context: Context, member: Member) -> None:
         node = member.node
@@ -22,6 +37,8 @@ class Known:
         self.read = fitting.reader(self.stated, member.type)
         self.alike: set[int] = set()
         """Rows that state no more than the class, and with each all that are like it."""
+        self.said: dict[str, Shared] = {}
+        """Attributes of slots by the text of their value."""
         self._inner: dict[str, Known | None] = {}
 
     def inner(self, context: Context, name: str) -> "Known | None":

@@ -11,12 +11,16 @@ from sysmlc.frontends.caex.site import NO_IDS, NO_ROWS, Site
 from sysmlc.frontends.caex.swift import Swift
 from sysmlc.frontends.caex.types import Member, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.shared import Shared
 
 # To look a member of an enumeration up takes ten times as long as to look these up.
 _MAPPED = Verdict.MAPPED
 _PROPERTY = Kind.PROPERTY
 _SYSTEM_UNIT = Family.SYSTEM_UNIT
+
+_REFERENCE = Shared(role="reference")
+_PART = Shared(role="part", aggregation="composite")
 
 _MEMBERS = frozenset({"Attribute", "ExternalInterface"})
 
@@ -169,10 +173,8 @@ class Sites:
 
     def _add_part(self, site: Site, parent: Site) -> None:
         owner = own(self._context, parent)
-        element = self._context.add_at(_PROPERTY, site.document, site.row, owner.id)
-        element.attrs["role"] = "reference" if site.is_mirror else "part"
-        if not site.is_mirror:
-            element.attrs["aggregation"] = "composite"
+        attrs = _REFERENCE if site.is_mirror else _PART
+        element = self._context.add_at(_PROPERTY, site.document, site.row, owner.id, attrs=attrs)
         key = ("InternalElement", site.name)
         inherited = owner.base.find(*key) if owner.base else None
         owner.members[key] = member((element.id, site.declared, site.document, site.row))
@@ -192,11 +194,11 @@ class Sites:
         sites = [site for site in self._all if site.instance]
         instances = list(map(self.instance, sites))
         self._tie(Edge.INSTANCE_OF, sites, instances)
-        _keep_ids(sites, instances)
+        _keep_ids(self._context.graph, sites, instances)
         sites = [site for site in self._all if site.part and not site.is_known]
         parts = list(map(self.part, sites))
         self._tie(Edge.TYPED_BY, sites, parts)
-        _keep_ids(sites, parts)
+        _keep_ids(self._context.graph, sites, parts)
 
     def part(self, site: Site) -> Element | None:
         """The part that stands for an internal element in the class above."""
@@ -226,11 +228,11 @@ class Sites:
             members.lower(self._context, site)
 
 
-def _keep_ids(sites: list[Site], elements: list[Element | None]) -> None:
+def _keep_ids(graph: Graph, sites: list[Site], elements: list[Element | None]) -> None:
     """Let each element have the IDs that interfaces of its class have in it, once a site."""
     for site, element in zip(sites, elements, strict=True):
         if site.interface_ids and element is not None:
-            element.attrs["interface_ids"] = tuple(site.interface_ids)
+            graph.set(element, interface_ids=tuple(site.interface_ids))
             site.interface_ids = NO_IDS
 
 

@@ -8,7 +8,10 @@ from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.plain import Plain
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import AttrValue, Edge, Kind
+from sysmlc.ir import Edge, Kind
+from sysmlc.ir.shared import Shared
+
+_ATTRS = Shared(role="value type", subkind="attribute")
 
 
 def structure(context: Context, plain: Plain, owner: Type, row: int) -> Type | None:
@@ -45,8 +48,7 @@ def _holds_attributes_alone(document: Document, row: int) -> bool:
 
 def _add_type(context: Context, type: Type, name: str, owner: Type) -> None:
     graph, document = context.graph, type.document
-    attrs: dict[str, AttrValue] = {"role": "value type", "subkind": "attribute"}
     ordinal = document.ordinals[type.row]
-    made = graph.new(type.id, Kind.DATA_TYPE, name, owner.id, ordinal, document.name, attrs)
+    made = graph.new(type.id, Kind.DATA_TYPE, name, owner.id, ordinal, document.name, _ATTRS)
     if made is not None and type.base is not None:
         graph.connect_new(Edge.SPECIALIZES, made, graph[type.base.id])

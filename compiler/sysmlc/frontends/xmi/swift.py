@@ -70,7 +70,7 @@ class Swift:
             if is_other or id in clashes or (owners and not context.may_own(owner, kind)):
                 row = other(context, row)
                 continue
-            made = new(id, kind, name, owner or None, ordinals[row], file, said)
+            made = new(id, kind, name, owner or None, ordinals[row], file, said.copy())
             if made is None:
                 row = other(context, row)
                 continue
