@@ -10,7 +10,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import token_game, token_net
+from sysmlc.logic.activities import one_token, token_game, token_net
 from sysmlc.logic.activities.derivation import derive
 from sysmlc.logic.activities.net_reductions import reduce
 from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
@@ -49,6 +49,30 @@ def scribbles(draw) -> TokenGraph:
     return drawn(canvas)
 
 
+@st.composite
+def lines(draw) -> TokenGraph:
+    """Steps, decisions and merges behind one start, each entered and left as often as it may be."""
+    canvas = Canvas()
+    start, first = canvas.control("initial"), canvas.control("merge")
+    canvas.flow(start, first)
+    ways = [first]
+    merges = [first]
+    for number in range(draw(st.integers(0, 8))):
+        source = ways.pop(draw(st.integers(0, len(ways) - 1))) if ways else None
+        if source is None:
+            break
+        kind = draw(st.sampled_from(("opaque", "decision", "merge", "value", "final", "back")))
+        if kind == "back":
+            canvas.flow(source, draw(st.sampled_from(merges)))
+            continue
+        is_action = kind in ("opaque", "value")
+        node = canvas.node(Kind.ACTION, kind, f"w{number}") if is_action else canvas.control(kind)
+        canvas.flow(source, node)
+        merges += [node] if kind == "merge" else []
+        ways += [node] * {"final": 0, "decision": 2}.get(kind, 1)
+    return drawn(canvas)
+
+
 @settings(max_examples=300, deadline=None)
 @given(scribbles())
 def test_reductions_keep_the_answer(tokens):
@@ -77,6 +101,21 @@ def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
         state = token_game.step(
             tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
         )
+
+
+@settings(max_examples=300, deadline=None)
+@given(scribbles())
+def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
+    found = one_token.walk(tokens, ACTIVITY_REGION)
+    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
+    assert found in (None, whole)
+
+
+@settings(max_examples=100, deadline=None)
+@given(lines())
+def test_where_nothing_forks_or_joins_no_marking_is_built(tokens):
+    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
+    assert one_token.walk(tokens, ACTIVITY_REGION) == whole
 
 
 def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():

@@ -35,6 +35,24 @@ class Net:
     busy: set[str] = field(default_factory=set)
 
 
+@dataclass(frozen=True, slots=True)
+class Safety:
+    """What the search found in one region.
+
+    ``unsafe`` is the id of an edge (or node) that may get a second token, ``dead`` holds
+    the ids of nodes that never fire although a path of flows leads to them. ``finishes`` tells
+    whether the region may be complete, ``rests`` whether it may be so without a final node.
+    ``is_complete`` is false when there were more markings than allowed; nothing is known then
+    beyond ``unsafe``.
+    """
+
+    unsafe: str = ""
+    dead: frozenset[str] = frozenset()
+    finishes: bool = True
+    rests: bool = True
+    is_complete: bool = True
+
+
 def net_of(graph: TokenGraph, region: str) -> Net:
     """The Petri net of a region, with one place for each edge and each running node."""
     edges, workers = graph.inside(region)

@@ -12,30 +12,12 @@ borders of regions and data stores are no places of such a net.
 
 from collections.abc import Iterable
 
-from sysmlc.logic.activities.net import Net, net_of
+from sysmlc.logic.activities.net import Net, Safety, net_of
+from sysmlc.logic.activities.one_token import walk
 from sysmlc.logic.activities.tokens import TokenGraph
-from sysmlc.values import dataclass
 
 _SMALL = 2_000
 """Markings that are searched without reductions: some milliseconds."""
-
-
-@dataclass(frozen=True, slots=True)
-class Safety:
-    """What the search found in one region.
-
-    ``unsafe`` is the id of an edge (or node) that may get a second token, ``dead`` holds
-    the ids of nodes that never fire although a path of flows leads to them. ``finishes`` tells
-    whether the region may be complete, ``rests`` whether it may be so without a final node.
-    ``is_complete`` is false when there were more markings than allowed; nothing is known then
-    beyond ``unsafe``.
-    """
-
-    unsafe: str = ""
-    dead: frozenset[str] = frozenset()
-    finishes: bool = True
-    rests: bool = True
-    is_complete: bool = True
 
 
 def check(graph: TokenGraph, region: str, limit: int) -> Safety:
@@ -45,6 +27,9 @@ def check(graph: TokenGraph, region: str, limit: int) -> Safety:
     is reduced before. In the reduced net others may move on before a final node ends the
     region: this errs on the safe side.
     """
+    found = walk(graph, region)
+    if found is not None:
+        return found
     net = net_of(graph, region)
     whole = search(net, min(limit, _SMALL))
     if whole.is_complete or any(move.resets for move in net.moves):
