@@ -28,12 +28,13 @@ class Names:
 
     def new(self, name: str, fallback: str = "x") -> str:
         """A free identifier for the name; names that differ only in case count as equal."""
-        base = identifier(name, fallback)
-        made, number = base, 1
-        while made.lower() in self._taken:
+        made = base = identifier(name, fallback)
+        number, lower = 1, base.lower()
+        while lower in self._taken:
             number += 1
             made = f"{base}_{number}"
-        self._taken.add(made.lower())
+            lower = made.lower()
+        self._taken.add(lower)
         return made
 
 

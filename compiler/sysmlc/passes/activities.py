@@ -22,6 +22,7 @@ from sysmlc.passes.activity_raising import Raising, find_raising
 from sysmlc.passes.activity_stores import follow, report_unfollowed
 from sysmlc.passes.activity_unknown import report_unknown
 from sysmlc.passes.activity_usages import drawn_of, has_steps
+from sysmlc.passes.activity_written import Assigned, assigned
 from sysmlc.values import dataclass, replace
 
 
@@ -89,23 +90,40 @@ class Activities:
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, raising, sink)
-        tokens, unfollowed = follow(graph, activity, tokens, scope)
+        written = _written(graph, drawing, tokens)
+        tokens, unfollowed = follow(graph, activity, written, tokens, scope)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         report_unfollowed(graph, activity, unfollowed, sink)
-        report_unknown(graph, activity, (node.id for node in tokens.workers()), sink)
+        report_unknown(graph, activity, written, sink)
         report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
         return activity_search.named(tokens, inputs.names)
 
     def _check_depth(self, graph: Graph, activity: Element, sink: Sink) -> None:
-        depth = {activity.id: 0}
         for element in graph.subtree(activity):
-            depth[element.id] = depth.get(element.owner or "", 0) + (element is not activity)
-            if depth[element.id] > self.max_depth and element.kind is Kind.STRUCTURED:
+            if (
+                element.kind is Kind.STRUCTURED
+                and _depth(graph, activity, element) > self.max_depth
+            ):
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
+
+
+def _depth(graph: Graph, activity: Element, inside: Element) -> int:
+    """How deep an element is in the activity: 1 for what the activity owns."""
+    around = enumerate(graph.ancestors(inside), 1)
+    return next(number for number, one in around if one is activity)
+
+
+def _written(
+    graph: Graph, drawing: activity_drawing.Drawing, tokens: TokenGraph
+) -> list[list[Assigned]]:
+    """What each action assigns that has a token of its own; only those that assign something."""
+    played = {node.id for node in tokens.workers()}
+    actions = (one for one in drawing.inside if one.kind is Kind.ACTION and one.id in played)
+    return [found for one in actions if (found := list(assigned(graph, one)))]
 
 
 def _played(graph: Graph, activity: Element) -> list[Element]:

@@ -46,14 +46,15 @@ class _Checker:
     # -- start ---------------------------------------------------------------------------------
 
     def check_start(self) -> None:
-        name, subject = self.activity.name, self.graph.subject(self.activity)
+        name = self.activity.name
         starts = [e for e in self.tokens.edges if e.marked and e.region == ACTIVITY_REGION]
         if not starts:
-            self.sink.report(rules.NO_START, subject, activity=name)
+            self.sink.report(rules.NO_START, self.graph.subject(self.activity), activity=name)
             raise CannotPlayError
         implied = [self.tokens.node(e.target) for e in starts if self._is_implied(e)]
         if len(implied) == len(starts):
             actions = ", ".join(node.label for node in implied)
+            subject = self.graph.subject(self.activity)
             self.sink.report(rules.STARTED_BY_ACTIONS, subject, activity=name, actions=actions)
 
     def _is_implied(self, edge: TokenEdge) -> bool:
@@ -152,6 +153,8 @@ class _Checker:
     def _listeners(self, id: str) -> list[str]:
         """What listens once a token is at a node of its interruptible region."""
         around = {one.id for one in self.tokens.interruptibles if id in one.nodes}
+        if not around:
+            return []
         return [edge.target for edge in self.tokens.edges if edge.listens in around]
 
     # -- tokens --------------------------------------------------------------------------------

@@ -60,6 +60,8 @@ class Drawing:
     """One activity; ``region`` maps each node's id to the id of its region."""
 
     activity: Element
+    inside: list[Element]
+    """The activity and all that is in it."""
     nodes: list[Element] = field(default_factory=list)
     flows: list[Flow] = field(default_factory=list)
     region: dict[str, str] = field(default_factory=dict)
@@ -91,9 +93,9 @@ class Drawing:
 
 def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """The drawing of an activity. Raises CannotPlayError after it has reported why."""
-    drawing = Drawing(activity)
-    groups = groups_of(graph, activity)
-    borders = expansion_nodes(graph, activity)
+    drawing = Drawing(activity, list(graph.subtree(activity)))
+    groups = groups_of(graph, drawing.inside)
+    borders = expansion_nodes(graph, drawing.inside)
     _collect(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
     _name_nodes(drawing)
     for group in filter(lambda one: is_entered_again(graph, one), groups.values()):
@@ -241,7 +243,10 @@ class _Reader:
         source, target = flow.source, flow.target
         if source is target:
             return self._from_pin_to_pin(flow)
-        before = list(self.drawing.around(self.drawing.region[source.id]))
+        region = self.drawing.region[source.id]
+        if region == self.drawing.region[target.id]:
+            return flow if region == ACTIVITY_REGION else _with_region(flow, region)
+        before = list(self.drawing.around(region))
         after = list(self.drawing.around(self.drawing.region[target.id]))
         if source.id in after:
             return _with_region(flow, self._part(after, source), enters=True)

@@ -41,6 +41,8 @@ def _connect(
 def _region(draft: Draft, flow: Flow, target: str) -> str:
     """The flow's region, or the one around it that the merge before its target is in."""
     reached = draft.nodes[target].region
+    if reached == flow.region:
+        return reached
     return reached if reached in list(draft.drawing.around(flow.region))[1:] else flow.region
 
 
@@ -213,10 +215,12 @@ def add_rest(draft: Draft, node: Element) -> None:
     Its value never changes: by UML it would wait there for ever.
     """
     answer = draft.answers.get(node.id)
+    if answer is None:
+        return
     flows = draft.outgoing[node.id]
     texts = list(dict.fromkeys(_text(flow) for flow in flows))
     is_literal = all(flow.element.attrs.get("guard_literal") is True for flow in flows)
-    if answer is None or not is_literal or answer.is_covered(texts):
+    if not is_literal or answer.is_covered(texts):
         return
     label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
     rest = draft.extra(node, "rest", NodeKind.SINK, "no branch", region)

@@ -110,6 +110,8 @@ def _check_pins(draft: Draft, node: Element) -> None:
 
 
 def _check_shape(draft: Draft, node: Element) -> None:
+    if node.kind is not Kind.CONTROL:
+        return
     incoming, outgoing = len(draft.primary(node)), len(draft.outgoing[node.id])
     two = {
         "decision": (incoming > 1, f"{incoming} incoming flows", "a merge and a decision"),
@@ -118,7 +120,7 @@ def _check_shape(draft: Draft, node: Element) -> None:
         "join": (outgoing > 1, f"{outgoing} outgoing flows", "a join and a fork"),
     }
     is_odd, drawn, meaning = two.get(node.subkind, (False, "", ""))
-    if is_odd and node.kind is Kind.CONTROL:
+    if is_odd:
         subject, label = draft.graph.subject(node), draft.drawing.labels[node.id]
         draft.sink.report(rules.TWO_IN_ONE, subject, node=label, drawn=drawn, meaning=meaning)
 

@@ -1,6 +1,6 @@
 """Regions of activities: mere groups, interruptible regions, expansion nodes, handlers."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.values import dataclass
@@ -40,10 +40,10 @@ def _triples(value: object) -> Iterator[tuple[object, object, object]]:
         yield body, inputs, types
 
 
-def expansion_nodes(graph: Graph, activity: Element) -> dict[str, Element]:
-    """Expansion nodes, by id, with the expansion region on whose border they are."""
+def expansion_nodes(graph: Graph, within: list[Element]) -> dict[str, Element]:
+    """Expansion nodes of an activity, by id, with the expansion region on whose border they are."""
     found: dict[str, Element] = {}
-    for element in graph.subtree(activity):
+    for element in within:
         if element.subkind != "expansion":
             continue
         if element.kind is Kind.STRUCTURED:
@@ -62,14 +62,15 @@ def expansion_nodes(graph: Graph, activity: Element) -> dict[str, Element]:
 # -- groups ------------------------------------------------------------------------------------
 
 
-def groups_of(graph: Graph, activity: Element) -> dict[str, Element]:
+def groups_of(graph: Graph, within: list[Element]) -> dict[str, Element]:
     """Plain structured nodes that no flow starts or ends at, but whose border flows cross.
 
     They start with what is around them and nothing follows them, so that only their nodes count.
     """
-    within = list(graph.subtree(activity))
     structured = [node for node in within if node.kind is Kind.STRUCTURED]
-    bodies = {h.body.id for e in within if structured for h in handlers_of(graph, e)}
+    if not structured:
+        return {}
+    bodies = {h.body.id for e in within for h in handlers_of(graph, e)}
     found: dict[str, Element] = {}
     for node in structured:
         if node.subkind not in ("structured", ""):
@@ -117,21 +118,20 @@ def _after(graph: Graph, element: Element) -> Iterator[Element]:
 
 
 def interruptible_regions(
-    graph: Graph, activity: Element, nodes: Iterable[Element]
+    graph: Graph, within: list[Element], nodes: list[Element]
 ) -> list[tuple[Element, list[Element]]]:
-    """Interruptible regions of the activity with their nodes."""
-    regions = [e for e in graph.subtree(activity) if e.subkind == "interruptible"]
-    members = list(nodes)
+    """Interruptible regions of an activity with their nodes."""
     return [
         (
             region,
             [
                 n
-                for n in members
+                for n in nodes
                 if region in graph.targets(n, Edge.IN_PARTITION) or graph.owner(n) is region
             ],
         )
-        for region in regions
+        for region in within
+        if region.subkind == "interruptible"
     ]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
@@ -15,7 +15,7 @@ from sysmlc.logic.machines.path import saturated
 from sysmlc.logic.simplify import substitute
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_writers import called, writer_elsewhere
-from sysmlc.passes.activity_written import Assigned, assigned
+from sysmlc.passes.activity_written import Assigned
 from sysmlc.values import dataclass, replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
@@ -81,12 +81,18 @@ class Unfollowed:
 
 
 def follow(
-    graph: Graph, activity: Element, tokens: TokenGraph, scope: Scope
+    graph: Graph,
+    activity: Element,
+    written: Iterable[list[Assigned]],
+    tokens: TokenGraph,
+    scope: Scope,
 ) -> tuple[TokenGraph, list[Unfollowed]]:
     """The token graph with the variables that its nodes write; and what it reads but cannot
-    follow.
+    follow. ``written`` is what each action assigns.
     """
     found = _Following(graph, activity, tokens, scope)
+    for statements in written:
+        found.note(statements)
     if not found.assigned:
         return tokens, []
     return found.followed(), found.unfollowed()
@@ -120,11 +126,8 @@ class _Following:
         self.refused: dict[str, str] = {}
         self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
-        for action in graph.subtree(activity):
-            if action.kind is Kind.ACTION and action.id in self.nodes:
-                self._note(list(assigned(graph, action)))
 
-    def _note(self, statements: list[Assigned]) -> None:
+    def note(self, statements: list[Assigned]) -> None:
         """Remember what an action assigns, and the value that it leaves in each variable."""
         left: dict[str, _Cases] = {}
         stops: dict[str, tuple[Formula, ...]] = {}

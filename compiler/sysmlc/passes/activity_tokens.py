@@ -56,7 +56,7 @@ def _check_events(draft: Draft) -> None:
 def _find_listening(draft: Draft) -> None:
     """Accept actions without flows listen when a token enters their interruptible region."""
     graph, drawing = draft.graph, draft.drawing
-    for region, members in interruptible_regions(graph, drawing.activity, drawing.nodes):
+    for region, members in interruptible_regions(graph, drawing.inside, drawing.nodes):
         open_ = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
         for node in open_ if is_entered_later(graph, members) else ():
             draft.listening[node.id] = region.id
@@ -87,8 +87,8 @@ def _result(draft: Draft) -> TokenGraph:
 
 
 def _regions(draft: Draft) -> Iterator[Interruptible]:
-    activity = draft.drawing.activity
-    for region, members in interruptible_regions(draft.graph, activity, draft.drawing.nodes):
+    drawing = draft.drawing
+    for region, members in interruptible_regions(draft.graph, drawing.inside, drawing.nodes):
         yield Interruptible(region.id, region.name, _members(draft, members))
 
 

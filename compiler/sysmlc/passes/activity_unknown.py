@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
-from sysmlc.passes.activity_written import assigned
+from sysmlc.passes.activity_written import Assigned
 from sysmlc.suggest import did_you_mean
 
 
@@ -41,17 +41,16 @@ UNKNOWN = rule(
 )
 
 
-def report_unknown(graph: Graph, activity: Element, played: Iterable[str], sink: Sink) -> None:
-    """Report each name that an action among those played (ids) assigns to and nobody has."""
-    ids = set(played)
+def report_unknown(
+    graph: Graph, activity: Element, written: Iterable[list[Assigned]], sink: Sink
+) -> None:
+    """Report each name that one of the actions assigns to and nobody has."""
     # What a write action writes is a reference, no name.
-    inside = graph.subtree(activity)
-    actions = [one for one in inside if one.id in ids and one.subkind != "write"]
-    written = [(one, each.name) for one in actions for each in assigned(graph, one)]
-    if not written:
+    named = [one for found in written for one in found if one.action.subkind != "write"]
+    if not named:
         return
     known = set(_known(graph, activity))
-    for action, name in written:
+    for action, name in ((one.action, one.name) for one in named):
         if name.partition(".")[0] not in known:
             suggestion = did_you_mean(name, known)
             sink.report(

@@ -150,6 +150,7 @@ def parse_expression(text: str) -> Expression:
     return _read(text, read_expression)
 
 
+@lru_cache(_REMEMBERED)
 def parse_effect(text: str) -> tuple[Statement, ...]:
     """The statements of an effect, separated by semicolons. Raises ExpressionError."""
     from sysmlc.logic.expressions.reader import read_effect
