@@ -9,7 +9,7 @@ from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.lost import report_lost
 from sysmlc.passes.resolve.missing import report_libraries
 from sysmlc.passes.resolve.targets import Targets
-from sysmlc.passes.resolve.uses import Use, attributes, elsewhere
+from sysmlc.passes.resolve.uses import Need, Use, attributes, needs
 from sysmlc.values import dataclass
 
 
@@ -32,21 +32,32 @@ class Resolve:
         """Resolve in place; see the class."""
         pending = graph.pending
         targets = graph.find_all(pending.targets)
-        distant = elsewhere(graph, targets)
-        uses = [*attributes(graph)]
+        held = [*attributes(graph)]
         answers = Answers(graph, Targets(graph))
-        answers.find([*distant.values(), *uses])
-        for number, use in distant.items():
-            targets[number] = answers.get(use.holder, use.target)
+        needed = needs(graph, targets, held)
+        answers.find(needed)
+        lost = _answer(answers, needed, targets)
+        lost += [use for use in held if answers.get(use.holder.source, use.target) is None]
         graph.connect_all(pending.edges, pending.sources, targets)
-        pending.clear()
-        lost = [use for number, use in distant.items() if targets[number] is None]
-        lost += [use for use in uses if answers.get(use.holder, use.target) is None]
         report_lost(graph, sink, lost)
         keep_first_ends(graph, sink)
-        _rewrite(graph, answers, uses)
-        missing = {h: uses for h, uses in answers.outside.items() if h not in answers.known}
+        _rewrite(graph, answers, held)
+        missing = {h: of_it for h, of_it in answers.outside.items() if h not in answers.known}
         report_libraries(graph, sink, missing)
+        pending.clear()
+
+
+def _answer(answers: Answers, needed: list[Need], targets: list[Element | None]) -> list[Use]:
+    """Fill in what was found; the references of which nothing was, in order."""
+    lost: dict[int, Use] = {}
+    for need in needed:
+        found = answers.get(need.file, need.target)
+        if found is None:
+            lost.update((number, need.use(number)) for number in need.numbers)
+        else:
+            for number in need.numbers:
+                targets[number] = found
+    return [lost[number] for number in sorted(lost)]
 
 
 def _rewrite(graph: Graph, answers: Answers, held: list[Use]) -> None:
@@ -56,7 +67,7 @@ def _rewrite(graph: Graph, answers: Answers, held: list[Use]) -> None:
 
 def _renamed(answers: Answers, holder: Element, value: AttrValue) -> AttrValue:
     if isinstance(value, str):
-        found = answers.get(holder, value)
+        found = answers.get(holder.source, value)
         return found.id if found else None
     if isinstance(value, tuple):
         items = (_renamed(answers, holder, item) for item in value)

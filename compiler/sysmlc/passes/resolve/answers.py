@@ -14,7 +14,7 @@ from sysmlc.passes.resolve.libraries import (
     split,
 )
 from sysmlc.passes.resolve.targets import Targets
-from sysmlc.passes.resolve.uses import Use, by_target
+from sysmlc.passes.resolve.uses import Need, Use
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
@@ -27,19 +27,19 @@ class Answers:
 
     graph: Graph
     targets: Targets
-    outside: dict[str, list[Use]] = field(default_factory=dict)
-    """Uses of elements outside the unit, by the href of the stand-in."""
+    outside: dict[str, list[Need]] = field(default_factory=dict)
+    """Needs of elements outside the unit, by the href of the stand-in."""
     known: "dict[str, StandIn]" = field(default_factory=dict)
     """Those of ``outside`` that are elements of a known library."""
     _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
     _stubs: dict[str, str] = field(default_factory=dict)
 
-    def find(self, uses: list[Use]) -> None:
+    def find(self, needs: list[Need]) -> None:
         """Look for every target, and make the stand-ins for those outside the unit."""
-        distant: dict[str, list[Use]] = {}
-        for (file, target), together in by_target(uses).items():
-            if target not in self.graph and self._is_outside(file, target):
-                distant.setdefault(target, []).extend(together)
+        distant: dict[str, list[Need]] = {}
+        for need in needs:
+            if need.target not in self.graph and self._is_outside(need.file, need.target):
+                distant.setdefault(need.target, []).append(need)
         for target in sorted(distant):
             href = self._canonical(target, distant[target])
             self._stubs[target] = stand_in_id(href)
@@ -47,11 +47,11 @@ class Answers:
         for href in sorted(self.outside):
             self._add(href, self.outside[href])
 
-    def get(self, holder: Element, target: str) -> Element | None:
-        """The element that ``target`` means in the holder's file."""
+    def get(self, file: str, target: str) -> Element | None:
+        """The element that ``target`` means in a file."""
         if target in self.graph:
             return self.graph[target]
-        found = self._found.get((holder.source, target))
+        found = self._found.get((file, target))
         return self.graph.get(found or self._stubs.get(target))
 
     def _is_outside(self, file: str, target: str) -> bool:
@@ -61,11 +61,11 @@ class Answers:
             return False
         return not self.targets.files(file, split(target)[0])
 
-    def _canonical(self, target: str, uses: list[Use]) -> str:
+    def _canonical(self, target: str, needs: list[Need]) -> str:
         from sysmlc.passes.resolve.outside import known
 
-        # All uses are asked, for the order in which they come must not matter.
-        said = {(use.path, use.kind) for use in uses}
+        # All are asked, for the order in which they come must not matter.
+        said = {(need.path, need.kind) for need in needs}
         name = max({primitive(target, path, kind) for path, kind in said})
         if name:
             return PRIMITIVE_TYPES + name
@@ -77,14 +77,13 @@ class Answers:
         self.known[found.href] = found
         return found.href
 
-    def _add(self, href: str, uses: list[Use]) -> None:
+    def _add(self, href: str, needs: list[Need]) -> None:
         if href in self.known:
             from sysmlc.passes.resolve.outside import add
 
-            origin = min(uses, key=Use.place).holder.id
-            add(self.graph, self.known[href], origin)
+            add(self.graph, self.known[href], _origin(needs))
         else:
-            _stand_in(self.graph, href, uses)
+            _stand_in(self.graph, href, needs)
 
 
 def stand_in_id(href: str) -> str:
@@ -92,17 +91,21 @@ def stand_in_id(href: str) -> str:
     return derived_id(href, "stub")
 
 
-def _stand_in(graph: Graph, href: str, uses: list[Use]) -> None:
+def _origin(needs: list[Need]) -> str:
+    return min((need.first() for need in needs), key=Use.place).holder.id
+
+
+def _stand_in(graph: Graph, href: str, needs: list[Need]) -> None:
     id = stand_in_id(href)
     if id in graph:
         return
-    path = min((use.path for use in uses if use.path), default="")
-    kind = kind_of(href, {use.kind for use in uses})
+    path = min((need.path for need in needs if need.path), default="")
+    kind = kind_of(href, {need.kind for need in needs})
     attrs: dict[str, AttrValue] = {"external": True, "href": href}
     if href.startswith(PRIMITIVE_TYPES):
         kind, path = Kind.DATA_TYPE, ""
         attrs["subkind"] = "primitive"
     if "::" in path:
         attrs["qualified_name"] = path
-    attrs["origin"] = min(uses, key=Use.place).holder.id
+    attrs["origin"] = _origin(needs)
     graph.add(Element(id, kind, name_of(href, path), attrs=attrs))

@@ -6,17 +6,18 @@ from sysmlc.ir.identity import is_made_by_tools
 from sysmlc.passes.resolve.answers import stand_in_id
 from sysmlc.passes.resolve.libraries import PRIMITIVES, has_primitives_only, is_standard, split
 from sysmlc.passes.resolve.rules import MISSING_LIBRARY, UNKNOWN_IN_LIBRARY
-from sysmlc.passes.resolve.uses import Use
+from sysmlc.passes.resolve.uses import Need, Use
 
 _LISTED = 10
 
 
-def report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[Use]]) -> None:
+def report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[Need]]) -> None:
     """Report each library once, with what its elements are used by; ``outside`` is by href."""
     libraries: dict[str, dict[str, list[Use]]] = {}
-    for href, uses in outside.items():
+    for href, needs in outside.items():
         library, _ = split(href)
         if not is_standard(library) or _is_doubtful(graph, href):
+            uses = [use for need in needs for use in need.uses()]
             libraries.setdefault(library, {})[href] = uses
     for library in sorted(libraries):
         rule = UNKNOWN_IN_LIBRARY if is_standard(library) else MISSING_LIBRARY

@@ -1,11 +1,13 @@
 """What needs an element: references to come, and attributes that hold ids."""
 
 from collections.abc import Iterator
+from dataclasses import field
 from typing import NamedTuple
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import ids_in
 from sysmlc.ir.reference import id_of
+from sysmlc.values import dataclass
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},
@@ -45,17 +47,66 @@ class Use(NamedTuple):
         return self.holder.source, ordinal, self.holder.id
 
 
-def elsewhere(graph: Graph, targets: list[Element | None]) -> dict[int, Use]:
-    """The references, by number, whose target is no id of the graph."""
-    pending, uses = graph.pending, {}
+@dataclass(slots=True)
+class Need:
+    """What all places of one file need that name a target by the same words."""
+
+    graph: Graph
+    file: str
+    target: str
+    kind: Kind
+    path: str
+    numbers: list[int] = field(default_factory=list)
+    """The references among them: most are only counted, so that each has no ``Use`` of its own."""
+    held: list[Use] = field(default_factory=list)
+    """The attributes among them."""
+
+    def uses(self) -> list[Use]:
+        """All places."""
+        return [*map(self.use, self.numbers), *self.held]
+
+    def use(self, number: int) -> Use:
+        """The place of a reference."""
+        pending = self.graph.pending
+        holder = self.graph[id_of(pending.sources[number])]
+        edge, ordinal = pending.edges[number], pending.ordinals[number]
+        return Use(holder, self.target, self.kind, self.path, ordinal, edge)
+
+    def first(self) -> Use:
+        """The place that comes first, whatever was read first."""
+        ordinals = self.graph.pending.ordinals
+        least = min(map(ordinals.__getitem__, self.numbers), default=-1)
+        if least < 0 or self.held:
+            return min(self.uses(), key=Use.place)
+        first = (number for number in self.numbers if ordinals[number] == least)
+        return min(map(self.use, first), key=Use.place)
+
+
+def needs(graph: Graph, targets: list[Element | None], held: list[Use]) -> list[Need]:
+    """What references need whose target is no id of the graph, and what attributes need."""
+    pending, found = graph.pending, _Needs(graph)
     numbers = [number for number, target in enumerate(targets) if target is None]
     holders = graph.find_all(pending.sources[number] for number in numbers)
     for number, holder in zip(numbers, holders, strict=True):
-        if holder is not None:
-            kind, name = pending.said.get(number, _UNSAID)
-            target, ordinal = id_of(pending.targets[number]), pending.ordinals[number]
-            uses[number] = Use(holder, target, kind, name, ordinal, pending.edges[number])
-    return uses
+        target = pending.targets[number]
+        if holder is not None and isinstance(target, str):
+            kind, path = pending.said.get(number, _UNSAID)
+            found[holder.source, target, kind, path].numbers.append(number)
+    for use in held:
+        found[use.holder.source, use.target, use.kind, use.path].held.append(use)
+    return list(found.values())
+
+
+class _Needs(dict[tuple[str, str, Kind, str], Need]):
+    """By file, target and what is said of it."""
+
+    def __init__(self, graph: Graph) -> None:
+        super().__init__()
+        self._graph = graph
+
+    def __missing__(self, key: tuple[str, str, Kind, str]) -> Need:
+        made = self[key] = Need(self._graph, *key)
+        return made
 
 
 def attributes(graph: Graph) -> Iterator[Use]:
@@ -67,16 +118,3 @@ def attributes(graph: Graph) -> Iterator[Use]:
                 for name, kind in named.items():
                     for id in ids_in(attrs.get(name)):
                         yield Use(element, id, kind, attribute=name)
-
-
-def by_target(uses: list[Use]) -> dict[tuple[str, str], list[Use]]:
-    """Uses by the file that they stand in, and what they name."""
-    found: dict[tuple[str, str], list[Use]] = {}
-    for use in uses:
-        key = (use.holder.source, use.target)
-        known = found.get(key)
-        if known is None:
-            found[key] = [use]
-        else:
-            known.append(use)
-    return found
