@@ -1,7 +1,8 @@
 """Names that should be of one element alone: of classes, libraries, attributes, aliases."""
 
-from collections.abc import Iterator
-from itertools import compress, islice, repeat
+from collections.abc import Iterable, Iterator
+from itertools import compress, repeat
+from operator import add
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.frontends.caex.context import Context, path_of
@@ -62,28 +63,43 @@ def _has_repeats(document: Document) -> bool:
     what is remembered of them stays near the processor: this is done for every file that is read.
     """
     are_named = document.signs.translate(_ARE_NAMED)
-    stating = set(compress(document.alike, are_named))
-    stated = map(document.attributes.__getitem__, stating)
-    names = dict(zip(stating, map(dict.get, stated, repeat("Name")), strict=True))
+    names = _names(document, are_named)
+    parents, alike = document.parents, document.alike
     upper = document.children(0)
     upper += [row for above in upper for row in document.children(above)]
-    if _is_repeated(document, names, [row for row in sorted(upper) if are_named[row]]):
+    rows = [row for row in upper if are_named[row]]
+    if _is_repeated(map(parents.__getitem__, rows), map(alike.__getitem__, rows), names):
         return True
     start = 0
     for row in [*sorted(upper), len(are_named)]:
         if row >= start + _AT_ONCE or row == len(are_named):
-            rows = list(compress(range(start, row), islice(are_named, start, row)))
-            if _is_repeated(document, names, rows):
+            named = are_named[start:row]
+            beside = compress(parents[start:row], named)
+            if _is_repeated(beside, compress(alike[start:row], named), names):
                 return True
             start = row
     return False
 
 
-def _is_repeated(document: Document, names: dict[int, str | None], rows: list[int]) -> bool:
+def _names(document: Document, are_named: bytes) -> dict[int, int]:
+    """A number for the name of each row that states what no row before it does.
+
+    Numbers of two names are as far apart as there are rows: with that of a parent added, they
+    are one number for both, which is compared in half the time of a pair.
+    """
+    stating = set(compress(document.alike, are_named))
+    stated = map(document.attributes.__getitem__, stating)
+    numbers: dict[str | None, int] = {}
+    return {
+        row: numbers.setdefault(name, len(numbers) * len(are_named))
+        for row, name in zip(stating, map(dict.get, stated, repeat("Name")), strict=True)
+    }
+
+
+def _is_repeated(parents: Iterable[int], alike: Iterable[int], names: dict[int, int]) -> bool:
     """Whether two of some rows have the parent and the name in common."""
-    parents = map(document.parents.__getitem__, rows)
-    beside = zip(parents, map(names.get, map(document.alike.__getitem__, rows)), strict=True)
-    return len(set(beside)) < len(rows)
+    beside = list(map(add, parents, map(names.__getitem__, alike)))
+    return len(set(beside)) < len(beside)
 
 
 def _key(document: Document, row: int) -> str:
