@@ -33,5 +33,5 @@ def derived_id(origin: str, role: str) -> str:
     """
     name = f"{origin}\x1f{role}".encode()
     found = sha1(_NAMESPACE + name, usedforsecurity=False).hexdigest()
-    version, variant = f"5{found[13:16]}", f"{_VARIANT[found[16]]}{found[17:20]}"
-    return f"{found[:8]}-{found[8:12]}-{version}-{variant}-{found[20:32]}"
+    variant = _VARIANT[found[16]]
+    return f"{found[:8]}-{found[8:12]}-5{found[13:16]}-{variant}{found[17:20]}-{found[20:32]}"

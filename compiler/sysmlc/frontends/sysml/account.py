@@ -7,6 +7,7 @@ from sysmlc.diagnostics import Coverage, Rule, Verdict
 from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
+from sysmlc.frontends.sysml.usage import ByKind
 from sysmlc.language.tree import Document, Node
 
 _Found = tuple[Node, Verdict, bool]
@@ -19,19 +20,26 @@ _REASONS: dict[Verdict, tuple[Rule | None, str]] = {
 }
 
 
-def account(low: Lowering, document: Document, coverage: Coverage) -> None:
+def account(low: Lowering, document: Document, by_kind: ByKind, coverage: Coverage) -> None:
     """Count each node; what has no verdict of its own shares that of its owner."""
     counts = coverage.file(document.path)
-    found = list(_verdicts(low, document.root))
+    found = [one for one in _verdicts(low, document.root) if one[1] is not Verdict.MAPPED]
     numbers = Counter((node.kind, verdict) for node, verdict, _ in found)
     for (kind, verdict), number in numbers.items():
         counts.count(kind, verdict, number)
+    lost = Counter(node.kind for node, _, _ in found)
+    for kind, ours in by_kind.items():
+        if len(ours) > lost[kind]:
+            counts.count(kind, Verdict.MAPPED, len(ours) - lost[kind])
     if coverage.is_detailed:
         counts.losses.extend(_losses(low, document, found))
 
 
 def _verdicts(low: Lowering, root: Node) -> Iterator[_Found]:
-    """The nodes in the order of the text; inside what is lost all is lost."""
+    """Nodes in the order of the text, without such that nothing in is lost.
+
+    Inside what is lost all is lost.
+    """
     open_ones: list[_Found] = [(root, Verdict.MAPPED, False)]
     lost = set(low.lost)
     while open_ones:
@@ -43,7 +51,8 @@ def _verdicts(low: Lowering, root: Node) -> Iterator[_Found]:
             own = low.verdicts.get(id(one))
             if own is None and id(node) in lost:
                 lost.add(id(one))
-            open_ones.append((one, own or shared, own is None))
+            if shared is not Verdict.MAPPED or id(one) in low.around:
+                open_ones.append((one, own or shared, own is None))
 
 
 def _losses(low: Lowering, document: Document, found: list[_Found]) -> Iterator[Loss]:
@@ -56,10 +65,10 @@ def _losses(low: Lowering, document: Document, found: list[_Found]) -> Iterator[
     }
     begun: list[tuple[Node, Verdict, int]] = []
     for node, verdict, is_shared in found:
-        if is_shared and begun and verdict is not Verdict.MAPPED:
+        if is_shared and begun:
             first, known, number = begun[-1]
             begun[-1] = (first, known, number + 1)
-        elif verdict is not Verdict.MAPPED:
+        else:
             begun.append((node, verdict, 1))
     for node, verdict, number in begun:
         rule, reason = reasons.get(id(node)) or _REASONS[verdict]

@@ -99,6 +99,8 @@ def _call(low: "Lowering", made: Element, called: Node) -> None:
 
 def _partitions(low: "Lowering", node: Node, owner: Element, made: Element) -> None:
     """Partitions by the names that metadata of ours gives."""
+    if "Partition" not in annotations.ours(node):
+        return
     represented = _texts(annotations.said(node, "Partition", "represents"))
     for number, name in enumerate(_texts(annotations.said(node, "Partition", "names"))):
         said = represented[number] if number < len(represented) else ""

@@ -166,4 +166,4 @@ def _reception(low: "Lowering", node: Node, owner: Element) -> None:
     payload = next(nodes.held(node, "ParameterMembership"), None)
     for found in [] if payload is None else nodes.references(payload, "FeatureTyping"):
         low.refer(Edge.TYPED_BY, made, found)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)

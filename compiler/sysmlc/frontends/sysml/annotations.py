@@ -231,9 +231,8 @@ def our_name(node: Node) -> str:
 def ours(node: Node) -> dict[str, Node]:
     """Metadata of our library that a node has, by the names of the definitions."""
     found = {}
-    for one in nodes.members(node, "MetadataUsage"):
-        name = our_name(one)
-        if name:
+    for one in node.members:
+        if one.kind == "MetadataUsage" and (name := our_name(one)):
             found[name] = one
     return found
 

@@ -41,6 +41,8 @@ def _is_outside(node: Node) -> bool:
 
 def marked(node: Node, kind: Kind) -> tuple[Kind, str]:
     """Kind and subkind of an element, as metadata of ours says; else ``kind``."""
+    if not annotations.ours(node):
+        return kind, ""
     name = annotations.said(node, "Kind", "name") or annotations.said(node, "AutomationML", "kind")
     if isinstance(name, str) and name in MARKED:
         return MARKED[name], ""
@@ -75,7 +77,9 @@ _AML = {
 def of_aml(node: Node) -> dict[str, AttrValue]:
     """What metadata says of an element of AutomationML."""
     one = annotations.ours(node).get("AutomationML")
-    known = {} if one is None else dict(annotations.constants_of(one))
+    if one is None:
+        return {}
+    known = dict(annotations.constants_of(one))
     found = {_AML[key]: value for key, value in known.items() if key in _AML}
     if isinstance(found.get("semantics"), str):
         found["semantics"] = (found["semantics"],)

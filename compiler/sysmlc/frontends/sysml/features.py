@@ -7,7 +7,7 @@ from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, variant,
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Relation
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -45,17 +45,8 @@ def _aggregate(node: Node, made: Element) -> None:
 
 def describe(low: "Lowering", node: Node, made: Element) -> None:
     """What a declaration says of a feature: flags, multiplicity, types, generals, value, texts."""
-    facts = node.facts
-    low.set(
-        made,
-        abstract=bool(facts.get("isAbstract")),
-        derived=bool(facts.get("isDerived")),
-        readonly=bool(facts.get("isConstant")),
-        ordered=bool(facts.get("isOrdered")),
-        individual=bool(facts.get("isIndividual")),
-        multiplicity=values.multiplicity(low, node),
-    )
-    if facts.get("isUnique") is False:
+    low.set(made, **_flags(node), multiplicity=values.multiplicity(low, node))
+    if node.facts.get("isUnique") is False:
         low.graph.set(made, unique=False)
     relate(low, node, made)
     value = nodes.value_of(node)
@@ -64,22 +55,49 @@ def describe(low: "Lowering", node: Node, made: Element) -> None:
     _inside(low, node, made)
 
 
+_FLAGS = {
+    "isAbstract": "abstract",
+    "isDerived": "derived",
+    "isConstant": "readonly",
+    "isOrdered": "ordered",
+    "isIndividual": "individual",
+}
+
+
+def _flags(node: Node) -> dict[str, AttrValue]:
+    """What the facts of a feature are as attributes, in this order."""
+    if _FLAGS.keys().isdisjoint(node.facts):
+        return {}
+    return {flag: bool(node.facts.get(fact)) for fact, flag in _FLAGS.items()}
+
+
 def relate(low: "Lowering", node: Node, made: Element) -> None:
     """Types, and features that are redefined or subsetted; those of the library give types only."""
-    if any(one.kind == "ConjugatedPortTyping" for one in node.relations):
-        low.set(made, conjugated=True)
-    redefined = nodes.references(node, "Redefinition")
-    for one in redefined:
-        if one.target is None or low.document(one.target) is not None:
-            low.refer(Edge.REDEFINES, made, one)
-    for one in nodes.subsetted(node):
-        if one.target is None or low.document(one.target) is not None:
-            low.last(lambda one=one: _subset(low, made, one.target))  # type: ignore[misc]
+    for relation in node.relations:
+        _relate(low, made, relation)
     own = _own_class(low, node, made)
     if own is not None:
         low.graph.connect(Edge.TYPED_BY, made, own)
         return
     low.later(lambda: give_types(low, node, made))
+
+
+def _relate(low: "Lowering", made: Element, relation: Relation) -> None:
+    if relation.kind == "ConjugatedPortTyping":
+        low.set(made, conjugated=True)
+    if relation.kind not in _ABOUT_FEATURES:
+        return
+    found = relation.reference
+    target = found.target
+    if target is not None and low.document(target) is None:
+        return
+    if relation.kind == "Redefinition":
+        low.refer(Edge.REDEFINES, made, found)
+    else:
+        low.last(lambda: _subset(low, made, found.target))
+
+
+_ABOUT_FEATURES = frozenset({"Redefinition", *nodes.SUBSETTINGS})
 
 
 def _subset(low: "Lowering", made: Element, target: Node | None) -> None:
@@ -116,6 +134,8 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
 def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
     """A class for what a usage has beyond its type (SysML 1.6 clause 8.3.2.10)."""
     rest = [one for one in nodes.body_of(node) if not _is_of_itself(one, node)]
+    if not rest:
+        return None
     rest = [one for one in rest if not is_interface_id(low, one, made)]
     if not rest:
         return None
@@ -199,7 +219,7 @@ def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> Non
         low.refer(Edge.TYPED_BY, made, one)
     low.seen.add(id(flowing))
     for held in (node, flowing):
-        low.lower_all((one for one in held.members if nodes.is_text(one)), made)
+        low.lower_texts(held, made)
 
 
 def part_port(low: "Lowering", node: Node, owner: Element, role: str) -> Element:

@@ -16,6 +16,17 @@ _NEGATED, _SEQUENCE, _TAG, _TEXT, _BODY = "-", ",", "tag", "text", "body"
 _GAP = re.compile('"\ue000(\\d+)\ue001"')
 
 
+def has_literal(node: Node) -> bool:
+    """Whether an expression has literals in it."""
+    left = [node]
+    while left:
+        one = left.pop()
+        if one.kind in KINDS:
+            return True
+        left += one.members
+    return False
+
+
 def form(node: Node) -> AttrValue:
     """Where in the text the literals are, and what becomes of them.
 

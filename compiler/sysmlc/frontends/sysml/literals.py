@@ -1,10 +1,9 @@
 """Attributes that are literals of the text, word for word, and literals that mean more."""
 
 from collections.abc import Callable, ItemsView, Iterator, KeysView, Sequence, ValuesView
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml.forms import BODIES, KINDS, body, form, value
+from sysmlc.frontends.sysml.forms import BODIES, KINDS, body, form, has_literal, value
 from sysmlc.ir import AttrValue, Element, Graph
 from sysmlc.ir.reads import Literal, Reads, Watched
 from sysmlc.language.text.words import last
@@ -48,14 +47,15 @@ class Literals:
         if self._is_noted:
             self._asked.add(place)
 
-    @contextmanager
-    def unnoted(self) -> Iterator[None]:
-        """Literals that are asked for here are only given to an attribute."""
+    def unnoted(self) -> "Literals":
+        """Literals that are asked for in this context are only given to an attribute."""
+        return self
+
+    def __enter__(self) -> None:
         self._is_noted = False
-        try:
-            yield
-        finally:
-            self._is_noted = True
+
+    def __exit__(self, *raised: object) -> None:
+        self._is_noted = True
 
     def give(
         self,
@@ -72,7 +72,7 @@ class Literals:
         document, reads = low.document(node), low.graph.reads
         if reads is None or document is None or id(document.root) not in self._files:
             return
-        if not any(one.kind in KINDS for one in node.walk()):
+        if not has_literal(node):
             return
         with self.unnoted():
             found = how(node)

@@ -1,5 +1,6 @@
 """A compile unit on its way into the graph: elements first, then what they refer to."""
 
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,8 @@ from sysmlc.language.tree import Document, Node, Reference, Relation
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
 
+_NOTATION = "sysml"
+"""What ids are derived from, with the qualified name."""
 Handler = Callable[["Lowering", Node, "Element | None"], None]
 """Adds what a node is to what its owner became."""
 
@@ -37,6 +40,8 @@ class Lowering:
         self.sink = sink
         self.elements: dict[int, Element] = {}
         self.verdicts: dict[int, Verdict] = {}
+        self.around: set[int] = set()
+        """Identities of nodes with a verdict, and of all that they stand in."""
         self.lost: set[int] = set()
         """Identities of approximated nodes that are nowhere in the graph, nor is what they own."""
         self.accepted: set[int] = set()
@@ -58,16 +63,18 @@ class Lowering:
         """Identities of members that are read with something else."""
         self.literals: Literals = UNWATCHED
         self._handlers = handlers
-        self._documents = {id(one.root): one for one in documents}
+        self._documents = documents
+        self._homes: dict[int, Document] = {}
         self._later: list[Callable[[], None]] = []
-        self._brought: dict[int, set[str]] = {}
+        self._brought: dict[str, Node] = {}
         self._generals: list[tuple[Element, Element]] = []
         self._waits = False
-        self._last: list[Callable[[], None]] = []
+        self._last: deque[Callable[[], None]] = deque()
         self._scalars: dict[str, list[tuple[str, Kind]]] = {}
         self._paths: dict[str, str] = {}
         self._taken: dict[str, int] = {}
-        self._named: dict[str, str] = {}
+        self._outer: dict[int, tuple[str, Kind]] = {}
+        """Names and kinds of elements of the library that edges lead to."""
         self._places = Places()
         self.told: dict[tuple[str, str], list[Node]] = {}
         """What is not wholly in the graph, by what is said and how it is read."""
@@ -90,13 +97,23 @@ class Lowering:
         for node in found:
             self.lower(node, owner)
 
+    def lower_texts(self, node: Node, owner: Element | None) -> None:
+        """Lower what annotates a node, which became the owner of that."""
+        for one in node.members:
+            if one.kind in nodes.TEXTS:
+                self.lower(one, owner)
+
     def byte(self, document: Document, offset: int) -> int:
         """The byte of a character of a document of the unit; -1 stays -1."""
         return self._places.byte(document, offset)
 
+    def settle_in(self, document: Document, found: Iterable[Node]) -> None:
+        """Say of nodes that they stand in a document of the unit."""
+        self._homes.update(dict.fromkeys(map(id, found), document))
+
     def document(self, node: Node) -> Document | None:
         """The document of the unit that the node stands in; None for one of the library."""
-        return self._documents.get(id(nodes.root_of(node)))
+        return self._homes.get(id(node))
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """What a relation of a node leads to, in the unit or in the library."""
@@ -124,7 +141,7 @@ class Lowering:
         """Do all that waits for elements, in order."""
         self.work()
         while self._last:
-            self._last.pop(0)()
+            self._last.popleft()()
             self.work()
         for source, general in self._generals if self._waits else ():
             self.graph.disconnect(Edge.SPECIALIZES, source, general)
@@ -143,45 +160,64 @@ class Lowering:
         self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
     ) -> Element:
         """The element that the node is."""
-        made = self.make(node, kind, name, owner, **attrs)
-        self.elements[id(node)] = made
+        made = self.elements[id(node)] = self._bring(node, kind, name, owner, attrs)
         return made
 
     def make(
         self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
     ) -> Element:
         """One more element that the node brings with it, at its place."""
-        document = self.document(node)
+        return self._bring(node, kind, name, owner, attrs)
+
+    def _bring(
+        self,
+        node: Node,
+        kind: Kind,
+        name: str,
+        owner: Element | None,
+        attrs: dict[str, AttrValue],
+    ) -> Element:
+        document = self._homes.get(id(node))
         source = "" if document is None else document.path
         ordinal = -1 if document is None else self._places.ordinal(document, node)
-        id_ = self._id(kind, name, owner, source)
-        given: dict[str, AttrValue] = {
-            key: value for key, value in attrs.items() if value not in (None, "", False)
-        }
-        above = None if owner is None else owner.id
+        made = self._new(kind, name, owner, ordinal, source, _said(attrs))
         self.seen.add(id(node))
-        self._brought.setdefault(id(node), set()).add(id_)
-        return self.graph.add(Element(id_, kind, name, above, ordinal, source, given))
+        self._brought[made.id] = node
+        return made
 
     def is_made(self, element: Element, node: Node) -> bool:
         """Whether an element is one of those that a node brought with it."""
-        return element.id in self._brought.get(id(node), ())
+        return self._brought.get(element.id) is node
 
     def below(self, owner: Element, kind: Kind, name: str) -> Element:
         """An element that nothing in the text stands for, at the place of its owner."""
-        id_ = self._id(kind, name, owner, owner.source)
-        return self.graph.add(Element(id_, kind, name, owner.id, owner.ordinal, owner.source, {}))
+        return self._new(kind, name, owner, owner.ordinal, owner.source, {})
 
     def beside(self, other: Element, kind: Kind, name: str) -> Element:
         """The same beside an element, with which it shares the owner."""
-        above = self.graph.owner(other)
-        id_ = self._id(kind, name, above, other.source)
-        return self.graph.add(
-            Element(id_, kind, name, other.owner, other.ordinal, other.source, {})
-        )
+        return self._new(kind, name, self.graph.owner(other), other.ordinal, other.source, {})
 
-    def _id(self, kind: Kind, name: str, owner: Element | None, source: str) -> str:
-        """Id of a qualified name; what has none, or shares it, is told apart by kind and number."""
+    def _new(
+        self,
+        kind: Kind,
+        name: str,
+        owner: Element | None,
+        ordinal: int,
+        source: str,
+        attrs: dict[str, AttrValue],
+    ) -> Element:
+        path = self._path(kind, name, owner, source)
+        id_ = derived_id(_NOTATION, path)
+        self._paths[id_] = path
+        made = self.graph.new(
+            id_, kind, name, None if owner is None else owner.id, ordinal, source, attrs
+        )
+        if made is None:
+            raise ValueError(f"id {id_!r} is taken")
+        return made
+
+    def _path(self, kind: Kind, name: str, owner: Element | None, source: str) -> str:
+        """A qualified name; what has none, or shares it, is told apart by kind and number."""
         above = "" if owner is None else f"{self._paths[owner.id]}::"
         path = f"{above}{name}" if name else f"{above}<{kind}>"
         if path in self._taken:
@@ -190,15 +226,13 @@ class Lowering:
         if number > 1:
             path = f"{path}#{number}"
             self._taken[path] = 1
-        found = derived_id("sysml", path)
-        self._paths[found] = path
-        self._named.setdefault(path, found)
-        return found
+        return path
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Give attributes to an element; those that say nothing are left out."""
-        given = {key: value for key, value in attrs.items() if value not in (None, "", False)}
-        self.graph.set(element, **given)
+        given = _said(attrs)
+        if given:
+            self.graph.set(element, **given)
 
     # -- edges ---------------------------------------------------------------------------------
 
@@ -237,11 +271,11 @@ class Lowering:
             self._generals.clear()
         href = stubs.href_of(name)
         if name in stubs.SCALARS:
-            self.graph.refer(Pending(edge, source.id, href, kind, name))
+            self.graph.pending.add(edge, source.id, href, kind, name)
             if edge is Edge.TYPED_BY:
                 self._scalars.setdefault(source.id, []).append((name, kind))
         else:
-            self.graph.refer(Pending(edge, source.id, self._stub(href, kind, name), kind, name))
+            self.graph.pending.add(edge, source.id, self._stub(href, kind, name), kind, name)
 
     def share_types(self, known: Element, other: Element) -> None:
         """Give an element the types of another one, those of the library too."""
@@ -264,10 +298,12 @@ class Lowering:
         return found
 
     def _outside(self, edge: Edge, source: Element, target: Node) -> None:
-        name = nodes.path_of(target)
-        if stubs.is_base(name):
-            return
-        self.lead_to(edge, source, name, stubs.kind_of(target))
+        known = self._outer.get(id(target))
+        if known is None:
+            known = self._outer[id(target)] = (nodes.path_of(target), stubs.kind_of(target))
+        name, kind = known
+        if not stubs.is_base(name):
+            self.lead_to(edge, source, name, kind)
 
     def _unresolved(self, source: Element, edge: Edge) -> None:
         known = source.attrs.get("unresolved")
@@ -329,30 +365,38 @@ class Lowering:
     @property
     def roots(self) -> list[Node]:
         """What holds the members at the top of each document of the unit."""
-        return [one.root for one in self._documents.values()]
+        return [one.root for one in self._documents]
 
     def id_of(self, name: str) -> str:
         """Id of the element with a qualified name, or the empty string."""
-        return self._named.get(name, "")
+        found = derived_id(_NOTATION, name)
+        return found if found in self._paths else ""
 
     # -- coverage ------------------------------------------------------------------------------
 
+    def _judge(self, node: Node, verdict: Verdict) -> None:
+        self.verdicts[id(node)] = verdict
+        above: Node | None = node
+        while above is not None and id(above) not in self.around:
+            self.around.add(id(above))
+            above = above.owner
+
     def unsupported(self, node: Node) -> None:
         """The node, with what it owns, has no place in the graph."""
-        self.verdicts[id(node)] = Verdict.UNSUPPORTED
+        self._judge(node, Verdict.UNSUPPORTED)
         self.told.setdefault(("unsupported", node.kind), []).append(node)
 
     def external(self, node: Node) -> None:
         """The node belongs to a library and not to the model."""
-        self.verdicts[id(node)] = Verdict.EXTERNAL
+        self._judge(node, Verdict.EXTERNAL)
 
     def ignored(self, node: Node) -> None:
         """The node means nothing beyond drawing or presentation."""
-        self.verdicts[id(node)] = Verdict.IGNORED_NOTATION
+        self._judge(node, Verdict.IGNORED_NOTATION)
 
     def approximated(self, node: Node, said: str, written: str) -> None:
         """Part of the node's meaning is lost: ``said`` is kept as ``written``."""
-        self.verdicts[id(node)] = Verdict.APPROXIMATED
+        self._judge(node, Verdict.APPROXIMATED)
         if written == "nothing":
             self.lost.add(id(node))
         self.told.setdefault((said, written), []).append(node)
@@ -368,3 +412,10 @@ class Lowering:
             return Subject(nodes.path_of(node))
         place = Place(document.path, self._places.ordinal(document, node))
         return Subject(nodes.path_of(node), place=place)
+
+
+def _said(attrs: dict[str, AttrValue]) -> dict[str, AttrValue]:
+    """The attributes that say something: an empty sequence does, no text and no number do not."""
+    if not attrs:
+        return {}
+    return {key: value for key, value in attrs.items() if value or value == ()}

@@ -14,7 +14,8 @@ EXPRESSIONS = frozenset(_EXPRESSIONS.split())
 TEXTS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
 """Metaclasses of what annotates its owner and gives it no feature."""
 _ARGUMENTS = frozenset({"ParameterMembership", "FeatureMembership", "OwningMembership", ""})
-_SUBSETS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
+SUBSETTINGS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
+"""Relations to features that a feature subsets, in whatever way but redefinition."""
 
 
 def references(node: Node, *kinds: str) -> list[Reference]:
@@ -38,7 +39,7 @@ def target(node: Node, *kinds: str) -> Node | None:
 
 def subsetted(node: Node) -> list[Reference]:
     """Features that the node subsets, in whatever way but redefinition."""
-    return references(node, *_SUBSETS)
+    return references(node, *SUBSETTINGS)
 
 
 def members(node: Node, *kinds: str) -> Iterator[Node]:
@@ -70,7 +71,10 @@ def arguments(node: Node) -> list[Node]:
 
 def value_of(node: Node) -> Node | None:
     """The expression of the node's feature value, bound, initial or default."""
-    return next(held(node, "FeatureValue"), None)
+    for one in node.members:
+        if one.membership == "FeatureValue":
+            return one
+    return None
 
 
 def result_of(node: Node) -> Node | None:
@@ -112,6 +116,8 @@ def name_of(node: Node) -> str:
 
 def body_of(node: Node) -> list[Node]:
     """What stands between the braces: neither multiplicity, value nor ends."""
+    if not node.members:
+        return []
     cross = crossed(node)
     return [
         one

@@ -21,7 +21,7 @@ def flow(low: "Lowering", node: Node, owner: Element) -> None:
         low.skipped.update(id(one) for one in node.members)
         return
     made = low.add(node, Kind.OBJECT_FLOW, node.name or "", owner, **visibility(node))
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     low.last(lambda: _join(low, node, made, is_turned=False))
     if node.kind == "SuccessionFlowUsage":
         order = low.make(node, Kind.CONTROL_FLOW, "", owner)
@@ -31,7 +31,7 @@ def flow(low: "Lowering", node: Node, owner: Element) -> None:
 def binding(low: "Lowering", node: Node, owner: Element) -> None:
     """A binding: an object flow to what is not known by itself."""
     made = low.add(node, Kind.OBJECT_FLOW, node.name or "", owner, **visibility(node))
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     low.last(lambda: _join(low, node, made, is_turned=True))
 
 

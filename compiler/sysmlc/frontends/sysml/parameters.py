@@ -56,7 +56,7 @@ def pin(low: "Lowering", node: Node, action: Element) -> Element:
     value = nodes.value_of(node)
     if value is not None:
         _value(low, made, action, value)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     return made
 
 

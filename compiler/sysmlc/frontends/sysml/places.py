@@ -24,15 +24,15 @@ class Places:
         """The byte of a character of the document; -1 stays -1."""
         if offset < 0 or not document.text:
             return offset
-        positions, extra, mark = self._table(document)
+        positions, extra, mark = self._wide.get(id(document)) or self._table(document)
+        if not positions:
+            return offset + mark
         number = bisect_left(positions, offset)
         return offset + (extra[number - 1] if number else 0) + mark
 
     def _table(self, document: Document) -> tuple[list[int], list[int], int]:
-        known = self._wide.get(id(document))
-        if known is None:
-            known = self._wide[id(document)] = _table(document)
-        return known
+        found = self._wide[id(document)] = _table(document)
+        return found
 
 
 def _table(document: Document) -> tuple[list[int], list[int], int]:

@@ -167,7 +167,7 @@ def import_(low: "Lowering", node: Node, owner: Element | None) -> None:
     made = low.add(node, Kind.IMPORT, "", owner, subkind=subkind)
     if node.visibility != "public":
         low.set(made, visibility=node.visibility or "private")
-    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     low.later(lambda: _imported(low, made, target))
     if said is not node:
         low.approximated(node, "an import with a filter", "one without")
@@ -187,5 +187,5 @@ def membership(low: "Lowering", node: Node, owner: Element | None) -> None:
         return
     name = node.name or node.short or ""
     made = low.add(node, Kind.ALIAS, name, owner, **visibility(node))
-    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     low.refer(Edge.REFERENCES, made, nodes.reference(node, "Membership"))

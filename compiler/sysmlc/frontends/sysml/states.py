@@ -46,7 +46,7 @@ def exhibit(low: "Lowering", node: Node, owner: Element) -> None:
     found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
     if found is not None and not inside:
         low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, found)
-        low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), owner)
+        low.lower_texts(node, owner)
         arguments(low, node, owner)
         return
     made = machine(low, node, owner)

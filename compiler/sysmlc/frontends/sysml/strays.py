@@ -74,8 +74,8 @@ def _find(low: "Lowering", documents: Sequence[Document]) -> None:
 
 def _more(low: "Lowering", node: Node) -> str:
     """What a usage is beyond its kind, and what it became does not say; empty for most."""
-    is_plain = node.membership != "VariantMembership" and _MORE.isdisjoint(node.facts)
-    if is_plain or node.kind == "EnumerationUsage":
+    is_plain = not node.facts or _MORE.isdisjoint(node.facts)
+    if (is_plain and node.membership != "VariantMembership") or node.kind == "EnumerationUsage":
         return ""
     made = (low.elements.get(id(node)), low.made_for.get(id(node)))
     said = [key for key, value in variant(node).items() if value]
@@ -95,7 +95,8 @@ def _unread(low: "Lowering", root: Node) -> Iterator[Node]:
             if one.kind in nodes.EXPRESSIONS or low.verdicts.get(id(one)) in _DEAD:
                 continue
             if id(one) in low.seen or id(one) in low.verdicts or _is_read(low, one, node):
-                found.append(one)
+                if one.members:
+                    found.append(one)
                 if more := _more(low, one):
                     low.approximated(one, _a(more), "a plain usage")
             else:

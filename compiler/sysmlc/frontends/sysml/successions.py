@@ -113,7 +113,7 @@ def _flow(
     guard: Node | None,
 ) -> None:
     """A control flow; without a guard of its own a guarded succession is the one for else."""
-    if any(isinstance(one, Reference) and _is_elsewhere(low, one) for one in (source, target)):
+    if _is_elsewhere(low, source) or _is_elsewhere(low, target):
         low.unsupported(node)
         return
     for point in (source, target):
@@ -125,7 +125,7 @@ def _flow(
         low.set(made, guard="else")
     elif guard is not None:
         low.later(lambda: values.say(low, made, "guard", guard))
-    low.lower_all((one for one in node.members if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
     low.last(lambda: _join(low, made, (source, target), run.ends))
     if is_objects:
         low.last(lambda: _flow_between_pins(low, node, made))
@@ -167,9 +167,11 @@ def _meet(low: "Lowering", step: Element | None) -> None:
     low.graph.connect(Edge.FLOW_TARGET, flow, step)
 
 
-def _is_elsewhere(low: "Lowering", point: Reference) -> bool:
+def _is_elsewhere(low: "Lowering", point: "Node | Reference | None") -> bool:
     """Whether an end is an action of a package, which is no step of any behaviour."""
-    owner = None if point.target is None or len(point.chain) > 1 else point.target.owner
+    if not isinstance(point, Reference) or len(point.chain) > 1 or (target := point.target) is None:
+        return False
+    owner = target.owner
     is_package = owner is not None and (owner.kind == "Namespace" or is_a(owner.kind, "Package"))
     return is_package and not is_of_library(low, point)
 
@@ -186,8 +188,10 @@ def _is_own_end(low: "Lowering", point: Reference) -> bool:
 
 def is_of_library(low: "Lowering", point: Reference) -> bool:
     """Whether an end is the start or the end that every behaviour has."""
-    is_outside = point.target is None or low.document(point.target) is None
-    return is_outside and nodes.last_name(point) in ("start", "done")
+    if nodes.last_name(point) not in ("start", "done"):
+        return False
+    target = point.target
+    return target is None or low.document(target) is None
 
 
 def _join(
@@ -217,9 +221,9 @@ def vertex(
         return None
     if isinstance(point, Node):
         return low.point(point, is_target=is_target)
-    target, name = point.target, nodes.last_name(point)
     if is_of_library(low, point):
         before = (point.targets or [])[:-1]
         holder = low.element(before[-1]) if before and len(point.chain) > 1 else owner
-        return None if holder is None else low.control(holder, name)
+        return None if holder is None else low.control(holder, nodes.last_name(point))
+    target = point.target
     return None if target is None else low.point(target, is_target=is_target)

@@ -1,7 +1,7 @@
 """A compile unit: its documents are resolved together and lowered one after the other."""
 
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from sysmlc.depth import room_for
@@ -15,7 +15,7 @@ from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.strays import tell
-from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing
+from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing, together
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.pins import pin_subkind
 from sysmlc.language.tree import Document, Node
@@ -35,7 +35,10 @@ def lower(
     """Add the elements of all documents to the graph and account for every node of them."""
     low = Lowering(documents, model, graph, sink, HANDLERS)
     low.literals = literals
-    found = by_kind(documents)
+    each = [by_kind(one.root) for one in documents]
+    for document, ours in zip(documents, each, strict=True):
+        low.settle_in(document, chain.from_iterable(ours.values()))
+    found = together(each)
     low.accepted = accepted(found)
     low.flowing = flowing(found)
     for document in documents:
@@ -48,9 +51,9 @@ def lower(
     literals.finish(graph)
     tell(low, documents)
     blame(low, documents)
-    for document in documents:
+    for document, ours in zip(documents, each, strict=True):
         if not document.path.startswith(SHIPPED):
-            account(low, document, coverage)
+            account(low, document, ours, coverage)
 
 
 def _depth(root: Node) -> int:

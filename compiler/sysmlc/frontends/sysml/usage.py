@@ -4,19 +4,33 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.connections import steps_of
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Node
 
 _FLOWS = ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow")
 ByKind = Mapping[str, Sequence[Node]]
 
 
-def by_kind(documents: Iterable[Document]) -> ByKind:
-    """All nodes of the documents by metaclass, those of one in the order of the text."""
+def by_kind(root: Node) -> dict[str, list[Node]]:
+    """All nodes of a document by metaclass, those of one in the order of the text."""
     found: dict[str, list[Node]] = {}
-    for one in documents:
-        for node in one.root.walk():
-            found.setdefault(node.kind, []).append(node)
+    left = [root]
+    while left:
+        node = left.pop()
+        if node.kind in found:
+            found[node.kind].append(node)
+        else:
+            found[node.kind] = [node]
+        left += node.members[::-1]
     return found
+
+
+def together(found: Iterable[ByKind]) -> ByKind:
+    """The nodes of several documents by metaclass, one document after the other."""
+    all_: dict[str, list[Node]] = {}
+    for one in found:
+        for kind, ours in one.items():
+            all_.setdefault(kind, []).extend(ours)
+    return all_
 
 
 def accepted(found: ByKind) -> set[int]:

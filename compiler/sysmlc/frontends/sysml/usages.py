@@ -31,7 +31,7 @@ def in_package(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 def _unit(low: "Lowering", node: Node, owner: Element | None, role: str) -> None:
     made = low.add(node, Kind.INSTANCE, node.name or "", owner, role=role, symbol=node.short)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
 
 
 def is_instance(node: Node) -> bool:
@@ -99,7 +99,7 @@ def _slot(low: "Lowering", node: Node, owner: Element) -> None:
     value = nodes.value_of(node)
     if value is not None:
         _value(low, made, value)
-    low.lower_all((one for one in nodes.body_of(node) if nodes.is_text(one)), made)
+    low.lower_texts(node, made)
 
 
 def _value(low: "Lowering", made: Element, value: Node) -> None:

@@ -128,6 +128,8 @@ def measure(node: Node) -> str:
 
 def multiplicity(low: "Lowering", node: Node) -> str:
     """The multiplicity of a feature in UML notation; empty when it is exactly one."""
+    if not node.members:
+        return ""
     range_ = next(nodes.members(node, "MultiplicityRange"), None)
     cross = nodes.crossed(node) if range_ is None else None
     if cross is not None:
