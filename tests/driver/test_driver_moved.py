@@ -213,7 +213,9 @@ def test_texts_that_stay_are_kept_as_they_were(runs, monkeypatch):
     before = files("out")
     edited("line.sysml", "part arm", "part hand")
     packed, real = [], recall._compressed
-    monkeypatch.setattr(recall, "_compressed", lambda text: packed.append(text) or real(text))
+    monkeypatch.setattr(
+        recall, "_compressed", lambda text, level: packed.append(text) or real(text, level)
+    )
     sysmlc("unit", "-o", "out")
     after = files("out")
     same = {path for path, text in after.items() if before.get(path) == text}

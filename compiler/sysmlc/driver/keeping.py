@@ -1,9 +1,7 @@
 """Outcomes of earlier runs for the same bytes, or for texts that say the same in other places."""
 
-import json
-import zlib
+import marshal
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
 
 from sysmlc.cache import Cache
 from sysmlc.driver.compilation import Opened, Request
@@ -47,9 +45,8 @@ def keep(
     wordings = dict(_wordings(opened))
     if wordings:
         sources = opened.reading.sources()
-        texts = {one.name: one.data.decode() for one in sources if one.name in wordings}
-        entry = {"key": on.key(), "digests": _digests(on, wordings), "texts": texts}
-        cache.put(on.key(wordings), zlib.compress(json.dumps(entry).encode(), 1))
+        texts = {one.name: one.data for one in sources if one.name in wordings}
+        cache.put(on.key(wordings), marshal.dumps((on.key(), _digests(on, wordings), texts)))
     if recorded is not None:
         from sysmlc.driver.restoring import keep_shape
 
@@ -67,9 +64,9 @@ def _moved(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
     entry = cache.get(on.key(wordings)) if wordings else None
     if entry is None:
         return None
-    known = json.loads(zlib.decompress(entry))
-    found = recall(cache, known["key"], opened.root)
-    return found and _adapted(found, known, opened, _digests(on, wordings))
+    key, known, texts = marshal.loads(entry)
+    found = recall(cache, key, opened.root)
+    return found and _adapted(found, known, texts, opened)
 
 
 def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
@@ -86,18 +83,20 @@ def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) 
 
 
 def _adapted(
-    found: Outcome, known: dict[str, Any], opened: Opened, digests: Mapping[str, str]
+    found: Outcome, known: Mapping[str, str], texts: Mapping[str, bytes], opened: Opened
 ) -> Outcome | None:
+    """The outcome with places moved from texts of that time, whose digests are ``known``."""
     from sysmlc.driver.moving import LostError, Move, moved
 
     moves, sources = {}, []
     for one in opened.reading.recognised:
         name, frontend = one.source.name, one.frontend
-        if digests.get(name) != known["digests"].get(name) and isinstance(frontend, Worded):
-            moves[name] = Move(frontend, Source(name, known["texts"][name].encode()), one.source)
+        is_other = name in known and one.source.sha256 != known[name]
+        if is_other and isinstance(frontend, Worded):
+            moves[name] = Move(frontend, Source(name, texts[name]), one.source)
             sources.append(one.source)
     try:
-        return moved(found, moves, sources, known["digests"])
+        return moved(found, moves, sources, known)
     except LostError:
         return None
 

@@ -2,10 +2,11 @@
 
 import json
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import cached_property
 from itertools import accumulate
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +19,18 @@ from sysmlc.values import dataclass
 
 _LENGTH = 8
 """Bytes that say how long a part of an entry is: the outcome, its texts' lengths; then texts."""
+_LONG = 2**21
+"""Characters from which a text is always worth the time to compress it."""
 
 
 def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
     """Keep an outcome, unless a fault of ours or of the machine is part of it.
 
-    Texts that the last outcome of the ``unit`` has, too, are taken from there, compressed.
+    Texts that the last outcome of the ``unit`` has, too, are taken from there.
     """
     if outcome.exit_code() == 2:
         return
-    texts = dict(_packed_texts(outcome, _last_texts(cache, unit)))
+    texts = dict(_packed_texts(outcome, cache, unit))
     parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
     lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
     cache.put(key, b"".join([*lengths, *parts, *texts.values()]))
@@ -35,22 +38,30 @@ def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
         cache.put(unit, key.encode())
 
 
-def _packed_texts(outcome: Outcome, known: Mapping[str, bytes]) -> Iterator[tuple[str, bytes]]:
-    """Each text compressed; what an earlier outcome holds is so already."""
+def _packed_texts(outcome: Outcome, cache: Cache, unit: str) -> Iterator[tuple[str, bytes]]:
+    """Each text as it is kept: as in the outcome before, if it has the text.
+
+    What is new there is about to be edited again: to compress it takes longer than it is worth.
+    """
     before = outcome.texts if isinstance(outcome.texts, Packed) else None
+    known = {} if before is not None else _last_texts(cache, unit)
+    is_edited = before is not None or bool(known)
     for file in outcome.files:
         kept = known.get(file.sha256) if before is None else before.packed(file.path)
-        yield file.path, _compressed(outcome.texts[file.path]) if kept is None else kept
+        if kept is None:
+            text = outcome.texts[file.path]
+            kept = _compressed(text, 0 if is_edited and len(text) < _LONG else 1)
+        yield file.path, kept
 
 
 def _last_texts(cache: Cache, unit: str) -> dict[str, bytes]:
-    """Compressed texts of the last outcome of a unit by their digests."""
+    """Texts of the last outcome of a unit, as they are kept, by their digests."""
     key = cache.get(unit) if unit else None
     entry = cache.get(key.decode()) if key else None
     if entry is None:
         return {}
     form, texts = _opened(entry)
-    return {file["sha256"]: texts.packed(file["path"]) for file in form["files"]}
+    return {sha256: texts.packed(path) for path, _, sha256 in form["files"]}
 
 
 def recall(cache: Cache, key: str, root: Path) -> Outcome | None:
@@ -66,20 +77,16 @@ def _opened(entry: bytes) -> "tuple[dict[str, Any], _Texts]":
     lengths = [int.from_bytes(entry[at : at + _LENGTH], "big") for at in (0, _LENGTH)]
     start = 2 * _LENGTH
     middle, end = start + lengths[0], start + sum(lengths)
-    texts = _Texts(entry[end:], _unpacked(entry[middle:end]))
-    return _unpacked(entry[start:middle]), texts
+    texts = _Texts(entry[end:], json.loads(entry[middle:end]))
+    return json.loads(entry[start:middle]), texts
 
 
 def _packed(value: object) -> bytes:
-    return _compressed(json.dumps(value, ensure_ascii=False, separators=(",", ":")))
+    return json.dumps(value, separators=(",", ":")).encode()
 
 
-def _unpacked(data: bytes) -> Any:  # noqa: ANN401 - JSON
-    return json.loads(_decompressed(data))
-
-
-def _compressed(text: str) -> bytes:
-    return zlib.compress(text.encode("utf-8", "surrogatepass"), 1)
+def _compressed(text: str, level: int) -> bytes:
+    return zlib.compress(text.encode("utf-8", "surrogatepass"), level)
 
 
 def _decompressed(data: bytes) -> str:
@@ -91,34 +98,36 @@ def _form(outcome: Outcome) -> dict[str, object]:
     found = [finding.diagnostic for finding in outcome.findings]
     rules = {one.rule.code: one.rule for one in (*found, *withheld)}
     return {
-        "inputs": [_shallow(file) for file in outcome.inputs],
-        "rules": {code: _shallow(rule) for code, rule in rules.items()},
+        "inputs": [_fields(file) for file in outcome.inputs],
+        "rules": {code: _fields(rule) for code, rule in rules.items()},
         "findings": [_finding(finding) for finding in outcome.findings],
-        "files": [_shallow(file) for file in outcome.files],
+        "files": [_fields(file) for file in outcome.files],
         "withheld": [[w.path, [_diagnostic(e) for e in w.because]] for w in outcome.withheld],
         "complete": outcome.is_complete,
     }
 
 
-_FIELDS: dict[type[object], tuple[str, ...]] = {
-    made: tuple(field.name for field in fields(made))
-    for made in (Finding, Diagnostic, Subject, Place, Rule, InputFile, OutputFile)
+_GETTERS: dict[type[object], Callable[[object], tuple[object, ...]]] = {
+    made: attrgetter(*(field.name for field in fields(made)))
+    for made in (Finding, Place, Rule, InputFile, OutputFile)
 }
 
 
-def _shallow(value: object) -> dict[str, object]:
-    """The fields of a value of one of those types; ``asdict`` would copy what is in them."""
-    return {name: getattr(value, name) for name in _FIELDS[type(value)]}
+def _fields(value: object) -> tuple[object, ...]:
+    """The fields of a value of one of those types, in order."""
+    return _GETTERS[type(value)](value)
 
 
-def _finding(finding: Finding) -> dict[str, object]:
-    return _shallow(finding) | {"diagnostic": _diagnostic(finding.diagnostic)}
+def _finding(finding: Finding) -> tuple[object, ...]:
+    _, *where = _fields(finding)
+    return _diagnostic(finding.diagnostic), *where
 
 
-def _diagnostic(found: Diagnostic) -> dict[str, object]:
-    place = found.subject.place
-    subject = _shallow(found.subject) | {"place": place and _shallow(place)}
-    return _shallow(found) | {"rule": found.rule.code, "subject": subject}
+def _diagnostic(found: Diagnostic) -> tuple[object, ...]:
+    about = found.subject
+    place = about.place and _fields(about.place)
+    code, severity, message = found.rule.code, found.severity, found.message
+    return code, severity, message, about.name, about.id, place, found.notes, found.help
 
 
 # -- back again --------------------------------------------------------------------------------
@@ -156,37 +165,39 @@ class _Texts(Packed):
 
 
 def _outcome(kept: dict[str, Any], root: Path, texts: Mapping[str, str]) -> Outcome:
-    rules = {code: _rule(**rule) for code, rule in kept["rules"].items()}
+    rules = {code: _rule(*rule) for code, rule in kept["rules"].items()}
     return Outcome(
         root=root,
-        inputs=tuple(InputFile(**file) for file in kept["inputs"]),
-        findings=tuple(_found(rules, **finding) for finding in kept["findings"]),
-        files=tuple(OutputFile(**file) for file in kept["files"]),
+        inputs=tuple(InputFile(*file) for file in kept["inputs"]),
+        findings=tuple(_found(rules, *finding) for finding in kept["findings"]),
+        files=tuple(OutputFile(*file) for file in kept["files"]),
         texts=texts,
         withheld=tuple(
-            Withheld(path, tuple(_told(rules, **error) for error in errors))
+            Withheld(path, tuple(_told(rules, *error) for error in errors))
             for path, errors in kept["withheld"]
         ),
         is_complete=kept["complete"],
     )
 
 
-def _rule(severity: str, **fields: str) -> Rule:
-    return Rule(severity=Severity(severity), **fields)
+def _rule(code: str, name: str, severity: str, *texts: str) -> Rule:
+    return Rule(code, name, Severity(severity), *texts)
 
 
-def _found(rules: Mapping[str, Rule], diagnostic: dict[str, Any], **where: Any) -> Finding:  # noqa: ANN401 - JSON
-    return Finding(_told(rules, **diagnostic), **where)
+def _found(rules: Mapping[str, Rule], diagnostic: list[Any], *where: Any) -> Finding:  # noqa: ANN401 - JSON
+    return Finding(_told(rules, *diagnostic), *where)
 
 
 def _told(
     rules: Mapping[str, Rule],
     rule: str,
     severity: str,
-    subject: dict[str, Any],
+    message: str,
+    name: str,
+    id: str,
+    place: list[Any] | None,
     notes: list[str],
-    **texts: str,
+    help: str,
 ) -> Diagnostic:
-    place = subject.pop("place")
-    about = Subject(**subject, place=Place(**place) if place else None)
-    return Diagnostic(rules[rule], Severity(severity), subject=about, notes=tuple(notes), **texts)
+    about = Subject(name, id, Place(*place) if place else None)
+    return Diagnostic(rules[rule], Severity(severity), message, about, tuple(notes), help)

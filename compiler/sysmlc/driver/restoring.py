@@ -1,7 +1,6 @@
 """Outcomes for texts in which only literals are others than in an earlier run."""
 
 import marshal
-import zlib
 from collections.abc import Iterator, Mapping
 
 from sysmlc.cache import Cache
@@ -33,7 +32,7 @@ def keep_shape(cache: Cache, on: Dependencies, opened: Opened, recorded: Recorde
     """Keep what is needed to do parts of a compilation again."""
     shapes = dict(_shapes(opened))
     sources = opened.reading.sources()
-    texts = {one.name: zlib.compress(one.data, 1) for one in sources if one.name in shapes}
+    texts = {one.name: one.data for one in sources if one.name in shapes}
     digests = {name: digest for name, digest, _ in on.inputs}
     if shapes:
         entry = (on.key(), digests, texts, _packed(recorded))
@@ -102,7 +101,7 @@ def _edited(known: _Entry, opened: Opened) -> Iterator[tuple[Valued, Source, Sou
         if one.source.sha256 != known.digests.get(name):
             if not isinstance(frontend, Valued) or name not in known.texts:
                 raise LostError
-            yield frontend, Source(name, zlib.decompress(known.texts[name])), one.source
+            yield frontend, Source(name, known.texts[name]), one.source
 
 
 def _values(
