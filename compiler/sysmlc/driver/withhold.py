@@ -21,8 +21,13 @@ def withheld_artefacts(
     if not by_id and not by_file:
         return {}
     clean: set[str] = set()
-    found = {a.path: _reasons(a, graph, by_id, by_file, clean) for a in artefacts}
-    return {path: reasons for path, reasons in found.items() if reasons}
+    # Several files of one element often have one trace, and it can be long.
+    traces = {artefact.path: artefact.trace for artefact in artefacts}
+    found = {
+        trace: _reasons(trace, graph, by_id, by_file, clean)
+        for trace in dict.fromkeys(traces.values())
+    }
+    return {path: found[trace] for path, trace in traces.items() if found[trace]}
 
 
 def _indexed(errors: Iterable[Diagnostic]) -> tuple[_Errors, _Errors]:
@@ -37,10 +42,10 @@ def _indexed(errors: Iterable[Diagnostic]) -> tuple[_Errors, _Errors]:
 
 
 def _reasons(
-    artefact: Artefact, graph: Graph, by_id: _Errors, by_file: _Errors, clean: set[str]
+    trace: Sequence[str], graph: Graph, by_id: _Errors, by_file: _Errors, clean: set[str]
 ) -> tuple[Diagnostic, ...]:
-    """The errors that concern an artefact; of ``clean`` ids it is known that none does."""
-    reached = _closure(artefact.trace, graph, clean)
+    """The errors that concern what is traced; of ``clean`` ids it is known that none does."""
+    reached = _closure(trace, graph, clean)
     elements = (graph.get(id) for id in reached) if by_file else ()
     files = dict.fromkeys(one.source for one in elements if one is not None)
     found = [error for id in reached for error in by_id.get(id, ())]
@@ -56,11 +61,14 @@ def _closure(trace: Iterable[str], graph: Graph, clean: set[str]) -> list[str]:
     waiting = list(trace)
     while waiting:
         id = waiting.pop()
-        element = graph.get(id)
         if id in reached or id in clean:
             continue
         reached[id] = None
+        element = graph.get(id)
         if element is not None:
-            above = (element.owner, element.attrs.get("origin"))
-            waiting.extend(str(next_id) for next_id in above if next_id)
+            origin = element.attrs.get("origin")
+            if element.owner:
+                waiting.append(element.owner)
+            if origin:
+                waiting.append(str(origin))
     return list(reached)
