@@ -73,8 +73,8 @@ def test_start_tags_are_where_a_parser_sees_them(text):
     assert start_tags(source.data) in (seen, None)
     places = [Place("f", ordinal) for ordinal in range(len(seen))]
     located = locate([source], places)
-    assert [(located[p].line, located[p].column) for p in places] == (
-        positions([source], [("f", ordinal) for ordinal in range(len(seen))])
+    assert {p.ordinal: (located[p].line, located[p].column) for p in places} == (
+        positions([source], {"f": range(len(seen))})["f"]
     )
 
 
@@ -85,11 +85,9 @@ def test_only_plain_text_is_searched_for_tags():
     assert start_tags(b"<?xml version='1.0'") is None
 
 
-def test_positions_of_what_is_not_there_are_zero():
+def test_what_is_not_there_has_no_position():
     source = Source("f", b"<a>\n<b/></a>")
-    assert positions([source], [("f", 1), ("f", 2), ("g", 0), ("f", -1), ("f", 1)]) == (
-        [(2, 1), (0, 0), (0, 0), (0, 0), (2, 1)]
-    )
+    assert positions([source], {"f": [1, 2, -1, 1], "g": [0]}) == {"f": {1: (2, 1)}}
 
 
 def test_of_a_long_line_the_part_around_the_place_is_kept():

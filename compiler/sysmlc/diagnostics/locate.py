@@ -2,9 +2,10 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import accumulate
+from operator import itemgetter
 
 from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
@@ -53,24 +54,19 @@ def locate(
 
 
 def positions(
-    sources: Iterable[Source], starts: Sequence[tuple[str, int]]
-) -> list[tuple[int, int]]:
-    """Line and column of each element, given by file and ordinal, in order; 0 if not known.
+    sources: Iterable[Source], ordinals: Mapping[str, Iterable[int]]
+) -> dict[str, dict[int, tuple[int, int]]]:
+    """Line and column of elements by file and ordinal, as far as they can be found.
 
     Excerpts take longer; see ``locate`` for them.
     """
-    found = [(0, 0)] * len(starts)
-    in_file: dict[str, list[int]] = {}
-    for index, (file, _) in enumerate(starts):
-        in_file.setdefault(file, []).append(index)
-    for source in sources:
-        indexes = in_file.get(source.name, [])
-        offsets = _offsets(source, {starts[index][1] for index in indexes} - {-1})
-        text = _Text(source)
-        places = {ordinal: text.position(offset) for ordinal, offset in sorted(offsets.items())}
-        for index in indexes:
-            found[index] = places.get(starts[index][1], (0, 0))
-    return found
+    return {
+        source.name: dict(
+            _Text(source).positions(_offsets(source, {*ordinals[source.name]} - {-1}))
+        )
+        for source in sources
+        if source.name in ordinals
+    }
 
 
 def _offset(place: Place, offsets: Mapping[int, int]) -> int:
@@ -165,6 +161,18 @@ class _Text:
     def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
         return self._located(*self.position(offset), path)
+
+    def positions(self, offsets: Mapping[int, int]) -> Iterator[tuple[int, tuple[int, int]]]:
+        """Line and column of many bytes, each with what stands for it."""
+        lines, mark = self._starts, self._offset
+        if not self._is_ascii:
+            for name, offset in sorted(offsets.items(), key=itemgetter(1)):
+                yield name, self.position(offset)
+            return
+        for name, offset in offsets.items():
+            at = max(offset - mark, 0)
+            line = bisect_right(lines, at)
+            yield name, (line, at - lines[line - 1] + 1)
 
     def position(self, offset: int) -> tuple[int, int]:
         """Line and column of a byte."""

@@ -1,6 +1,6 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import chain
 from json.encoder import encode_basestring
 
@@ -12,6 +12,8 @@ from sysmlc.output import json_text
 
 COVERAGE = "coverage.json"
 TRACE = "trace.json"
+
+_NOWHERE: Mapping[int, tuple[int, int]] = {}
 
 
 def coverage_text(compilation: Compilation) -> str:
@@ -48,20 +50,22 @@ def _output(path: str, elements: str) -> str:
 def _elements(compilation: Compilation, ids: Iterable[str]) -> list[str]:
     graph = compilation.graph
     names: dict[str, str] = {}
-    found = (element for element in map(graph.get, ids) if element is not None)
-    known = sorted(_start(graph, element, names) for element in found)
-    files = {name: encode_basestring(name) for name in {file for _, _, file, _ in known}}
-    places = positions(compilation.sources, [(file, ordinal) for _, _, file, ordinal in known])
+    there = (element for element in map(graph.get, ids) if element is not None)
+    known = sorted(_start(graph, element, names) for element in there)
+    ordinals: dict[str, list[int]] = {}
+    for _, _, file, ordinal in known:
+        ordinals.setdefault(file, []).append(ordinal)
+    found = positions(compilation.sources, ordinals)
     return [
-        _element(id, name, files[file] if file else "", *place)
-        for (name, id, file, _), place in zip(known, places, strict=True)
+        _element(id, name, file, *found.get(file, _NOWHERE).get(ordinal, (0, 0)))
+        for name, id, file, ordinal in known
     ]
 
 
 def _element(id: str, name: str, file: str, line: int, column: int) -> str:
     """One element as ``json_text`` would write it: there are thousands of the same shape."""
     source = (
-        f'{{\n    "file": {file},\n    "line": {line or "null"},\n'
+        f'{{\n    "file": {encode_basestring(file)},\n    "line": {line or "null"},\n'
         f'    "column": {column or "null"}\n   }}'
         if file
         else "null"
