@@ -68,10 +68,10 @@ class _Checker:
         self.tokens = replace(self.tokens, nodes=nodes)
 
     def _checked(self, node: TokenNode) -> TokenNode:
-        branches = self.tokens.outgoing(node)
-        stated = [branch for branch in branches if not branch.is_else]
-        if node.firing is not Firing.CHOICE or not branches:
+        branches = self.tokens.outgoing(node) if node.firing is Firing.CHOICE else []
+        if not branches:
             return node
+        stated = [branch for branch in branches if not branch.is_else]
         has_else = len(stated) < len(branches)
         # One guard beside an else is neither too few nor too many: most decisions are such.
         is_plain = has_else and len(stated) == 1

@@ -5,6 +5,8 @@ The others are played in all ways (``token_search``): the game moves everything 
 flow may be empty again before the next token comes.
 """
 
+from functools import lru_cache
+
 from sysmlc.logic.activities import token_net
 from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.logic.names import Names
@@ -13,6 +15,8 @@ from sysmlc.values import dataclass, replace
 
 _NAMED_FROM = 50
 """The parts of a condition times its uses; from here on it gets a name."""
+_REMEMBERED = 256
+"""Answers that are kept: a process that compiles again finds those of what was not edited."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +31,7 @@ class Found:
     finishes: bool = True
 
 
+@lru_cache(_REMEMBERED)
 def search(tokens: TokenGraph, limit: int) -> Found:
     """Look for a second token in at most ``limit`` states."""
     quick = None if _is_coupled(tokens) else _in_any_order(tokens, limit)

@@ -6,6 +6,7 @@ equivalence for each variable; only a decision with several open branches leaves
 """
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import assumptions
@@ -30,7 +31,11 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Formula
 
+_REMEMBERED = 256
+"""Contracts that are kept: a process that compiles again finds those of what was not edited."""
 
+
+@lru_cache(_REMEMBERED)
 def derive(graph: TokenGraph) -> Contract:
     """The contract of an activity: as long as the environment ends what it was asked to do, the
     tokens move as drawn and the activity finishes again and again.
