@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
+from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of, note_range
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import (
@@ -120,9 +120,8 @@ class Scope:
         if found is None:
             return None
         enumeration, literal = found
-        named = [made for owner, made in literals.values() if owner == enumeration]
-        domain = EnumerationDomain(tuple(dict.fromkeys(named)))
-        return Symbol(const(literal), domain, self._outer.numbers.get(name))
+        domain = self._outer.enumerations.domains[enumeration]
+        return Symbol(const(literal), domain, self._outer.number(name))
 
     def _variable(self, name: str) -> Variable | None:
         for feature in (

@@ -54,10 +54,9 @@ class Context:
         """Enumeration literals by written name: (enumeration, identifier)."""
         return self.enumerations.literals
 
-    @property
-    def numbers(self) -> dict[str, int]:
-        """Numbers that enumeration literals stand for, by written name."""
-        return self.enumerations.numbers
+    def number(self, written: str) -> int | None:
+        """The number that an enumeration literal stands for, by written name."""
+        return self.enumerations.number(written)
 
 
 def context_of(

@@ -92,9 +92,9 @@ def literal_of(context: Context, name: str) -> Symbol | None:
     found = context.literals.get(name)
     if found is None or ("::" not in name and "." not in name):
         return None
-    siblings = [made for of, made in context.literals.values() if of == found[0]]
-    domain = EnumerationDomain(tuple(dict.fromkeys(siblings)))
-    return Symbol(f.const(found[1]), domain, context.numbers.get(name))
+    enumeration, literal = found
+    domain = context.enumerations.domains[enumeration]
+    return Symbol(f.const(literal), domain, context.number(name))
 
 
 def condition(expression: Expression, scope: Scope) -> Formula:

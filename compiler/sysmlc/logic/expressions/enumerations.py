@@ -3,6 +3,7 @@
 from functools import cached_property
 
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.names import unique
 
 
@@ -23,15 +24,27 @@ class Enumerations:
         return found
 
     @cached_property
-    def numbers(self) -> dict[str, int]:
-        """Numbers that enumeration literals stand for, by written name."""
-        found: dict[str, int] = {}
+    def domains(self) -> dict[str, EnumerationDomain]:
+        """The literals (identifiers) of enumerations by the names of these."""
+        found: dict[str, dict[str, None]] = {}
+        for enumeration, made in self.literals.values():
+            found.setdefault(enumeration, {})[made] = None
+        return {name: EnumerationDomain(tuple(made)) for name, made in found.items()}
+
+    def number(self, written: str) -> int | None:
+        """The number that an enumeration literal stands for, by written name."""
         for literal in self._graph.of_kind(Kind.ENUMERATION_LITERAL):
-            value, owner = literal.attrs.get("value"), self._graph.owner(literal)
-            if isinstance(value, int) and not isinstance(value, bool) and owner is not None:
-                for sign in ("::", "."):
-                    found.setdefault(f"{owner.name}{sign}{literal.name}", value)
-        return found
+            owner = self._graph.owner(literal) if written.endswith(literal.name) else None
+            if owner is None or not _is_written(written, owner.name, literal.name):
+                continue
+            value = literal.attrs.get("value")
+            if isinstance(value, int) and not isinstance(value, bool):
+                return value
+        return None
+
+
+def _is_written(written: str, owner: str, name: str) -> bool:
+    return written in (f"{owner}::{name}", f"{owner}.{name}")
 
 
 def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
