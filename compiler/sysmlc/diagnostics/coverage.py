@@ -3,10 +3,9 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import field
-from enum import StrEnum
 
 from sysmlc.diagnostics.rule import Rule
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class Verdict(StrEnum):

@@ -1,8 +1,6 @@
 """Rules: what can be wrong with a model, and how it is explained."""
 
-from enum import StrEnum
-
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class Severity(StrEnum):

@@ -5,7 +5,6 @@ free and go there. Either it is assumed that they do not, or the cell is offered
 """
 
 from collections.abc import Iterator
-from enum import StrEnum
 from itertools import combinations, permutations
 
 from sysmlc.floors import words
@@ -14,6 +13,7 @@ from sysmlc.floors.study import STAY, WAYS, Robot, Study
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula
+from sysmlc.values import StrEnum
 
 
 class Sharing(StrEnum):

@@ -5,7 +5,6 @@ positions; in ``MOVES`` a robot's position is its own choice: the command is the
 """
 
 from collections.abc import Callable, Iterator
-from enum import StrEnum
 from itertools import combinations, permutations
 
 from sysmlc.floors import words
@@ -15,6 +14,7 @@ from sysmlc.floors.study import STAY, WAYS, Robot, Study
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Conjunct, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Formula, Op
+from sysmlc.values import StrEnum
 
 _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 

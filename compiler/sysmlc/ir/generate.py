@@ -14,7 +14,7 @@ _HEAD = '''"""Kinds of elements and of edges.
 Generated from metamodels/ir.ecore by ``python -m sysmlc.ir.generate``; do not edit.
 """
 
-from enum import StrEnum
+from sysmlc.values import StrEnum
 '''
 
 

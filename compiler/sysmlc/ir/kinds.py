@@ -3,7 +3,7 @@
 Generated from metamodels/ir.ecore by ``python -m sysmlc.ir.generate``; do not edit.
 """
 
-from enum import StrEnum
+from sysmlc.values import StrEnum
 
 
 class Kind(StrEnum):

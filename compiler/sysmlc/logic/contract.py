@@ -3,10 +3,8 @@
 Thesis section 2.2.1; the neutral JSON form is the one of corpus/gr1 (design, section 6).
 """
 
-from enum import StrEnum
-
 from sysmlc.logic.formula import Formula
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class Owner(StrEnum):

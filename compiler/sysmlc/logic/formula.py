@@ -4,12 +4,11 @@ A formula is built by the small functions at the end (``var``, ``eq``, ``both``,
 never by calling the classes from outside: they keep operands flat and constants folded.
 """
 
-from enum import StrEnum
 from functools import lru_cache
 from typing import TypeVar
 from weakref import WeakValueDictionary
 
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""

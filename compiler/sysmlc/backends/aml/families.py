@@ -1,9 +1,7 @@
 """Sorts of classes in CAEX, and which of them each classifier of the graph becomes."""
 
-from enum import StrEnum
-
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class Family(StrEnum):

@@ -1,8 +1,7 @@
 """Tables: tags of CAEX and what they become (docs/automationml.md)."""
 
-from enum import StrEnum
-
 from sysmlc.sources.caex import ORDER
+from sysmlc.values import StrEnum
 
 
 class Family(StrEnum):

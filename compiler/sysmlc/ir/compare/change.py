@@ -1,8 +1,6 @@
 """What a difference of two models is, in the words of who reviews a new export."""
 
-from enum import StrEnum
-
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class What(StrEnum):

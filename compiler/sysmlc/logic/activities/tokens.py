@@ -13,12 +13,11 @@ final nodes, or when nothing in it can move.
 """
 
 from collections.abc import Iterator
-from enum import StrEnum
 from functools import cached_property
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Formula, Literal, variables
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 ACTIVITY_REGION = ""
 """The region of what no structured node owns."""

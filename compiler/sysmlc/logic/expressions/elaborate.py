@@ -1,7 +1,6 @@
 """From expressions to formulas: names resolved, types checked, values as guarded cases."""
 
 from collections.abc import Callable
-from enum import StrEnum
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
@@ -20,7 +19,7 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.expressions.expression import Literal as Written
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.values import dataclass
+from sysmlc.values import StrEnum, dataclass
 
 
 class Fault(StrEnum):
