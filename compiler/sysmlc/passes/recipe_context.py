@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.recipe_levels import by_name, followers
 from sysmlc.passes.recipe_regions import contents
-from sysmlc.values import dataclass
+from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Range
@@ -105,6 +105,12 @@ class Context:
             self._levels[element.id] = ""
             found = self._levels[element.id] = self._level(element)
         return found
+
+    def with_derived(self, derived: Mapping[str, str]) -> "Context":
+        """The same with levels (by id) that follow from others: who has theirs is asked again."""
+        changed = followers(self.graph, map(self.graph.__getitem__, derived))
+        known = {id: level for id, level in self._levels.items() if id not in changed}
+        return replace(self, derived=derived, _levels=known, _of_level={})
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""

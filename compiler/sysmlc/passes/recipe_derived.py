@@ -11,7 +11,7 @@ from sysmlc.ir import Edge, Element, Kind, measures, query
 from sysmlc.passes.recipe_context import Context, activity_nodes
 from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
-from sysmlc.values import dataclass, replace
+from sysmlc.values import dataclass
 
 DERIVED = rule(
     "SM483",
@@ -51,7 +51,7 @@ def with_derived(context: Context) -> tuple[Context, list[Derived]]:
     if not found:
         return context, []
     levels = {one.element.id: one.level for one in found}
-    return replace(context, derived=levels, _levels={}, _of_level={}), found
+    return context.with_derived(levels), found
 
 
 def tell(context: Context, found: list[Derived], sink: Sink) -> None:
