@@ -1,5 +1,6 @@
 """The store behind the graph: it is compact, and nobody sees how."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -81,6 +82,37 @@ def test_many_edges_at_once_are_the_same_as_one_by_one():
     targets = all_.find_all(target or "nowhere" for _, target in wanted)
     all_.connect_all([Edge.SUBSETS] * 5, [source for source, _ in wanted], targets)
     assert list(all_.edges()) == list(one.edges())
+
+
+@pytest.mark.parametrize("asked_early", [True, False])
+@pytest.mark.parametrize("wanted", ["xa ab", "xa ax", "xa xb xa", "ax bx", "xa x?", "bx ax bx"])
+def test_many_edges_of_one_kind_at_once_are_the_same_as_one_by_one(wanted, asked_early):
+    one, all_ = three(asked_early=asked_early), three(asked_early=asked_early)
+    pairs = [(source, target) for source, target in wanted.split()]
+    for source, target in pairs:
+        if target != "?":
+            one.connect(Edge.TYPED_BY, source, target)
+    sources, targets = (all_.find_all(ends) for ends in zip(*pairs, strict=True))
+    all_.connect_each(Edge.TYPED_BY, sources, targets)
+    assert both_ways(all_) == both_ways(one)
+
+
+@pytest.mark.parametrize("asked_early", [True, False])
+@pytest.mark.parametrize("number", [0, 1, 2, 16, 17, 40])
+def test_all_edges_of_an_element_at_once_are_the_same_as_one_by_one(number, asked_early):
+    one, all_ = three(asked_early=asked_early), three(asked_early=asked_early)
+    for graph in (one, all_):
+        made = [graph.add(Element(f"n{place}", Kind.CLASS)) for place in range(number)]
+        if graph is all_:
+            graph.connect_fan(Edge.TYPED_BY, graph["x"], made)
+        for target in made:
+            graph.connect(Edge.TYPED_BY, "x", target)
+    assert both_ways(all_) == both_ways(one)
+
+
+def both_ways(graph):
+    ways = (graph.targets, graph.sources)
+    return [[[e.id for e in way(one, Edge.TYPED_BY)] for way in ways] for one in graph]
 
 
 def test_references_come_back_as_they_went_in():

@@ -7,10 +7,21 @@ from typing import TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import MANY, Index, drop, every, first, put, put_new, with_each_new
+from sysmlc.ir.neighbours import (
+    MANY,
+    Index,
+    drop,
+    every,
+    first,
+    put,
+    put_each_new,
+    put_new,
+    together,
+)
 from sysmlc.ir.reads import Reads
 from sysmlc.ir.reference import End, Reference, References
 from sysmlc.ir.shared import NOTHING, Shared
+from sysmlc.ir.tables import large_table
 
 _T = TypeVar("_T")
 
@@ -24,11 +35,11 @@ class Graph:
     """
 
     def __init__(self) -> None:
-        self._elements: dict[str, Element] = {}
+        self._elements: dict[str, Element] = large_table()
         self._of_kind: dict[Kind, list[Element]] = {}
         self._fresh: list[Element] = []
         self._stale: set[Kind] = set()
-        self._out: dict[Edge, Index] = {edge: {} for edge in Edge}
+        self._out: dict[Edge, Index] = {edge: large_table() for edge in Edge}
         self._owned = self._out[Edge.OWNS]
         self._in: dict[Edge, Index] = {}
         self._drawn: dict[Edge, list[Element]] = {edge: [] for edge in Edge}
@@ -223,6 +234,18 @@ class Graph:
         else:
             put_new(self._in[edge], target.id, source)
 
+    def connect_fan(self, edge: Edge, source: Element, targets: list[Element]) -> None:
+        """Add all edges of a kind of an element that was made just now; the list is taken over."""
+        if not targets:
+            return
+        self._out[edge][source.id] = together(targets)
+        drawn = self._drawn.get(edge)
+        for target in targets:
+            if drawn is None:
+                put_new(self._in[edge], target.id, source)
+            else:
+                drawn += (source, target)
+
     def connect_all(
         self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
@@ -244,9 +267,7 @@ class Graph:
     ) -> None:
         """Add edges of one kind; those without source or target are not added."""
         out, drawn = self._out[edge], self._drawn.get(edge)
-        whole = None if drawn is None else with_each_new(out, sources, targets)
-        if whole is not None and drawn is not None:
-            self._out[edge] = whole
+        if drawn is not None and put_each_new(out, sources, targets):
             ends = cast("Iterable[tuple[Element, Element]]", zip(sources, targets, strict=True))
             drawn += chain.from_iterable(ends)
             return
@@ -380,7 +401,7 @@ class Graph:
         """The way back, made when it is asked for first: many kinds are only followed forwards."""
         known = self._in.get(edge)
         if known is None:
-            known = self._in[edge] = {}
+            known = self._in[edge] = large_table()
             ends = iter(self._drawn.pop(edge))
             for source, target in zip(ends, ends, strict=True):
                 put(known, target.id, source)

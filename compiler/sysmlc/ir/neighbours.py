@@ -1,6 +1,8 @@
 """Neighbours of elements by edges of one kind, compact: most elements have one, some thousands."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from operator import attrgetter
+from typing import cast
 
 from sysmlc.ir.element import Element
 
@@ -9,6 +11,8 @@ Neighbours = Element | list[Element] | dict[Element, None]
 
 Index = dict[str, Neighbours]
 """Neighbours by the id of the element that they belong to; no entry where there is none."""
+
+_ID = attrgetter("id")
 
 MANY = 16
 """From here on a dict, so that neither a search nor a removal looks at all neighbours."""
@@ -49,21 +53,28 @@ def put_new(index: Index, id: str, neighbour: Element) -> None:
         index[id] = [known, neighbour]
 
 
-def with_each_new(
-    index: Index, ones: Sequence[Element | None], neighbours: Sequence[Element | None]
-) -> Index | None:
-    """The index with a neighbour of each of many that have none; None when one has.
+def together(neighbours: list[Element]) -> Neighbours:
+    """All neighbours of an element, which differ; the list is taken over."""
+    if len(neighbours) == 1:
+        return neighbours[0]
+    return neighbours if len(neighbours) <= MANY else dict.fromkeys(neighbours)
 
-    The index is changed, but for an empty one, in whose place a new one stands.
-    """
-    pairs = zip(ones, neighbours, strict=True)
-    new: Index = {one.id: other for one, other in pairs if one is not None and other is not None}
-    if len(new) < len(ones) or not index.keys().isdisjoint(new):
-        return None
-    if not index:
-        return new
-    index.update(new)
-    return index
+
+def put_each_new(
+    index: Index, ones: Sequence[Element | None], neighbours: Sequence[Element | None]
+) -> bool:
+    """Add a neighbour of each of many that have none; False, and none is added, when one has."""
+    if not (all(ones) and all(neighbours)):
+        return False
+    ids, before = list(map(_ID, ones)), len(index)
+    if index and not index.keys().isdisjoint(ids):
+        return False
+    index.update(cast("Iterable[tuple[str, Element]]", zip(ids, neighbours, strict=True)))
+    if len(index) == before + len(ids):
+        return True
+    for id in set(ids):
+        del index[id]
+    return False
 
 
 def drop(index: Index, id: str, neighbour: Element) -> bool:

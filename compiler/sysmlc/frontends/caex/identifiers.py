@@ -6,6 +6,7 @@ from itertools import compress
 
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.paths import plain
+from sysmlc.ir.tables import large_table
 
 Place = tuple[Document, Node]
 """A node and the file that it stands in."""
@@ -33,7 +34,8 @@ class Identifiers:
 
     def _know(self, written: list[str]) -> None:
         rows = compress(range(len(written)), written)
-        numbers = dict(zip(filter(None, written), rows, strict=True))
+        numbers: dict[str, int] = large_table()
+        numbers.update(zip(filter(None, written), rows, strict=True))
         if len(numbers) < len(written) - written.count(""):
             numbers = {}
             for number, id in enumerate(written):

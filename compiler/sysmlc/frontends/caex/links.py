@@ -19,7 +19,6 @@ _MAPPED = Verdict.MAPPED
 _CONNECTOR = Kind.CONNECTOR
 _CONNECTOR_END = Kind.CONNECTOR_END
 _END = Edge.END
-_ROLE = Edge.ROLE
 _PATH = Edge.PATH
 
 
@@ -36,11 +35,10 @@ class Links:
         """Ids of the classes with links of their own."""
         self._drawing_above: dict[Type, list[str]] = {}
         """Those among the classes that a class is or specialises."""
-        self._steps: dict[Site, list[Element | None]] = {}
-        self._edges: dict[Edge, tuple[list[Element], list[Element | None]]] = {
-            edge: ([], []) for edge in (_END, _ROLE, _PATH)
-        }
-        """Edges to come, by their ends."""
+        self._steps: dict[Site, list[Element]] = {}
+        self._ends: list[Element] = []
+        self._ports: list[Element] = []
+        """Ends of connectors, and what they are ends at."""
 
     def lower(self) -> None:
         """Add a connector for each link; those of classes first, as instances repeat them."""
@@ -49,8 +47,7 @@ class Links:
                 for row in document.children(0):
                     if (document.tags[row] == "InstanceHierarchy") is are_instances:
                         self._lower_below(row, document)
-        for edge, (sources, targets) in self._edges.items():
-            self._context.graph.connect_each(edge, sources, targets)
+        self._context.graph.connect_each(Edge.ROLE, self._ends, self._ports)
 
     def _lower_below(self, top: int, document: Document) -> None:
         sites, direct = self._sites.rows(document), self._sides.direct
@@ -123,29 +120,27 @@ class Links:
     def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
         graph, above = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
-        (whole, halves), (players, roles), (led, steps) = self._edges.values()
+        halves: list[Element] = []
         for side, (port, site) in zip(SIDES, ends, strict=True):
             id = f"{above}#{side}"
             made = graph.new(id, _CONNECTOR_END, "", above, ordinal, source)
             if made is None:
                 id = f"{id}~{ordinal}"
                 made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
-            whole.append(connector)
             halves.append(made)
-            players.append(made)
-            roles.append(graph[port])
-            way = self._steps_to(site)[0 if crosses else 1 :]
-            led += [made] * len(way)
-            steps += way
+            self._ports.append(graph[port])
+            steps, has_top = self._steps_to(site), bool(site.root.instance)
+            graph.connect_fan(_PATH, made, steps[1 if has_top and not crosses else 0 :])
+        self._ends += halves
+        graph.connect_fan(_END, connector, halves)
 
-    def _steps_to(self, site: Site) -> list[Element | None]:
+    def _steps_to(self, site: Site) -> list[Element]:
         """The Instance at the top (if any), and the parts that lead down to an element."""
         known = self._steps.get(site)
         if known is None:
-            if site.parent is None:
-                known = [self._sites.instance(site)]
-            else:
-                known = [*self._steps_to(site.parent), self._sites.part(site)]
+            above = [] if site.parent is None else self._steps_to(site.parent)
+            step = self._sites.instance(site) if site.parent is None else self._sites.part(site)
+            known = above if step is None or step in above else [*above, step]
             self._steps[site] = known
         return known
 
