@@ -121,13 +121,17 @@ def _whole(root: StoredNode) -> Node:
             relations,
             facts,
         ) = packed
-        one.relations = [Relation(k, Reference(c, s, e)) for k, c, s, e in relations]
         one.facts = dict(facts)
+        one.relations = (
+            [Relation(k, Reference(c, s, e)) for k, c, s, e in relations] if relations else []
+        )
+        one.members = owned = []
         within = marshal.loads(members) if isinstance(members, bytes) else members
-        one.members = [_NEW(Node) for _ in within]
-        for member in one.members:
+        for inner in within:
+            member = _NEW(Node)
             member.owner = one
-        waiting += zip(one.members, within, strict=True)
+            owned.append(member)
+            waiting.append((member, inner))
     return made
 
 

@@ -44,6 +44,8 @@ BOUND_EXPRESSION = rule(
 
 _OPERATED = kinds_of("InstantiationExpression")
 _ROLES = {"ElementFilterMembership": "filter", "TransitionFeatureMembership": "guard"}
+MEMBERSHIPS = frozenset(_ROLES)
+"""Memberships of conditions."""
 
 
 def check_bound(model: Model, node: Node) -> Iterator[Found]:

@@ -57,7 +57,7 @@ def check_inherited(model: Model, node: Node) -> Iterator[Found]:
         return
     for member in node.members:
         name = member.name
-        if name is None or member.membership not in _NAMED or role(member) == "parameter":
+        if name is None or member.membership not in MEMBERSHIPS or role(member) == "parameter":
             continue
         for hit in inherited(node, name):
             is_ours = hit.name in (name, None) and not is_of_library(hit)
@@ -79,7 +79,7 @@ def _redefines(model: Model, member: Node, hit: Node) -> bool:
     return bool(redefined) and not redefined.isdisjoint(model.lookup.redefined(element))
 
 
-_NAMED = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
+MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
 """Members that have names of their own: parameters of cases are those of what is included."""
 _METADATA = kinds_of("MetadataFeature")
 """What their bodies say of attributes is no declaration (SysML 2.0, 8.2.2.27)."""

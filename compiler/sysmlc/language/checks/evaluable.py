@@ -23,13 +23,15 @@ NOT_EVALUABLE = error(
 _METADATA = kinds_of("MetadataFeature")
 _OPERATORS = frozenset({"~", "all"})
 """Operators that are no model-level evaluable functions (KerML 1.0, 8.4.4.9)."""
+MEMBERSHIPS = frozenset({"ElementFilterMembership"})
+"""Memberships of filters."""
 _ITERATING = frozenset({"collect", "select", "selectOne", "reject", "forAll", "exists"})
 
 
 def check_filter(model: Model, node: Node) -> Iterator[Found]:
     """Report filters of a package that cannot be evaluated."""
     for member in node.members:
-        if member.membership == "ElementFilterMembership":
+        if member.membership in MEMBERSHIPS:
             yield from _check(model, member, f"the filter of {_quoted(model, node)}")
 
 

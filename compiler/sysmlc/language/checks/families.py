@@ -1,6 +1,7 @@
 """Which checks are made for which metaclass, and which for which relation."""
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from itertools import chain
 from typing import TypeVar
 
@@ -43,6 +44,7 @@ _REPORTERS: tuple[tuple[frozenset[str], Reporter], ...] = (
     (DECLARED_TYPES, single.check),
     (USAGES, members.check),
     (USAGES, references.check),
+    (USAGES, references.check_itself),
     (access.KINDS, access.check),
 )
 _CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
@@ -83,35 +85,60 @@ BY_RELATION = _by_key(_RELATED)
 """The checks for each metaclass and for each kind of relation, in the order of the families."""
 
 
-def _without_members(checks: dict[str, tuple[_Entry, ...]]) -> dict[str, tuple[_Entry, ...]]:
-    return {
-        key: tuple([one for one in some if one not in _OF_MEMBERS]) for key, some in checks.items()
-    }
+_MEMBERS: dict[object, frozenset[str]] = {
+    single.check: single.MEMBERSHIPS,
+    bounds.check_condition: bounds.MEMBERSHIPS,
+    duplicates.check_inherited: duplicates.MEMBERSHIPS,
+    evaluable.check_filter: evaluable.MEMBERSHIPS,
+    passing.check_parameters: passing.MEMBERSHIPS,
+}
+"""Memberships: without a member that has one of them a check finds nothing."""
+_RELATIONS: dict[object, frozenset[str]] = {
+    typing.check: typing.RELATIONS,
+    references.check: references.RELATIONS,
+}
+"""Kinds of relations: an element that has none of them passes a check."""
+_OF_SEVERAL: frozenset[object] = frozenset({combining.check_multiplicity, duplicates.check})
+"""Checks that compare members: they find nothing where there is one."""
+_NOTHING: frozenset[str] = frozenset()
 
 
-_OF_MEMBERS: frozenset[object] = frozenset(
-    {
-        combining.check_multiplicity,
-        duplicates.check,
-        duplicates.check_inherited,
-        passing.check_parameters,
-        single.check,
-    }
-)
-"""Checks that find nothing where an element has no members."""
-_REPORTERS_OF_LEAVES = _without_members(REPORTERS)
-_CHECKS_OF_LEAVES = _without_members(BY_KIND)
+@lru_cache(maxsize=4096)
+def _checks_for(
+    kind: str,
+    memberships: frozenset[str],
+    related: tuple[str, ...],
+    has_several: bool,
+    is_variable: bool,
+) -> tuple[tuple[Reporter, ...], tuple[Check, ...]]:
+    """The checks that may find something in elements of a kind, by their members and relations."""
+
+    def may_find(check: Reporter | Check) -> bool:
+        if check in _MEMBERS:
+            return not _MEMBERS[check].isdisjoint(memberships)
+        if check in _RELATIONS:
+            return not _RELATIONS[check].isdisjoint(related)
+        if check in _OF_SEVERAL:
+            return has_several
+        return is_variable or check is not owned.check_variable
+
+    by_relation = chain.from_iterable([BY_RELATION.get(one, ()) for one in related])
+    checks = dict.fromkeys((*BY_KIND.get(kind, ()), *by_relation))
+    return tuple(filter(may_find, REPORTERS.get(kind, ()))), tuple(filter(may_find, checks))
 
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report what the checks for the metaclass and the relations of ``node`` find."""
-    kind, has_members = node.kind, bool(node.members)
-    for reporter in (REPORTERS if has_members else _REPORTERS_OF_LEAVES).get(kind, ()):
+    members, relations = node.members, node.relations
+    reporters, checks = _checks_for(
+        node.kind,
+        frozenset([one.membership for one in members]) if members else _NOTHING,
+        tuple([one.kind for one in relations]) if relations else (),
+        len(members) > 1,
+        "isVariable" in node.facts,
+    )
+    for reporter in reporters:
         reporter(model, document, node, sink)
-    checks = (BY_KIND if has_members else _CHECKS_OF_LEAVES).get(kind, ())
-    related = [BY_RELATION[r.kind] for r in node.relations if r.kind in BY_RELATION]
-    if related:
-        checks = tuple(dict.fromkeys((*checks, *chain.from_iterable(related))))
     for one in checks:
         for found in one(model, node):
             place = subject(document, node, found.start)

@@ -7,7 +7,7 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import gather, own
+from sysmlc.language.names.positions import own
 from sysmlc.language.names.results import named
 from sysmlc.language.tree import Node
 
@@ -44,6 +44,8 @@ NO_PARAMETER = _warning(
 _TYPES = frozenset({"FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition"})
 _STEPS = kinds_of("ActionUsage") - kinds_of("CaseUsage") - kinds_of("TransitionUsage")
 _CALLED = kinds_of("Behavior") | kinds_of("Step")
+MEMBERSHIPS = frozenset({"FeatureMembership", "ParameterMembership"})
+"""Memberships of parameters."""
 _IN = frozenset({"in", "inout"})
 _ROLES = ("subject", "parameter")
 """How a feature is an input: the subject of a requirement or case is one too."""
@@ -55,7 +57,7 @@ def check_arguments(model: Model, node: Node) -> Iterator[Found]:
     called = named(node, model.lookup)
     if called is None or called.kind not in _CALLED:
         return
-    takes = [one for role in _ROLES for one in gather(called, role, model.lookup)]
+    takes = [one for role in _ROLES for one in model.lookup.at_positions(called, role)]
     inputs = [one for one in takes if _direction(one) in _IN]
     if len(given) > len(inputs):
         said = {0: "no value", 1: "one value"}.get(len(inputs), f"{len(inputs)} values")
@@ -69,7 +71,7 @@ def check_parameters(model: Model, node: Node) -> Iterator[Found]:
     called = _called(node) if given else None
     if called is None:
         return
-    wanted = gather(called, "parameter", model.lookup)
+    wanted = model.lookup.at_positions(called, "parameter")
     for place, one in enumerate(given):
         is_said = any(r.kind == "Redefinition" for r in one.relations)
         namesakes = [other for other in wanted if model.name(other) == model.name(one)]

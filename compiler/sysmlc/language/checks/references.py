@@ -1,7 +1,10 @@
 """What usages may reference, redefine and specialise."""
 
+from collections.abc import Iterator, Mapping
+
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules, reference_rules
+from sysmlc.language.checks.found import written
 from sysmlc.language.composition import is_composite
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
@@ -17,41 +20,37 @@ _REFERENCED = {
 }
 _USAGES = kinds_of("Usage")
 _PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
-_CHECKED = frozenset({"ReferenceSubsetting", "Redefinition", "Subsetting", "FeatureTyping"})
+RELATIONS = frozenset({"ReferenceSubsetting", "Redefinition", "Subsetting", "FeatureTyping"})
+"""Relations that are checked."""
 _DIRECTED = ("in", "out")
+_Broken = tuple[Rule, Mapping[str, str | None]]
+"""A rule, and the facts of its phrase."""
 
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report references to what has another kind, direction or place than they need."""
-    if node.kind not in _USAGES:
-        return
-    for relation in node.relations:
-        target = relation.reference.target
-        if target is not None:
-            _relation(model, document, node, relation, target, sink)
-    _itself(model, document, node, sink)
+    is_variation = bool(node.facts.get("isVariation"))
+    for relation, target in written(node, RELATIONS):
+        broken: list[_Broken] = []
+        if relation.kind == "ReferenceSubsetting":
+            broken += _of_other_kind(node, relation, target)
+        elif relation.kind == "Redefinition" and _turns(model, node, target):
+            owner = model.name(target.owner) if target.owner else ""
+            name = str(relation.reference)
+            broken.append((reference_rules.OTHER_DIRECTION, {"name": name, "owner": owner}))
+        if is_variation and target.facts.get("isVariation"):
+            itself = {"name": model.name(node) or node.kind, "owner": ""}
+            broken.append((member_rules.VARIATION_OF_VARIATION, itself))
+        for rule, facts in broken:
+            place = subject(document, node, relation.reference.start)
+            sink.report(rule, place, notes=(), help="", **facts)
 
 
-def _relation(
-    model: Model, document: Document, node: Node, relation: Relation, target: Node, sink: Sink
-) -> None:
-    if relation.kind not in _CHECKED:
-        return
-
-    def report(rule: Rule, **facts: str | None) -> None:
-        place = subject(document, node, relation.reference.start)
-        sink.report(rule, place, notes=(), help="", **facts)
-
-    name = str(relation.reference)
-    if relation.kind == "ReferenceSubsetting" and node.kind in _REFERENCED:
-        kinds, words = _REFERENCED[node.kind]
-        if target.kind in _USAGES and target.kind not in kinds:
-            report(reference_rules.OTHER_KIND, name=name, found=kind_of(target), wanted=words)
-    if relation.kind == "Redefinition" and _turns(model, node, target):
-        owner = model.name(target.owner) if target.owner else ""
-        report(reference_rules.OTHER_DIRECTION, name=name, owner=owner)
-    if node.facts.get("isVariation") and target.facts.get("isVariation"):
-        report(member_rules.VARIATION_OF_VARIATION, name=model.name(node) or node.kind, owner="")
+def _of_other_kind(node: Node, relation: Relation, target: Node) -> Iterator[_Broken]:
+    kinds, words = _REFERENCED.get(node.kind, (_USAGES, ""))
+    if target.kind in _USAGES and target.kind not in kinds:
+        name = str(relation.reference)
+        yield reference_rules.OTHER_KIND, {"name": name, "found": kind_of(target), "wanted": words}
 
 
 def _turns(model: Model, node: Node, target: Node) -> bool:
@@ -66,7 +65,8 @@ def _is_conjugated(model: Model, node: Node) -> bool:
     return any(r.kind == "ConjugatedPortTyping" for one in supers for r in one.relations)
 
 
-def _itself(model: Model, document: Document, node: Node, sink: Sink) -> None:
+def check_itself(model: Model, document: Document, node: Node, sink: Sink) -> None:
+    """Report a part of a port, and an individual that is of none or of several."""
     owner, name = node.owner, node.name or node.kind
     if _is_in_port(owner) and node.kind != "PortUsage" and is_composite(node):
         place = subject(document, node, node.start)

@@ -12,6 +12,8 @@ _ROLES = {
     "ReturnParameterMembership": "result",
     "ViewRenderingMembership": "rendering",
 }
+MEMBERSHIPS = frozenset({*_ROLES, "StateSubactionMembership"})
+"""Memberships of what there may be one of."""
 
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:

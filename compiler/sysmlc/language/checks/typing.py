@@ -74,7 +74,8 @@ def _by_kind() -> dict[str, Wanted]:
 
 
 _BY_KIND = _by_kind()
-_TYPING = frozenset({"FeatureTyping", "Subsetting", "ReferenceSubsetting", "Redefinition"})
+RELATIONS = frozenset({"FeatureTyping", "Subsetting", "ReferenceSubsetting", "Redefinition"})
+"""Relations that say types."""
 
 
 KINDS = frozenset(_BY_KIND)
@@ -84,7 +85,7 @@ KINDS = frozenset(_BY_KIND)
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report a usage whose types are not what its kind wants."""
     wanted = _BY_KIND.get(node.kind)
-    if wanted is None or not _says_types(node):
+    if wanted is None or not _is_known(node):
         return
     types = _types(model, node)
     if all(one.kind in wanted.kinds for one in types) and not (wanted.single and len(types) > 1):
@@ -108,10 +109,12 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
         sink.report(ONE_TYPE, place, usage=what, types=names)
 
 
-def _says_types(node: Node) -> bool:
-    """Whether the text says types, and all that it names was found."""
-    said = [r for r in node.relations if r.kind in _TYPING]
-    return bool(said) and all(r.reference.target is not None for r in said)
+def _is_known(node: Node) -> bool:
+    """Whether all was found that the text says types by."""
+    for relation in node.relations:
+        if relation.kind in RELATIONS and relation.reference.target is None:
+            return False
+    return True
 
 
 def _types(model: Model, node: Node) -> list[Node]:

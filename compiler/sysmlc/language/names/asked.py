@@ -17,5 +17,8 @@ class Asked(Protocol):
     def all_generals(self, node: Node) -> tuple[Node, ...]:
         """What ``node`` specialises as the text says and what it may implicitly."""
 
+    def own_of_role(self, scope: Node, role: str) -> list[Node]:
+        """The features of ``scope`` with one role by position, in the order of the text."""
+
     def at_positions(self, scope: Node, role: str) -> list[Node]:
         """The features of a type with one role by position, own ones before inherited ones."""

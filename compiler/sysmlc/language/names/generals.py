@@ -21,7 +21,7 @@ class Generals(ABC):
     """
 
     def __init__(
-        self, implied: Callable[[Node], list[Node]], by_role: Callable[[Node], list[Node]]
+        self, implied: Callable[[Node], tuple[Node, ...]], by_role: Callable[[Node], list[Node]]
     ) -> None:
         self._implied = implied
         self._by_role = by_role
@@ -32,12 +32,13 @@ class Generals(ABC):
         self._cyclic: set[Node] = set()
         self._pointed: set[Node] = set()
         self._generals: dict[Node, list[Node]] = {}
-        self._silently: dict[Node, list[Node]] = {}
+        self._silently: dict[Node, tuple[Node, ...]] = {}
         self._all_generals: dict[Node, tuple[Node, ...]] = {}
         self._redefining: dict[Node, list[Node]] = {}
         self._placing: set[Node | tuple[Node, str]] = set()
         """Features, and roles of owners, whose positions are being looked at."""
         self._positions: dict[Node, list[Node]] = {}
+        self._own_of_role: dict[tuple[Node, str], list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
 
     def abandon(self) -> None:
@@ -179,6 +180,14 @@ class Generals(ABC):
                 self._positions[feature] = known
         return known
 
+    def own_of_role(self, scope: Node, role: str) -> list[Node]:
+        """The features of a type with one role by position, in the order of the text."""
+        key = (scope, role)
+        known = self._own_of_role.get(key)
+        if known is None:
+            known = self._own_of_role[key] = positions.own(scope, role)
+        return known
+
     def at_positions(self, scope: Node, role: str) -> list[Node]:
         """The features of a type with one role by position, own ones before inherited ones."""
         key = (scope, role)
@@ -205,13 +214,17 @@ class Generals(ABC):
                 self._all_generals[node] = known
         return known
 
-    def _silent_generals(self, node: Node) -> list[Node]:
+    def _silent_generals(self, node: Node) -> tuple[Node, ...]:
         known = self._silently.get(node)
         if known is None:
             before = self.cuts
             value = results.of_value(node, self) if not self.generals(node) else None
-            known = [*self.by_position(node), *self._implied(node)]
-            known = [value, *known] if value is not None and value is not node else known
+            placed = self.by_position(node)
+            known = self._implied(node)
+            if placed:
+                known = (*placed, *known)
+            if value is not None and value is not node:
+                known = (value, *known)
             if self.cuts == before:
                 self._silently[node] = known
         return known

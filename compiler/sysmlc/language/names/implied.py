@@ -21,6 +21,7 @@ from sysmlc.language.tree import Node
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 _CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
 _CONNECTORS = kinds_of("Connector") | kinds_of("Association")
+_COUNTED = _CONNECTORS | {"IfActionUsage"}
 _PORTIONS = {
     "snapshot": "Occurrences::Occurrence::snapshots",
     "timeslice": "Occurrences::Occurrence::timeSlices",
@@ -55,9 +56,9 @@ _FACTS = ("isNegated", "portionKind", "isEnd", "isReference", "direction", "isCo
 def like(node: Node) -> _Like:
     """What the candidates of ``node`` follow from: equal for nodes that have the same ones."""
     kind, owner, facts = node.kind, node.owner, node.facts
-    counted = len(ends(node)) if kind in _CONNECTORS else 0
-    if kind == "IfActionUsage":
-        counted = _clauses(node)
+    counted = 0
+    if kind in _COUNTED:
+        counted = _clauses(node) if kind == "IfActionUsage" else len(ends(node))
     said = tuple([facts.get(name) for name in _FACTS]) if facts else ()
     return kind, node.membership, node.role, owner.kind if owner else "", counted, said
 

@@ -16,7 +16,7 @@ class Imports(Members):
     """Imported members, each name looked up once for each namespace."""
 
     def __init__(
-        self, implied: Callable[[Node], list[Node]], by_role: Callable[[Node], list[Node]]
+        self, implied: Callable[[Node], tuple[Node, ...]], by_role: Callable[[Node], list[Node]]
     ) -> None:
         super().__init__(implied, by_role)
         self._imports: dict[Node, list[Node]] = {}

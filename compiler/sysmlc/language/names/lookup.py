@@ -24,7 +24,7 @@ class Lookup(Imports):
     def __init__(
         self,
         roots: Callable[[str], Hits],
-        implied: Callable[[Node], list[Node]],
+        implied: Callable[[Node], tuple[Node, ...]],
         by_role: Callable[[Node], list[Node]],
         text: Callable[[Node], str],
     ) -> None:
@@ -165,7 +165,7 @@ class Lookup(Imports):
         everything: bool,
     ) -> Node | None:
         """``hit`` when it ends the name and is of a wanted kind, else what lies further in it."""
-        element = self.element(hit)
+        element = hit if hit.kind != "Membership" else self.element(hit)
         if element is None:
             return None
         if index + 1 == len(names):

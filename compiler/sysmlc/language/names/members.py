@@ -16,14 +16,14 @@ class Members(Generals):
     """Members of namespaces, each name looked up once."""
 
     def __init__(
-        self, implied: Callable[[Node], list[Node]], by_role: Callable[[Node], list[Node]]
+        self, implied: Callable[[Node], tuple[Node, ...]], by_role: Callable[[Node], list[Node]]
     ) -> None:
         super().__init__(implied, by_role)
         self._owned: dict[Node, Owned] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._inheriting: set[Node] = set()
-        self._inheritable: dict[Node, tuple[frozenset[str], ...] | None] = {}
-        self._names_of: dict[tuple[Node, ...], tuple[frozenset[str], ...] | None] = {}
+        self._inheritable: dict[Node, frozenset[str] | None] = {}
+        self._names_of: dict[tuple[Node, ...], frozenset[str] | None] = {}
         self._names_above: dict[Node, frozenset[str]] = {}
 
     def abandon(self) -> None:
@@ -102,15 +102,15 @@ class Members(Generals):
 
     def inherited(self, scope: Node, name: str) -> Hits:
         """Members by one name that a type inherits, without those that it redefines."""
+        names = self._inheritable.get(scope)
+        if names is not None and name not in names:
+            return NONE
         memo = self._inherited.get(scope)
         if memo is None:
             memo = self._inherited[scope] = {}
         hits = memo.get(name)
         if hits is not None:
             return hits
-        names = self._inheritable.get(scope)
-        if names is not None and not any(name in some for some in names):
-            return NONE
         if scope in self._inheriting:
             self.cuts += 1
             return NONE
@@ -127,7 +127,7 @@ class Members(Generals):
                 self._inheritable[scope] = self._learnt(scope)
         return hits
 
-    def _learnt(self, scope: Node) -> tuple[frozenset[str], ...] | None:
+    def _learnt(self, scope: Node) -> frozenset[str] | None:
         """The names of all that ``scope`` may inherit, found when all was searched in vain.
 
         None where generals import some, are not known for good, or lead in a circle.
@@ -135,8 +135,9 @@ class Members(Generals):
         key = self.all_generals(scope)
         if key not in self._names_of:
             each = [self._names_from(general, {}) for general in key]
-            known = tuple([names for names in each if names is not None])
-            self._names_of[key] = known if len(known) == len(each) else None
+            known = [names for names in each if names is not None]
+            whole = len(known) == len(each)
+            self._names_of[key] = frozenset().union(*known) if whole else None
         return self._names_of[key]
 
     def _names_from(self, general: Node, below: dict[Node, None]) -> frozenset[str] | None:
@@ -169,12 +170,19 @@ class Members(Generals):
             found = self._heritable(general, name)
             if found:
                 hits += [hit for hit in found if hit not in hits]
+        if not hits and not self._may_inherit(scope, name):
+            return NONE
         if not hits or any(map(is_of_library, hits)):
             for general in self._silent_generals(scope):
                 found = self._heritable(general, name)
                 if found:
                     hits += [hit for hit in found if hit not in hits]
         return tuple(hits) if len(hits) < 2 else self._most_special(hits)
+
+    def _may_inherit(self, scope: Node, name: str) -> bool:
+        """Whether some general of a type has a name, as far as is known from what has the same."""
+        names = self._names_of.get(self.all_generals(scope))
+        return names is None or name in names
 
     def _heritable(self, general: Node, name: str) -> Hits:
         """Members by one name that ``general`` gives to what specialises it."""

@@ -1,15 +1,24 @@
 """Documents and their library, and the questions that others ask about their names."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from sysmlc.language.library import Library
 from sysmlc.language.names import implied, semantic
 from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
-from sysmlc.language.names.contents import FEATURES, TYPES, naming, payload_of
+from sysmlc.language.names.classified import Types
+from sysmlc.language.names.contents import TYPES, naming, payload_of
 from sysmlc.language.names.listing import members
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
 from sysmlc.language.tree import Document, Node, Relation
+
+
+class _Alike(NamedTuple):
+    """What elements that are alike may implicitly specialise: with kinds of relations, alone."""
+
+    pairs: list[tuple[str, Node]]
+    targets: tuple[Node, ...]
 
 
 class Model:
@@ -27,9 +36,9 @@ class Model:
                     self._named.setdefault(str(name), []).append(member)
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
-        self._likes: dict[tuple[object, ...], list[tuple[str, Node]]] = {}
+        self._likes: dict[tuple[object, ...], _Alike] = {}
         self._needed: dict[tuple[tuple[Node, ...], tuple[Node, ...]], list[Node]] = {}
-        self._types: dict[tuple[Node, ...], list[Node]] = {}
+        self._types = Types(self.lookup, self.supers_of)
         self._supers: dict[Node, dict[Node, None]] = {}
         self._aboves: dict[tuple[Node, ...], dict[Node, None]] = {}
         self.by_type: dict[Node, tuple[Node, ...]] = {}
@@ -89,27 +98,7 @@ class Model:
 
     def types(self, node: Node) -> list[Node]:
         """The types of a feature: its own, else those of what it subsets and redefines."""
-        generals = self.lookup.all_generals(node)
-        known = self._types.get(generals)
-        if known is None:
-            known = self._types[generals] = self._types_among(generals)
-        return list(known)
-
-    def _types_among(self, generals: tuple[Node, ...]) -> list[Node]:
-        """The most special of what is no feature among generals of a feature, and theirs."""
-        found: dict[Node, None] = {}
-        seen: set[Node] = set()
-        waiting = [generals]
-        for some in waiting:
-            for one in some:
-                if one.kind not in FEATURES:
-                    found[one] = None
-                elif one not in seen:
-                    seen.add(one)
-                    waiting.append(self.lookup.all_generals(one))
-        if len(found) < 2:
-            return list(found)
-        return [t for t in found if not any(t is not o and t in self.supers_of(o) for o in found)]
+        return self._types.of(node)
 
     def members(self, node: Node, *, inherited: bool = True, imported: bool = False) -> list[Node]:
         """Members of a namespace: own, inherited that nothing redefines, imported ones."""
@@ -156,9 +145,19 @@ class Model:
 
     # What the text does not say
 
-    def implied_generals(self, node: Node) -> list[Node]:
+    def implied_generals(self, node: Node) -> tuple[Node, ...]:
         """All that ``node`` may implicitly specialise, needed or not."""
-        return list(dict.fromkeys([one for _, one in self._candidates(node)]))
+        alike = self._alike(node)
+        if node in alike.targets or self._is_special(node):
+            return tuple(dict.fromkeys([one for _, one in self._candidates(node)]))
+        return alike.targets
+
+    def _is_special(self, node: Node) -> bool:
+        """Whether something beside what it is like may say what ``node`` implicitly specialises."""
+        is_parameter = node.membership == "ParameterMembership"
+        if is_parameter and node.owner is not None and node.owner.kind == "TransitionUsage":
+            return True
+        return not semantic.METADATA.isdisjoint([member.kind for member in node.members])
 
     def _by_role(self, node: Node) -> list[Node]:
         name = implied.by_role(node) if node.membership in REDEFINED_BY_MEMBERSHIP else None
@@ -173,20 +172,21 @@ class Model:
         if node.kind not in TYPES:
             return []
         before = self.lookup.cuts
-        found = [pair for pair in self._alike(node) if pair[1] is not node]
+        found = [pair for pair in self._alike(node).pairs if pair[1] is not node]
         known = [*_accepted(node), *semantic.bases(node, self.lookup), *found]
         if self.lookup.cuts == before:
             self._implied[node] = known
         return known
 
-    def _alike(self, node: Node) -> list[tuple[str, Node]]:
+    def _alike(self, node: Node) -> _Alike:
         """What ``node`` and all that is like it may implicitly specialise."""
         like = implied.like(node)
         known = self._likes.get(like)
         if known is None:
             before = self.lookup.cuts
             named = [(kind, self.find(name)) for kind, name in implied.candidates(node)]
-            known = [(kind, one) for kind, one in named if one is not None]
+            pairs = [(kind, one) for kind, one in named if one is not None]
+            known = _Alike(pairs, tuple(dict.fromkeys([one for _, one in pairs])))
             if self.lookup.cuts == before:
                 self._likes[like] = known
         return known

@@ -26,10 +26,9 @@ _SKIPPED = kinds_of("InstantiationExpression")
 
 def role(feature: Node) -> str:
     """Among which features of its owner a feature is counted; empty for one that is not."""
-    found = _ROLES.get(feature.membership)
-    if found is not None:
-        return found
-    if feature.kind not in FEATURES or feature.membership != "FeatureMembership":
+    if feature.membership != "FeatureMembership":
+        return _ROLES.get(feature.membership, "")
+    if not feature.facts or feature.kind not in FEATURES:
         return ""
     if feature.facts.get("isEnd"):
         return "end"
@@ -42,7 +41,7 @@ def counts(feature: Node) -> bool:
     """Whether a feature may redefine another though the text does not say so."""
     if feature.membership not in REDEFINED_BY_MEMBERSHIP and not role(feature):
         return False
-    return not any(r.kind == "Redefinition" for r in feature.relations)
+    return "Redefinition" not in [one.kind for one in feature.relations]
 
 
 def own(scope: Node, wanted: str) -> list[Node]:
@@ -55,7 +54,7 @@ def redefined(feature: Node, lookup: Asked) -> list[Node]:
     owner, wanted = feature.owner, role(feature)
     if not wanted or owner is None or owner.kind in _SKIPPED:
         return []
-    index = 0 if wanted in _SINGLE else own(owner, wanted).index(feature)
+    index = 0 if wanted in _SINGLE else lookup.own_of_role(owner, wanted).index(feature)
     found: list[Node] = []
     for general in lookup.all_generals(owner):
         features = lookup.at_positions(general, wanted)
@@ -66,7 +65,7 @@ def redefined(feature: Node, lookup: Asked) -> list[Node]:
 
 def gather(scope: Node, wanted: str, lookup: Asked) -> list[Node]:
     """The features of ``scope`` with that role, those that it inherits after its own."""
-    features = own(scope, wanted)
+    features = list(lookup.own_of_role(scope, wanted))
     for general in lookup.all_generals(scope):
         inherited = lookup.at_positions(general, wanted)
         features += inherited[len(features) :]

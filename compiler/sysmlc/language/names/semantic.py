@@ -10,14 +10,15 @@ from sysmlc.language.tree import Node
 if TYPE_CHECKING:
     from sysmlc.language.names.lookup import Lookup
 
-_METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+"""Members that may say what their owner specialises."""
 
 
 def bases(node: Node, lookup: "Lookup") -> list[tuple[str, Node]]:
     """Kind of relation and target of what ``node`` specialises because of its metadata."""
     found: list[tuple[str, Node]] = []
     for member in node.members:
-        if member.kind in _METADATA:
+        if member.kind in METADATA:
             base = _base(member, lookup)
             if base is not None:
                 found += _relations(node, base, lookup)
