@@ -13,7 +13,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass, replace
+from sysmlc.values import dataclass
 
 _FOLDER = "contracts"
 _TITLES = {
@@ -34,9 +34,10 @@ _PREFIXES = {
     "last_": "what the region was when it was last active",
     "was_": "what the condition was in the step before",
 }
-"""What variables of diagrams begin with."""
+"""What variables of diagrams begin with, up to the first ``_``."""
 _UNSET = pattern(r"!\w+$")
 _MANY = 3
+_CONSTRAINT = Kind.CONSTRAINT
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _MARKUP = pattern(r"[<>`|\[\]]")
 """What would not be shown as it is written."""
@@ -127,9 +128,9 @@ def _said_of(graph: Graph, origin: Element) -> list[Element]:
 
 def _words(contract: Contract) -> Iterator[str]:
     """What the names say that stand for something of the diagram, not for a feature."""
-    names = [one.name for one in contract.variables]
+    begun = {one.name[: one.name.find("_") + 1] for one in contract.variables}
     for prefix, said in _PREFIXES.items():
-        if any(name.startswith(prefix) for name in names):
+        if prefix in begun:
             yield f"`{prefix}...`: {said}"
 
 
@@ -148,7 +149,7 @@ def _row(graph: Graph, told: _Told, one: Conjunct) -> Row:
     """A conjunct; what a constraint demands has the author's name for it, where it has one."""
     formula, (element, place) = print_formula(one.formula), told(one.origin)
     said = graph.get(one.origin)
-    is_named = said is not None and said.kind is Kind.CONSTRAINT and bool(said.name)
+    is_named = said is not None and said.kind is _CONSTRAINT and bool(said.name)
     if said is None or not is_named or one.text.partition("' ")[0] != f"'{said.name}":
         return Row(formula, one.text, element, place)
     text = f"{said.name[:1].upper()}{said.name[1:]}."
@@ -159,12 +160,12 @@ def _row(graph: Graph, told: _Told, one: Conjunct) -> Row:
 
 
 def _section(class_: Class, rows: list[Row]) -> Section:
-    unset = [one for one in rows if class_ is Class.INIT and _UNSET.match(one.formula)]
+    unset = [one for one in rows if _UNSET.match(one.formula)] if class_ is Class.INIT else []
     if len(unset) < _MANY:
         return Section(_TITLES[class_], tuple(rows))
     hidden = {*map(id, unset)}
     shown = tuple(one for one in rows if id(one) not in hidden)
-    names = tuple(replace(one, formula=one.formula[1:]) for one in unset)
+    names = tuple(Row(one.formula[1:], one.text, one.element, one.place) for one in unset)
     return Section(_TITLES[class_], shown, names)
 
 

@@ -4,6 +4,7 @@ The neutral form of corpus/gr1 with ``{formula, class, origin, text}`` for each 
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from json.encoder import encode_basestring
 
 from sysmlc.logic.contract import (
@@ -14,33 +15,41 @@ from sysmlc.logic.contract import (
     Domain,
     EnumerationDomain,
     IntegerDomain,
+    Variable,
 )
 from sysmlc.logic.printing import print_formula
 from sysmlc.output import json_text
 
 FORMAT = "sysmlc-contract/1"
+_REMEMBERED = 1 << 10
+"""Texts of domains that are kept: most variables are Boolean."""
 
 
 def text(contract: Contract) -> str:
     """JSON of the contract (metamodels/sysmlc-contract.schema.json), indented by two.
 
-    There are thousands of conjuncts, so they are written without dicts between.
+    There are thousands of variables and conjuncts: they are written without dicts between.
     """
     known = {"format": FORMAT, "name": contract.component, "origin": contract.origin}
-    head = json_text(known | {"variables": _variables(contract)}, 2).removesuffix("\n}")
+    head = json_text(known, 2).removesuffix("\n}")
+    variables = ",\n    ".join(map(_variable_text, contract.variables))
+    named = f"{{\n    {variables}\n  }}" if variables else "{}"
     sides = (("assumptions", contract.assumptions), ("guarantees", contract.guarantees))
-    return f"{head}{''.join(_side_text(*side) for side in sides)}\n}}"
+    told = "".join(_side_text(*side) for side in sides)
+    return f'{head},\n  "variables": {named}{told}\n}}'
 
 
-def _variables(contract: Contract) -> dict[str, object]:
-    return {
-        variable.name: {
-            "owner": str(variable.owner),
-            "type": type_of(variable.domain),
-            "origin": variable.origin,
-        }
-        for variable in contract.variables
-    }
+def _variable_text(variable: Variable) -> str:
+    return (
+        f'{encode_basestring(variable.name)}: {{\n      "owner": "{variable.owner}",'
+        f'\n      "type": {_type_text(variable.domain)},'
+        f'\n      "origin": {encode_basestring(variable.origin)}\n    }}'
+    )
+
+
+@lru_cache(_REMEMBERED)
+def _type_text(domain: Domain) -> str:
+    return json_text(type_of(domain), 2).replace("\n", "\n      ")
 
 
 def _side_text(name: str, conjuncts: Iterable[Conjunct]) -> str:
