@@ -1,5 +1,6 @@
 """What dataclasses have beside ``__init__``: shared by all, or made for a class when called."""
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import FrozenInstanceError
 from functools import cache
@@ -67,16 +68,22 @@ def _code(function: str, number: int) -> CodeType:
 
 def _replaced(self: Any, /, **changes: object) -> object:  # noqa: ANN401 - every class of values
     """What Python has from 3.13 on, for ``copy.replace``."""
-    return replacer(type(self))(self, changes)
+    return (REPLACERS.get(type(self)) or replacer(type(self)))(self, changes)
 
 
-_Replacer = Callable[[object, dict[str, object]], object]
-_replacers: dict[type, _Replacer] = {}
+_Replacer = Callable[[Any, dict[str, object]], Any]
+REPLACERS: dict[type, _Replacer] = {}
+"""For each class of which something was replaced, what makes another value of it."""
 
 
 def replacer(cls: type) -> _Replacer:
     """A function that makes another value of the class: from one, and what is to be changed."""
-    return _replacers.get(cls) or _replacers.setdefault(cls, _replacer(cls))
+    is_ours = isinstance(cls.__dict__.get(FIELDS), Declared)
+    return REPLACERS.setdefault(cls, _replacer(cls) if is_ours else _of_python)
+
+
+def _of_python(value: Any, changes: dict[str, object]) -> object:  # noqa: ANN401
+    return dataclasses.replace(value, **changes)
 
 
 def _replacer(cls: type) -> _Replacer:
@@ -86,10 +93,11 @@ def _replacer(cls: type) -> _Replacer:
 
     def replaced(value: object, changes: dict[str, object]) -> object:
         values = [*get(value)] if get else [getattr(value, name) for name in names]
-        for name, one in changes.items():
-            if name not in places:
-                raise TypeError(f"{cls.__qualname__} has no field {name!r}")
-            values[places[name]] = one
+        try:
+            for name, one in changes.items():
+                values[places[name]] = one
+        except KeyError as unknown:
+            raise TypeError(f"{cls.__qualname__} has no field {unknown}") from None
         return cls(*values)
 
     return replaced

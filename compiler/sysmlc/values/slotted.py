@@ -65,9 +65,8 @@ def _given(cls: type) -> dict[str, Any]:
 def replace(value: _T, /, **changes: object) -> _T:
     """``dataclasses.replace``."""
     cls = type(value)
-    if isinstance(cls.__dict__.get(FIELDS), Declared):
-        return cast("_T", functions.replacer(cls)(value, changes))
-    return cast("_T", dataclasses.replace(cast("Any", value), **changes))
+    made: _T = (functions.REPLACERS.get(cls) or functions.replacer(cls))(value, changes)
+    return made
 
 
 @cache
