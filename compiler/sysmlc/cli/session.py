@@ -297,7 +297,7 @@ def show(found: "Iterable[Finding]", settings: Settings) -> None:
     stream = sys.stdout if on_stdout else sys.stderr
     report = shortened(found, _most(settings))
     if settings.form not in XPATH_FORMATS and not settings.verbose:
-        bare = tuple(replace(one, xpath="") for one in report.findings)
+        bare = tuple(replace(one, xpath="") if one.xpath else one for one in report.findings)
         report = replace(report, findings=bare)
     text = render(report, settings.form, color=has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
