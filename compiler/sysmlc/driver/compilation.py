@@ -11,7 +11,6 @@ from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.suppress import suppress
 from sysmlc.driver import faults, registry
-from sysmlc.driver.drawings import beside
 from sysmlc.driver.inputs import unit_root
 from sysmlc.driver.overlays import store_all
 from sysmlc.driver.places import Locator
@@ -124,8 +123,15 @@ def open_unit(request: Request) -> Opened:
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     laid = [path for path in request.inputs if path.name.endswith(SUFFIX)]
     reading = read_unit(models, root, frontends, sink, (*request.overlays, *laid))
-    drawings = () if request.diagrams == DERIVED else beside(reading, root, sink)
-    return Opened(root, reading, sink, frontends, drawings)
+    return Opened(root, reading, sink, frontends, _drawings(request, reading, root, sink))
+
+
+def _drawings(request: Request, reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
+    if request.diagrams == DERIVED:
+        return ()
+    from sysmlc.driver.drawings import beside
+
+    return beside(reading, root, sink)
 
 
 def compile_model(

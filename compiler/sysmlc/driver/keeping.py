@@ -10,8 +10,9 @@ from sysmlc.driver.faults import FAILED
 from sysmlc.driver.outcome import Outcome
 from sysmlc.driver.recall import recall, remember
 from sysmlc.driver.recording import Recorded
+from sysmlc.driver.shapes import keep_shape, kept_shape
 from sysmlc.driver.tracing import COVERAGE, TRACE
-from sysmlc.frontends.base import Valued, Worded
+from sysmlc.frontends.base import Worded
 from sysmlc.sources import Source
 
 STILL = frozenset({"contracts", "plantuml", "recipe"})
@@ -48,8 +49,6 @@ def keep(
         texts = {one.name: one.data for one in sources if one.name in wordings}
         cache.put(on.key(wordings), marshal.dumps((on.key(), _digests(on, wordings), texts)))
     if recorded is not None:
-        from sysmlc.driver.restoring import keep_shape
-
         keep_shape(cache, on, opened, recorded)
 
 
@@ -70,11 +69,12 @@ def _moved(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
 
 
 def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
-    if not any(isinstance(one.frontend, Valued) for one in opened.reading.recognised):
+    known = kept_shape(cache, on, opened)
+    if known is None:
         return None
     from sysmlc.driver.restoring import restored
 
-    found = restored(cache, on, opened, request)
+    found = restored(cache, known, opened, request)
     if found is None:
         return None
     outcome, recorded = found

@@ -1,56 +1,31 @@
 """Outcomes for texts in which only literals are others than in an earlier run."""
 
-import marshal
 from collections.abc import Iterator, Mapping
 
 from sysmlc.cache import Cache
 from sysmlc.driver import moving
 from sysmlc.driver.compilation import Opened, Request
-from sysmlc.driver.dependencies import Dependencies
 from sysmlc.driver.outcome import Outcome, digest_of
 from sysmlc.driver.recall import recall
-from sysmlc.driver.recording import Made, Recorded
+from sysmlc.driver.recording import Recorded
 from sysmlc.driver.restating import LostError, restated
+from sysmlc.driver.shapes import Kept
 from sysmlc.frontends.base import Valued
 from sysmlc.ir import AttrValue
-from sysmlc.ir.reads import Literal, Value
+from sysmlc.ir.reads import Value
 from sysmlc.sources import Source
-from sysmlc.values import dataclass, replace
-
-
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """What is kept by shape: the key of the outcome, its texts by file, what was recorded."""
-
-    key: str
-    digests: Mapping[str, str]
-    texts: Mapping[str, bytes]
-    recorded: Recorded
-
-
-def keep_shape(cache: Cache, on: Dependencies, opened: Opened, recorded: Recorded) -> None:
-    """Keep what is needed to do parts of a compilation again."""
-    shapes = dict(_shapes(opened))
-    sources = opened.reading.sources()
-    texts = {one.name: one.data for one in sources if one.name in shapes}
-    digests = {name: digest for name, digest, _ in on.inputs}
-    if shapes:
-        entry = (on.key(), digests, texts, _packed(recorded))
-        cache.put(on.key(shapes), marshal.dumps(entry))  # type: ignore[arg-type]
+from sysmlc.values import replace
 
 
 def restored(
-    cache: Cache, on: Dependencies, opened: Opened, request: Request
+    cache: Cache, known: Kept, opened: Opened, request: Request
 ) -> tuple[Outcome, Recorded] | None:
     """The outcome of an earlier run with what other literals change in it; None if it is lost.
 
     With it comes what a compilation would have recorded.
     """
-    shapes = dict(_shapes(opened))
-    found = cache.get(on.key(shapes)) if shapes else None
-    known = _entry(found) if found else None
-    before = recall(cache, known.key, opened.root) if known else None
-    if known is None or before is None:
+    before = recall(cache, known.key, opened.root)
+    if before is None:
         return None
     try:
         return _restored(known, before, opened, request)
@@ -59,7 +34,7 @@ def restored(
 
 
 def _restored(
-    known: _Entry, before: Outcome, opened: Opened, request: Request
+    known: Kept, before: Outcome, opened: Opened, request: Request
 ) -> tuple[Outcome, Recorded]:
     changed: dict[Value, AttrValue] = {}
     moves: dict[str, moving.Move] = {}
@@ -94,7 +69,7 @@ def _form(form: AttrValue, move: moving.Move) -> AttrValue:
     return move.character(form) if isinstance(form, int) else form
 
 
-def _edited(known: _Entry, opened: Opened) -> Iterator[tuple[Valued, Source, Source]]:
+def _edited(known: Kept, opened: Opened) -> Iterator[tuple[Valued, Source, Source]]:
     """Texts that are others now, as they were and as they are."""
     for one in opened.reading.recognised:
         name, frontend = one.source.name, one.frontend
@@ -131,39 +106,3 @@ def _shapes(opened: Opened) -> Iterator[tuple[str, str]]:
         said = one.frontend.shape(one.source) if isinstance(one.frontend, Valued) else ""
         if said:
             yield one.source.name, said
-
-
-# -- as bytes ----------------------------------------------------------------------------------
-
-
-def _packed(one: Recorded) -> tuple[object, ...]:
-    return (
-        one.graph,
-        [(x.file, x.form, x.id, x.key) for x in one.literals],
-        one.asked,
-        dict(one.readers),
-        dict(one.stored),
-        dict(one.used),
-        dict(one.heard),
-        [(x.path, x.backend, x.trace, x.about) for x in one.made],
-    )
-
-
-def _entry(data: bytes) -> _Entry | None:
-    """What was kept; None when it is damaged."""
-    try:
-        key, digests, texts, packed = marshal.loads(data)
-        graph, literals, asked, readers, stored, used, heard, made = packed
-    except (EOFError, TypeError, ValueError):
-        return None
-    recorded = Recorded(
-        graph,
-        tuple(Literal(*one) for one in literals),
-        asked,
-        readers,
-        stored,
-        used,
-        heard,
-        tuple(Made(*one) for one in made),
-    )
-    return _Entry(key, digests, texts, recorded)
