@@ -53,7 +53,7 @@ class Links:
         sites, direct = self._sites.rows(document), self._sides.direct
         for row in document.tagged("InternalLink", top, document.ends[top]):
             document.verdicts[row] = _MAPPED
-            holder, values = sites.get(document.parents[row]), document.attributes[row]
+            holder, values = sites[document.parents[row]], document.attributes[row]
             one = direct(values.get("RefPartnerSideA", ""))
             other = direct(values.get("RefPartnerSideB", ""))
             if holder is None or one is None or other is None:

@@ -57,10 +57,10 @@ class Sides:
         if not port or tags[row] != "ExternalInterface":
             return None
         above = document.parents[row]
-        site = rows.get(above)
+        site = rows[above]
         while site is None and tags[above] == "ExternalInterface":
             above = document.parents[above]
-            site = rows.get(above)
+            site = rows[above]
         if site is None:
             return None
         found = self._direct[text] = _end((port, site))

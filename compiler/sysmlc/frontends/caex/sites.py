@@ -31,7 +31,7 @@ class Sites:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._all: list[Site] = []
-        self._rows: dict[Document, dict[int, Site]] = {}
+        self._rows: dict[Document, list[Site | None]] = {}
         self._mirrors: list[Site] = []
         self._showing: list[Site] = []
         self._swift: Swift | None = None
@@ -41,13 +41,13 @@ class Sites:
 
     def of(self, node: Node) -> Site | None:
         """The site of an internal element or class."""
-        return self.rows(node.document).get(node.row)
+        return self.rows(node.document)[node.row]
 
-    def rows(self, document: Document) -> dict[int, Site]:
-        """The sites of a file by their rows."""
+    def rows(self, document: Document) -> list[Site | None]:
+        """The sites of a file by their rows; None for all others."""
         known = self._rows.get(document)
         if known is None:
-            known = self._rows[document] = {}
+            known = self._rows[document] = [None] * len(document.tags)
         return known
 
     # -- reading -------------------------------------------------------------------------------
@@ -191,14 +191,29 @@ class Sites:
         for site in self._showing:
             groups.show(self._context, site)
         groups.report_facets(self._context, self._showing)
-        sites = [site for site in self._all if site.instance]
-        instances = list(map(self.instance, sites))
-        self._tie(Edge.INSTANCE_OF, sites, instances)
-        _keep_ids(self._context.graph, sites, instances)
-        sites = [site for site in self._all if site.part and not site.is_known]
-        parts = list(map(self.part, sites))
-        self._tie(Edge.TYPED_BY, sites, parts)
-        _keep_ids(self._context.graph, sites, parts)
+        self._tie()
+
+    def _tie(self) -> None:
+        """Tie the elements of each site to its type, and let one of them have its IDs."""
+        graph, types = self._context.graph, _Elements(self._context.graph)
+        instances, classes = list[Element](), list[Element]()
+        parts, kinds = list[Element](), list[Element]()
+        for site in self._all:
+            type = types[site.own or site.declared]
+            one = self.instance(site) if site.instance else None
+            other = self.part(site) if site.part and not site.is_known else None
+            if type is not None and one is not None:
+                instances.append(one)
+                classes.append(type)
+            if type is not None and other is not None:
+                parts.append(other)
+                kinds.append(type)
+            holder = one or other
+            if site.interface_ids and holder is not None:
+                graph.set(holder, interface_ids=tuple(site.interface_ids))
+                site.interface_ids = NO_IDS
+        graph.connect_each(Edge.INSTANCE_OF, instances, classes)
+        graph.connect_each(Edge.TYPED_BY, parts, kinds)
 
     def part(self, site: Site) -> Element | None:
         """The part that stands for an internal element in the class above."""
@@ -209,13 +224,6 @@ class Sites:
         """The Instance that holds its values."""
         made = site.instance_made
         return made if made and made.id == site.instance else self._context.graph.get(site.instance)
-
-    def _tie(self, edge: Edge, sites: list[Site], elements: list[Element | None]) -> None:
-        """Tie each element to the type of its site."""
-        graph = self._context.graph
-        types = [site.own or site.declared for site in sites]
-        found = {type: None if type is None else graph.get(type.id) for type in set(types)}
-        graph.connect_each(edge, elements, list(map(found.__getitem__, types)))
 
     def _mirror(self, site: Site) -> None:
         element = self._context.graph[site.instance or site.part]
@@ -228,12 +236,16 @@ class Sites:
             members.lower(self._context, site)
 
 
-def _keep_ids(graph: Graph, sites: list[Site], elements: list[Element | None]) -> None:
-    """Let each element have the IDs that interfaces of its class have in it, once a site."""
-    for site, element in zip(sites, elements, strict=True):
-        if site.interface_ids and element is not None:
-            graph.set(element, interface_ids=tuple(site.interface_ids))
-            site.interface_ids = NO_IDS
+class _Elements(dict[Type | None, Element | None]):
+    """Elements of types."""
+
+    def __init__(self, graph: Graph) -> None:
+        super().__init__()
+        self._graph = graph
+
+    def __missing__(self, type: Type | None) -> Element | None:
+        found = self[type] = None if type is None else self._graph.get(type.id)
+        return found
 
 
 def _is_another(site: Site, known: Member) -> bool:
