@@ -5,7 +5,6 @@ never by calling the classes from outside: they keep operands flat and constants
 """
 
 from functools import lru_cache
-from typing import TypeVar
 from weakref import WeakValueDictionary
 
 from sysmlc.values import StrEnum, dataclass
@@ -66,9 +65,12 @@ class Const:
     value: Literal
 
     def __new__(cls, value: Literal) -> "Const":
-        return _CONSTANTS.get((value.__class__, value)) or _made(
-            _CONSTANTS, (value.__class__, value), cls, value=value
-        )
+        key = (value.__class__, value)
+        found = _CONSTANTS.get(key)
+        if found is None:
+            found = _CONSTANTS[key] = object.__new__(cls)
+            _set(found, "value", value)
+        return found
 
     def __reduce__(self) -> tuple[type["Const"], tuple[Literal]]:
         """Copies and what is read back are the same object again."""
@@ -84,7 +86,12 @@ class Var:
 
     def __new__(cls, name: str, primed: bool = False) -> "Var":
         key = (name, primed)
-        return _VARIABLES.get(key) or _made(_VARIABLES, key, cls, name=name, primed=primed)
+        found = _VARIABLES.get(key)
+        if found is None:
+            found = _VARIABLES[key] = object.__new__(cls)
+            _set(found, "name", name)
+            _set(found, "primed", primed)
+        return found
 
     def __reduce__(self) -> tuple[type["Var"], tuple[str, bool]]:
         return Var, (self.name, self.primed)
@@ -99,25 +106,21 @@ class Apply:
 
     def __new__(cls, op: Op, args: tuple["Formula", ...]) -> "Apply":
         key = (op, args)
-        return _APPLIED.get(key) or _made(_APPLIED, key, cls, op=op, args=args)
+        found = _APPLIED.get(key)
+        if found is None:
+            found = _APPLIED[key] = object.__new__(cls)
+            _set(found, "op", op)
+            _set(found, "args", args)
+        return found
 
     def __reduce__(self) -> tuple[type["Apply"], tuple[Op, tuple["Formula", ...]]]:
         return Apply, (self.op, self.args)
 
 
-_T = TypeVar("_T", Const, Var, Apply)
-_K = TypeVar("_K")
+_set = object.__setattr__
 _CONSTANTS: WeakValueDictionary[tuple[type, Literal], Const] = WeakValueDictionary()
 _VARIABLES: WeakValueDictionary[tuple[str, bool], Var] = WeakValueDictionary()
 _APPLIED: WeakValueDictionary[tuple[Op, tuple["Formula", ...]], Apply] = WeakValueDictionary()
-
-
-def _made(table: WeakValueDictionary[_K, _T], key: _K, class_: type[_T], **fields: object) -> _T:
-    made = object.__new__(class_)
-    for name, value in fields.items():
-        object.__setattr__(made, name, value)
-    table[key] = made
-    return made
 
 
 Formula = Const | Var | Apply

@@ -48,8 +48,9 @@ def _exits(game: Game, loop: Loop) -> Iterator[Conjunct]:
         *(f.both(game.waits(graph.node(edge.source)), game.opened(edge)) for edge in loop.exits)
     )
     nodes_in = frozenset(loop.nodes)
-    inside = [at(e) for e in graph.edges if {e.source, e.target} <= nodes_in and not e.keeps]
-    inside += [f.var(n.run) for n in graph.workers() if n.id in loop.nodes]
+    between = (e for e in graph.edges if e.source in nodes_in and e.target in nodes_in)
+    inside = [at(e) for e in between if not e.keeps]
+    inside += [f.var(n.run) for n in graph.workers() if n.id in nodes_in]
     nodes = [graph.node(edge.source) for edge in loop.exits]
     names = " or ".join(dict.fromkeys(node.label for node in nodes))
     guards = " or ".join(dict.fromkeys(e.guard.text for e in loop.exits if e.guard))

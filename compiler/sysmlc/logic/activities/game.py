@@ -113,6 +113,8 @@ class Game:
 
     def _ended(self, inner: str, outer: str) -> Formula:
         """A region ends from ``inner`` up to, not including, ``outer``."""
+        if inner == outer:
+            return f.FALSE
         return f.either(*map(self._ends, self.graph.between(inner, outer)))
 
     def _ends(self, around: TokenNode) -> Formula:
@@ -215,6 +217,8 @@ class Game:
 
     def interruptions(self, region: str, members: set[str]) -> Iterator[Formula]:
         """Interruptions of what ``members`` of a region are in."""
+        if not self.graph.interruptibles:
+            return
         around = {node.id for node in self.graph.regions_around(region)}
         for interruptible in self.graph.interruptibles:
             nodes = frozenset(interruptible.nodes)

@@ -45,7 +45,8 @@ def _enters(edge: TokenEdge, component: Collection[str]) -> bool:
 
 def _loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:
     for component in _components(graph, nodes):
-        exits = [edge for edge in graph.edges if _is_exit(graph, edge, component)]
+        inside = frozenset(component)
+        exits = [edge for edge in graph.edges if _is_exit(graph, edge, inside)]
         if any(_is_decided_outside(graph, one) for one in exits):
             yield Loop(component, tuple(exits))
         deciders = {edge.source for edge in exits}
@@ -77,8 +78,9 @@ def _starts(graph: TokenGraph) -> Iterator[tuple[str, str]]:
 
 
 def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> bool:
-    is_choice = graph.node(edge.source).firing is Firing.CHOICE
-    return is_choice and edge.source in component and edge.target not in component
+    if edge.source not in component or edge.target in component:
+        return False
+    return graph.node(edge.source).firing is Firing.CHOICE
 
 
 def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:

@@ -12,6 +12,7 @@ class Enumerations:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
+        self._numbers: dict[str, int | None] = {}
 
     @cached_property
     def literals(self) -> dict[str, tuple[str, str]]:
@@ -33,6 +34,11 @@ class Enumerations:
 
     def number(self, written: str) -> int | None:
         """The number that an enumeration literal stands for, by written name."""
+        if written not in self._numbers:
+            self._numbers[written] = self._number(written)
+        return self._numbers[written]
+
+    def _number(self, written: str) -> int | None:
         for literal in self._graph.of_kind(Kind.ENUMERATION_LITERAL):
             owner = self._graph.owner(literal) if written.endswith(literal.name) else None
             if owner is None or not _is_written(written, owner.name, literal.name):

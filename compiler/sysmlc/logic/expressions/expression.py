@@ -4,7 +4,7 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 """
 
 from collections.abc import Callable
-from dataclasses import field, fields, is_dataclass
+from dataclasses import field
 from functools import lru_cache
 from typing import TypeVar
 
@@ -183,7 +183,7 @@ def _is_deep(expression: object) -> bool:
 def _parts(value: object) -> list[object]:
     if isinstance(value, tuple | list):
         return list(value)
-    return [getattr(value, one.name) for one in fields(value)] if is_dataclass(value) else []
+    return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
 
 
 # -- printing ----------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from itertools import combinations
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.expressions.elaborate import Scope, condition
 from sysmlc.logic.expressions.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
@@ -83,7 +83,8 @@ def is_satisfiable(formula: Formula, sources: list[Expression], scope: Scope) ->
     found = dict(_domains(sources, scope))
     if domains.count(found) > _LIMIT:
         return True
-    return any(is_true(formula, values) for values in domains.valuations(found))
+    truth = evaluation(formula)
+    return any(truth(values, None) for values in domains.valuations(found))
 
 
 def _domains(sources: list[Expression], scope: Scope) -> Iterator[tuple[str, Domain]]:
