@@ -8,6 +8,7 @@ _RESERVED = frozenset(
 )
 
 
+_OTHERS = re.compile(r"[^0-9A-Za-z_]+")
 _REMEMBERED = 1 << 12
 """Names that are kept: those of actions and states come again and again."""
 
@@ -15,7 +16,10 @@ _REMEMBERED = 1 << 12
 @lru_cache(_REMEMBERED)
 def identifier(name: str, fallback: str = "x") -> str:
     """The name as an identifier that every target reads: letters, digits, underscores."""
-    text = re.sub(r"[^0-9A-Za-z_]+", "_", name.strip()).strip("_")[:40].rstrip("_") or fallback
+    # Most names are identifiers as they are.
+    is_plain = name.isascii() and name.isidentifier()
+    text = name if is_plain else _OTHERS.sub("_", name.strip())
+    text = text.strip("_")[:40].rstrip("_") or fallback
     text = f"_{text}" if text[0].isdigit() else text
     return f"{text}_" if text in _RESERVED else text
 
