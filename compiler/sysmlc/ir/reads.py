@@ -105,12 +105,15 @@ class Watched(dict[str, AttrValue]):
         """The attributes, without a note that somebody asked."""
         return dict(dict.items(self))
 
+    # Most values are no words of a text: a call of ``_note`` for each would double the time.
     def __getitem__(self, key: str) -> AttrValue:
-        self._note(key)
+        if key in self._keys:
+            self._note(key)
         return super().__getitem__(key)
 
     def get(self, key: str, default: AttrValue = None) -> AttrValue:  # type: ignore[override]
-        self._note(key)
+        if key in self._keys:
+            self._note(key)
         return super().get(key, default)
 
     def __iter__(self) -> Iterator[str]:

@@ -19,6 +19,8 @@ FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"
 _OBJECT_FLOW = "-->"
 _INTERRUPTING = "-[bold]->"
+_PARTITION, _PARAMETER = Kind.PARTITION, Kind.PARAMETER
+_DRAWN = frozenset([*ACTIVITY_NODES, Kind.PARTITION])
 _LABEL = 30
 _FRAME = 60
 
@@ -34,18 +36,21 @@ def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
 
 
 def _of_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
-    drawing = _Drawing(graph, activity)
+    inside = list(graph.subtree(activity))
+    if not any(item.kind in _DRAWN for item in inside):
+        return
+    drawing = _Drawing(graph, activity, inside)
     view = drawing.view()
     if view.nodes:
-        signature = drawing.signature()
-        said = [item.id for item in graph.owned(activity) if item.kind is Kind.PARAMETER]
-        details = tuple(said) if signature else ()
-        yield from divided(graph, activity, view, "act", "Activity diagram", signature, details)
+        said = (item.id for item in graph.owned(activity) if item.kind is _PARAMETER)
+        details = tuple(said) if drawing.signature else ()
+        title = "Activity diagram"
+        yield from divided(graph, activity, view, "act", title, drawing.signature, details)
 
 
 def whole(graph: Graph, activity: Element) -> GraphView:
     """All of an activity in one view, however large."""
-    return _Drawing(graph, activity).view()
+    return _Drawing(graph, activity, list(graph.subtree(activity))).view()
 
 
 @dataclass(slots=True)
@@ -54,24 +59,27 @@ class _Drawing:
 
     graph: Graph
     activity: Element
+    inside: list[Element]
+    """The activity and all below it."""
     aliases: Aliases = field(default_factory=Aliases)
     homes: dict[str, str] = field(default_factory=dict)
     tints: dict[str, str] = field(default_factory=dict)
+    signature: str = ""
+    """Parameters for the frame; nothing when they are too long for it."""
+
+    def __post_init__(self) -> None:
+        text = labels.signature(self.graph, self.activity)
+        self.signature = text if len(text) <= _FRAME else ""
 
     def view(self) -> GraphView:
         nodes = [node for node in self._nodes(self.activity) if self._region(node) is None]
         self.tints = self._tints()
         drawn = (*self._empty_lanes(), *map(self._node, nodes))
-        said = notes(self.graph, self.activity, self.aliases, not self.signature())
+        said = notes(self.graph, self.activity, self.aliases, not self.signature, self.inside)
         return GraphView(drawn, (*self._lines(), *self._handlers()), said)
 
-    def signature(self) -> str:
-        """Parameters for the frame; nothing when they are too long for it."""
-        text = labels.signature(self.graph, self.activity)
-        return text if len(text) <= _FRAME else ""
-
     def _tints(self) -> dict[str, str]:
-        found = (item for item in self.graph.subtree(self.activity) if item.kind is Kind.PARTITION)
+        found = (item for item in self.inside if item.kind is _PARTITION)
         return {partition.id: tint(number) for number, partition in enumerate(found)}
 
     def _region(self, node: Element) -> Element | None:
@@ -151,7 +159,7 @@ class _Drawing:
                 yield node.id, self._node(node)
 
     def _lines(self) -> Iterator[Line]:
-        for flow in self.graph.subtree(self.activity):
+        for flow in self.inside:
             if flow.kind not in FLOWS:
                 continue
             source = self.graph.target(flow, Edge.FLOW_SOURCE)
@@ -163,7 +171,7 @@ class _Drawing:
 
     def _handlers(self) -> Iterator[Line]:
         """From each protected node to the bodies of its exception handlers."""
-        for node in self.graph.subtree(self.activity):
+        for node in (one for one in self.inside if "handlers" in one.attrs):
             for body, types in actions.handlers(self.graph, node):
                 if node.id in self.homes and body in self.homes:
                     text = label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)

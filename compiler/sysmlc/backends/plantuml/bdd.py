@@ -34,6 +34,7 @@ ACTIVITY_NODES = frozenset(
         Kind.ACTIVITY_PARAMETER,
     ]
 )
+_WITH_BOX = frozenset([*BOXES, Kind.ACTIVITY])
 _UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
@@ -57,7 +58,8 @@ def _homes(graph: Graph) -> dict[str | None, list[Element]]:
     of_use_cases = uc.actors(graph)
     for root in graph.roots():
         for element in graph.subtree(root):
-            if _is_shown(graph, element) and element.id not in of_use_cases:
+            is_shown = element.kind in _WITH_BOX and _is_shown(graph, element)
+            if is_shown and element.id not in of_use_cases:
                 homes.setdefault(labels.home(graph, element), []).append(element)
     return homes
 

@@ -13,6 +13,7 @@ _TOOL_NAMESPACE = pattern(
 )
 """MagicDraw's own stereotypes (PartProperty, ValueProperty) repeat what the type says."""
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
+_MODIFIERS = ("ordered", "readonly", "static")
 _APPLICATION, _PARAMETER = Kind.APPLICATION, Kind.PARAMETER
 """Members by names of the module: in Python 3.11 those of a class take ten times as long."""
 _ROLE_WORDS = {
@@ -64,21 +65,25 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
 def _unsaid_role(graph: Graph, element: Element, found: tuple[str, ...]) -> str:
     """The word for a role that no applied stereotype gives: SysML v2 says it with a keyword."""
     word = _ROLE_WORDS.get(element.role, "")
+    if not word:
+        return ""
     general = (one for app in applications(graph, element) for one in lineage(app))
     return "" if word.lower() in {one.lower() for one in (*found, *general)} else word
 
 
 def applied(graph: Graph, element: Element) -> tuple[str, ...]:
     """Names of the stereotypes that are applied to the element."""
-    found = (item for item in graph.owned(element) if _is_telling(item))
-    names = (_lower_first(str(item.attrs.get("stereotype", item.name))) for item in found)
-    return tuple(dict.fromkeys(name for name in names if name))
+    found = [item for item in graph.owned(element) if item.kind is _APPLICATION]
+    if not found:
+        return ()
+    told = (str(one.attrs.get("stereotype", one.name)) for one in found if _is_telling(one))
+    return tuple(dict.fromkeys(_lower_first(name) for name in told if name))
 
 
-def _is_telling(item: Element) -> bool:
-    if item.kind is not _APPLICATION or "on" in item.attrs:
+def _is_telling(application: Element) -> bool:
+    if "on" in application.attrs:
         return False
-    return not _TOOL_NAMESPACE.match(str(item.attrs.get("namespace", "")))
+    return not _TOOL_NAMESPACE.match(str(application.attrs.get("namespace", "")))
 
 
 _ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])
@@ -228,8 +233,9 @@ def _visibility(element: Element) -> str:
 
 
 def _modifiers(graph: Graph, element: Element) -> str:
-    words = [word for word in ("ordered", "readonly", "static") if element.attrs.get(word)]
-    words += ["nonunique"] if element.attrs.get("unique") is False else []
+    attrs = element.attrs
+    words = [word for word in _MODIFIERS if attrs.get(word)]
+    words += ["nonunique"] if attrs.get("unique") is False else []
     for edge, verb in ((Edge.REDEFINES, "redefines"), (Edge.SUBSETS, "subsets")):
         words += [f"{verb} {_referred(graph, target)}" for target in graph.targets(element, edge)]
     return " {" + ", ".join(words) + "}" if words else ""

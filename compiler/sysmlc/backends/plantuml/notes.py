@@ -1,5 +1,7 @@
 """Comments and constraints of a behaviour as notes beside its nodes."""
 
+from collections.abc import Iterable
+
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Note
@@ -7,17 +9,22 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.plantuml import label, lines, stack
 
 _WIDTH = 48
+_NOTED = (Kind.COMMENT, Kind.CONSTRAINT)
 _FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.RECEPTION)
 
 
 def notes(
-    graph: Graph, behaviour: Element, aliases: Aliases, with_parameters: bool = False
+    graph: Graph,
+    behaviour: Element,
+    aliases: Aliases,
+    with_parameters: bool = False,
+    inside: Iterable[Element] | None = None,
 ) -> tuple[Note, ...]:
-    """Notes for the comments inside the behaviour, and its own constraints and features."""
+    """Notes for the comments ``inside`` the behaviour, and its own constraints and features."""
     texts = tuple(
         _note(graph, item, aliases)
-        for item in graph.subtree(behaviour)
-        if _is_note(item, behaviour) and label(labels.note_text(item))
+        for item in (graph.subtree(behaviour) if inside is None else inside)
+        if item.kind in _NOTED and _is_note(item, behaviour) and label(labels.note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
     return (*_features(graph, behaviour, aliases, kinds), *texts)
@@ -42,9 +49,7 @@ def _feature(graph: Graph, item: Element) -> str:
 
 
 def _is_note(item: Element, behaviour: Element) -> bool:
-    if item.kind is Kind.CONSTRAINT:
-        return item.owner == behaviour.id
-    return item.kind is Kind.COMMENT
+    return item.kind is Kind.COMMENT or item.owner == behaviour.id
 
 
 def _note(graph: Graph, item: Element, aliases: Aliases) -> Note:

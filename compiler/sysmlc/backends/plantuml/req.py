@@ -24,6 +24,8 @@ _TEXT_WIDTH = 44
 
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All requirement diagrams, in the order of the packages."""
+    if not any(map(is_requirement, graph)):
+        return
     homes: dict[str | None, list[Element]] = {}
     for root in graph.roots():
         for element in graph.subtree(root):
