@@ -1,8 +1,12 @@
 """Roles: what a class or an internal element realises (thesis, Table 3.1)."""
 
+from collections import defaultdict
+from collections.abc import Iterable
+
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import ports, special
 from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
@@ -12,9 +16,11 @@ from sysmlc.ir import Edge, Element
 
 # To look a member of an enumeration up takes ten times as long as to look these up.
 _MAPPED = Verdict.MAPPED
-_ROLE = Family.ROLE
 
 PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
+
+_Known = defaultdict[Document, dict[int, Type]]
+"""Role classes by the first row that names them alike."""
 
 
 def lower(context: Context, sites: Sites) -> None:
@@ -22,14 +28,14 @@ def lower(context: Context, sites: Sites) -> None:
 
     Classes are the first among the sites: instances need not repeat what they realise.
     """
-    played = _Played()
+    played, known = _Played(), _Known(dict)
     clients: list[str] = []
     realized: list[Element | None] = []
     for site in sites:
         if site.type is None:
             continue
         inherited, site.ppr = played.above(site)
-        for role in _roles(context, site):
+        for role in _roles(context, site, known) if site.roles else ():
             if role in inherited:
                 continue
             ppr, is_port = played.meaning(role)
@@ -118,15 +124,23 @@ def _client(context: Context, site: Site) -> str:
     return site.part
 
 
-def _roles(context: Context, site: Site) -> list[Type]:
+def _roles(context: Context, site: Site, known: _Known) -> Iterable[Type]:
     document = site.document
+    verdicts, alike, types = document.verdicts, document.alike, known[document]
     found: dict[Type, None] = {}
     for row in site.roles:
-        document.verdicts[row] = _MAPPED
-        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
-        role = context.known(path, _ROLE, document) if path else None
-        if role is None and path:
-            role = context.type(path, Family.ROLE, document, document.node(row))
+        verdicts[row] = _MAPPED
+        role = types.get(alike[row]) or _role(context, document, row, types)
         if role is not None:
             found[role] = None
-    return list(found)
+    return found
+
+
+def _role(context: Context, document: Document, row: int, types: dict[int, Type]) -> Type | None:
+    path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
+    if not path:
+        return None
+    role = context.type(path, Family.ROLE, document, document.node(row))
+    if role is not None:
+        types[document.alike[row]] = role
+    return role
