@@ -204,8 +204,8 @@ def _assigned(node: Node) -> str:
 def control(low: "Lowering", node: Node, owner: Element) -> Element:
     """A decision, merge, fork or join."""
     subkind = _CONTROLS[node.kind]
-    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, subkind=subkind)
-    low.set(made, **visibility(node))
+    given: dict[str, AttrValue] = {"subkind": subkind, **visibility(node)}
+    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, **given)
     _partitions(low, node, owner, made)
     low.lower_all(nodes.body_of(node), made)
     return made

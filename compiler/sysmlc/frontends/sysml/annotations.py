@@ -183,17 +183,17 @@ def _tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
     with low.literals.unnoted():
         found = values.constant(value)
     if found is not None:
-        each = found if isinstance(found, tuple) else (found,)
-        said = tuple(_tagged(low, one) for one in each)
-        low.graph.set(made, **{name: said if isinstance(found, tuple) else said[0]})
+        low.graph.set(made, **{name: _tagged(low, found)})
         low.literals.give(low, made, name, value, forms.tag)
         return
     known = low.element(nodes.target(value, "Membership"))
     low.graph.set(made, **{name: known.id if known is not None else values.texts(value, low)})
 
 
-def _tagged(low: "Lowering", value: AttrValue) -> str:
+def _tagged(low: "Lowering", value: AttrValue) -> AttrValue:
     """A tagged value as text; the qualified name of an element of the unit is its id."""
+    if isinstance(value, tuple):
+        return tuple(_tagged(low, one) for one in value)
     if isinstance(value, bool):
         return "true" if value else "false"
     text = str(value)

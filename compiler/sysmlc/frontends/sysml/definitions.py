@@ -27,7 +27,7 @@ def package(low: "Lowering", node: Node, owner: Element | None) -> None:
         low.external(node)
         return
     kind, subkind = marked(node, Kind.PACKAGE)
-    said = {**visibility(node), **outside(node), **of_aml(node)}
+    said = visibility(node) | told(node)
     if inside and all(map(outside, inside)):
         said["external"] = True
     made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **said)
@@ -74,7 +74,12 @@ _AML = {
 }
 
 
-def of_aml(node: Node) -> dict[str, AttrValue]:
+def told(node: Node) -> dict[str, AttrValue]:
+    """What metadata says of an element of another model."""
+    return outside(node) | _of_aml(node) if annotations.ours(node) else {}
+
+
+def _of_aml(node: Node) -> dict[str, AttrValue]:
     """What metadata says of an element of AutomationML."""
     one = annotations.ours(node).get("AutomationML")
     if one is None:
@@ -88,6 +93,8 @@ def of_aml(node: Node) -> dict[str, AttrValue]:
 
 def variant(node: Node) -> dict[str, AttrValue]:
     """Whether there is a choice, whether it is a choice, and which portion of a life it is."""
+    if not node.facts and node.membership != "VariantMembership":
+        return {}
     return {
         "variation": bool(node.facts.get("isVariation")),
         "variant": node.membership == "VariantMembership",
@@ -102,8 +109,7 @@ def flags(node: Node) -> dict[str, AttrValue]:
         **variant(node),
         "individual": bool(node.facts.get("isIndividual")),
         **visibility(node),
-        **outside(node),
-        **of_aml(node),
+        **told(node),
     }
 
 
@@ -148,9 +154,11 @@ def define(
 
 def generalize(low: "Lowering", node: Node, made: Element) -> None:
     """Edges to the general classifiers; quantities and recipe levels are told otherwise."""
+    if not node.relations:
+        return
     give_levels(low, node, made)
     for found in nodes.references(node, *_GENERALS):
-        if found.target is not None and is_of_recipes(found.target):
+        if (target := found.target) is not None and is_of_recipes(target):
             continue
         if made.kind is not Kind.DATA_TYPE or not is_measured(found):
             low.later(lambda found=found: _general(low, made, found))  # type: ignore[misc]
@@ -158,6 +166,6 @@ def generalize(low: "Lowering", node: Node, made: Element) -> None:
 
 def _general(low: "Lowering", made: Element, found: Reference) -> None:
     target = found.target
-    if target is not None and target is not None and low.element(target) is made:
+    if target is not None and low.element(target) is made:
         return
     low.lead(Edge.SPECIALIZES, made, target)

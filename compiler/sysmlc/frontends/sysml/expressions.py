@@ -116,8 +116,7 @@ def named(found: Reference) -> Expression:
 
 
 def _chain(first: Expression, links: tuple[tuple[str, ...], ...]) -> Expression:
-    names = (link[-1] for link in links)
-    return reduce(Member, names, first)
+    return reduce(Member, (link[-1] for link in links), first) if links else first
 
 
 def _first(found: Reference) -> Expression:
@@ -132,7 +131,7 @@ def _first(found: Reference) -> Expression:
         return Name(names[-2:])
     if target is not None and _is_feature(target) and len(names) > 1:
         return Name(names[-1:])
-    return Name(tuple(one for one in names if one != "$"))
+    return Name(tuple(one for one in names if one != "$") if "$" in names else names)
 
 
 def _is_feature(node: Node) -> bool:

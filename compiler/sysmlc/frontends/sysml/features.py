@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
-from sysmlc.frontends.sysml.definitions import marked, of_aml, outside, variant, visibility
+from sysmlc.frontends.sysml.definitions import marked, told, variant, visibility
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
@@ -28,7 +28,7 @@ def property_(low: "Lowering", node: Node, owner: Element) -> Element:
 
 def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
     direction = node.facts.get("direction")
-    found: dict[str, AttrValue] = visibility(node) | outside(node) | of_aml(node) | variant(node)
+    found: dict[str, AttrValue] = visibility(node) | told(node) | variant(node)
     if direction is not None and owner.role != "constraint block":
         found["direction"] = direction
         found["role"] = "flow property" if owner.role in _OWN_ROLES else ""
@@ -37,7 +37,7 @@ def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
 
 def _aggregate(node: Node, made: Element) -> None:
     is_own = not node.facts.get("isReference") and "direction" not in node.facts
-    if "shared" in annotations.ours(node) or "SharedAggregation" in annotations.ours(node):
+    if not {"shared", "SharedAggregation"}.isdisjoint(annotations.ours(node)):
         made.attrs["aggregation"] = "shared"
     elif node.kind in _COMPOSITE and is_own and not node.facts.get("isEnd"):
         made.attrs["aggregation"] = "composite"
@@ -45,14 +45,17 @@ def _aggregate(node: Node, made: Element) -> None:
 
 def describe(low: "Lowering", node: Node, made: Element) -> None:
     """What a declaration says of a feature: flags, multiplicity, types, generals, value, texts."""
-    low.set(made, **_flags(node), multiplicity=values.multiplicity(low, node))
+    flags, bounds = _flags(node), values.multiplicity(low, node)
+    if flags or bounds:
+        low.set(made, **flags, multiplicity=bounds)
     if node.facts.get("isUnique") is False:
         low.graph.set(made, unique=False)
     relate(low, node, made)
     value = nodes.value_of(node)
     if value is not None:
         values.give(low, made, "default", value)
-    _inside(low, node, made)
+    if node.members:
+        _inside(low, node, made)
 
 
 _FLAGS = {
@@ -75,7 +78,7 @@ def relate(low: "Lowering", node: Node, made: Element) -> None:
     """Types, and features that are redefined or subsetted; those of the library give types only."""
     for relation in node.relations:
         _relate(low, made, relation)
-    own = _own_class(low, node, made)
+    own = _own_class(low, node, made) if node.members else None
     if own is not None:
         low.graph.connect(Edge.TYPED_BY, made, own)
         return

@@ -73,6 +73,7 @@ class Lowering:
         self._scalars: dict[str, list[tuple[str, Kind]]] = {}
         self._paths: dict[str, str] = {}
         self._taken: dict[str, int] = {}
+        self._stubs: dict[str, str] = {}
         self._outer: dict[int, tuple[str, Kind]] = {}
         """Names and kinds of elements of the library that edges lead to."""
         self._places = Places()
@@ -142,7 +143,8 @@ class Lowering:
         self.work()
         while self._last:
             self._last.popleft()()
-            self.work()
+            if self._later:
+                self.work()
         for source, general in self._generals if self._waits else ():
             self.graph.disconnect(Edge.SPECIALIZES, source, general)
             self.graph.refer(Pending(Edge.SPECIALIZES, source.id, general.id))
@@ -269,13 +271,10 @@ class Lowering:
         if edge is Edge.SPECIALIZES and not self._waits:
             self._waits = True
             self._generals.clear()
-        href = stubs.href_of(name)
-        if name in stubs.SCALARS:
-            self.graph.pending.add(edge, source.id, href, kind, name)
-            if edge is Edge.TYPED_BY:
-                self._scalars.setdefault(source.id, []).append((name, kind))
-        else:
-            self.graph.pending.add(edge, source.id, self._stub(href, kind, name), kind, name)
+        target = self._stubs.get(name) or self._stub(kind, name)
+        self.graph.pending.add(edge, source.id, target, kind, name)
+        if edge is Edge.TYPED_BY and name in stubs.SCALARS:
+            self._scalars.setdefault(source.id, []).append((name, kind))
 
     def share_types(self, known: Element, other: Element) -> None:
         """Give an element the types of another one, those of the library too."""
@@ -288,10 +287,11 @@ class Lowering:
         """Whether a data type of the standard library types the element."""
         return element.id in self._scalars
 
-    def _stub(self, href: str, kind: Kind, name: str) -> str:
-        """Id of the element that stands for one of the standard library."""
-        found = derived_id(href, "stub")
-        if found not in self.graph:
+    def _stub(self, kind: Kind, name: str) -> str:
+        """Id of the element that stands for one of the standard library; href of a scalar."""
+        href = stubs.href_of(name)
+        found = self._stubs[name] = href if name in stubs.SCALARS else derived_id(href, "stub")
+        if found != href and found not in self.graph:
             attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": href}
             attrs["qualified_name"] = name
             self.graph.add(Element(found, kind, name.rpartition("::")[2], attrs=attrs))
@@ -416,6 +416,6 @@ class Lowering:
 
 def _said(attrs: dict[str, AttrValue]) -> dict[str, AttrValue]:
     """The attributes that say something: an empty sequence does, no text and no number do not."""
-    if not attrs:
-        return {}
+    if all(attrs.values()):
+        return attrs
     return {key: value for key, value in attrs.items() if value or value == ()}

@@ -28,7 +28,8 @@ def parameter(low: "Lowering", node: Node, owner: Element) -> Element:
     attrs = {"direction": direction} | visibility(node)
     made = low.add(node, Kind.PARAMETER, nodes.name_of(node), owner, **attrs)
     value = nodes.value_of(node)
-    low.set(made, initial=direction != "in" and value is not None and value.role == ":=")
+    if direction != "in" and value is not None and value.role == ":=":
+        low.set(made, initial=True)
     describe(low, node, made)
     return made
 
@@ -71,7 +72,8 @@ def _value(low: "Lowering", made: Element, action: Element, value: Node) -> None
         low.later(lambda: _given(low, action, value))
     else:
         values.give(low, made, "value", value)
-        low.set(made, value_unit=values.measure(value))
+        if unit := values.measure(value):
+            low.set(made, value_unit=unit)
 
 
 def _given(low: "Lowering", action: Element, value: Node) -> None:

@@ -60,8 +60,10 @@ def tell(low: "Lowering", documents: Sequence[Document]) -> None:
 
 def _find(low: "Lowering", documents: Sequence[Document]) -> None:
     """Members that were not lowered and are no part of what their owner says."""
+    known = low.seen | low.verdicts.keys() | low.skipped | low.repeated | low.elements.keys()
+    dead = {one for one, verdict in low.verdicts.items() if verdict in _DEAD}
     for document in documents:
-        for node in _unread(low, document.root):
+        for node in _unread(low, document.root, known, dead):
             owner = node.owner
             assert owner is not None
             if node.kind == "MultiplicityRange":
@@ -87,14 +89,14 @@ def _a(noun: str) -> str:
     return f"an {noun}" if noun[0] in "aeiou" and not noun.startswith("us") else f"a {noun}"
 
 
-def _unread(low: "Lowering", root: Node) -> Iterator[Node]:
+def _unread(low: "Lowering", root: Node, known: set[int], dead: set[int]) -> Iterator[Node]:
     found = [root]
     while found:
         node = found.pop()
         for one in reversed(node.members):
-            if one.kind in nodes.EXPRESSIONS or low.verdicts.get(id(one)) in _DEAD:
+            if one.kind in nodes.EXPRESSIONS or id(one) in dead:
                 continue
-            if id(one) in low.seen or id(one) in low.verdicts or _is_read(low, one, node):
+            if id(one) in known or _is_read(low, one, node):
                 if one.members:
                     found.append(one)
                 if more := _more(low, one):
@@ -104,8 +106,6 @@ def _unread(low: "Lowering", root: Node) -> Iterator[Node]:
 
 
 def _is_read(low: "Lowering", node: Node, owner: Node) -> bool:
-    if id(node) in low.skipped or id(node) in low.repeated or id(node) in low.elements:
-        return True
     if node.membership in _ENDS or node.kind in _PARTS.get(owner.kind, ()):
         return True
     if node.kind == "MultiplicityRange":

@@ -20,10 +20,9 @@ def _types(low: "Lowering", node: Node, seen: set[int]) -> list[Node]:
     if id(node) in seen:
         return []
     seen.add(id(node))
-    stated = [one for one in node.relations if one.kind in _TYPES]
+    stated = [low.target(node, one) for one in node.relations if one.kind in _TYPES]
     if stated:
-        found = (low.target(node, one) for one in stated)
-        return [one for one in found if one is not None]
+        return [one for one in stated if one is not None]
     inherited: dict[int, Node] = {}
     for relation in node.relations:
         general = low.target(node, relation) if relation.kind in _FEATURES else None

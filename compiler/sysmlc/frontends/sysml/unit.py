@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import chain, pairwise
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from sysmlc.depth import room_for
@@ -56,11 +57,14 @@ def lower(
             account(low, document, ours, coverage)
 
 
+_members = attrgetter("members")
+
+
 def _depth(root: Node) -> int:
     """How many members are within one another."""
     depth, level = 0, [root]
     while level:
-        depth, level = depth + 1, [member for node in level for member in node.members]
+        depth, level = depth + 1, list(chain.from_iterable(map(_members, level)))
     return depth
 
 

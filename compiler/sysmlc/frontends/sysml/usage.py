@@ -20,7 +20,8 @@ def by_kind(root: Node) -> dict[str, list[Node]]:
             found[node.kind].append(node)
         else:
             found[node.kind] = [node]
-        left += node.members[::-1]
+        if node.members:
+            left += node.members[::-1]
     return found
 
 
