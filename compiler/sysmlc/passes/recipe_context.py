@@ -10,7 +10,7 @@ from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
-    from sysmlc.recipe.model import Range
+    from sysmlc.recipe.model import Range, ValueType
 
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
@@ -58,6 +58,8 @@ class Context:
     _chosen: dict[str, str] = field(default_factory=dict)
     _subjects: set[str] = field(default_factory=set)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
+    types: dict[str, "ValueType"] = field(default_factory=dict)
+    """Types of values by the id of what types them, as far as somebody asked."""
 
     # -- levels --------------------------------------------------------------------------------
 
@@ -110,7 +112,7 @@ class Context:
         """The same with levels (by id) that follow from others: who has theirs is asked again."""
         changed = followers(self.graph, map(self.graph.__getitem__, derived))
         known = {id: level for id, level in self._levels.items() if id not in changed}
-        return replace(self, derived=derived, _levels=known, _of_level={})
+        return replace(self, derived=derived, _levels=known, _of_level={}, types={})
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""

@@ -110,7 +110,9 @@ def value_type(context: Context, element: Element) -> ValueType | None:
     type_ = query.type_of(context.graph, element)
     if type_ is None:
         return None
-    single = _single(context, type_)
+    single = context.types.get(type_.id)
+    if single is None:
+        single = context.types[type_.id] = _single(context, type_)
     limits = query.bounds(element.attrs.get("multiplicity"))
     many = limits is not None and (limits[1] is None or limits[1] > 1)
     return ListType(single) if many else single
