@@ -40,12 +40,12 @@ class Cache:
         """The entry, or None when there is none that is whole."""
         path = self._path(key)
         try:
-            data = path.read_bytes()
+            with path.open("rb", buffering=0) as stream:
+                known, content = stream.read(_SUM), stream.readall()
             os.utime(path)
         except OSError:
             return None
-        content = data[_SUM:]
-        return content if content and data[:_SUM] == _check_sum(content) else None
+        return content if content and known == _check_sum(content) else None
 
     def put(self, key: str, data: bytes) -> None:
         """Keep an entry; in one step, so that no other process sees half of it."""
@@ -54,7 +54,7 @@ class Cache:
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             with open(temporary, "wb", opener=_private) as stream:
-                stream.write(_check_sum(data) + data)
+                stream.writelines((_check_sum(data), data))
             os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
             self._count(len(data))
 

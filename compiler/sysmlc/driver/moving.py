@@ -117,7 +117,7 @@ class Texts(Packed):
     def __getitem__(self, path: str) -> str:
         return self.new[path] if path in self.new else self._old[path]
 
-    def packed(self, path: str) -> bytes | None:
+    def packed(self, path: str) -> memoryview | None:
         """The text at the path compressed, if it is an old one that was kept so."""
         if path in self.new or not isinstance(self._old, Packed):
             return None

@@ -35,7 +35,7 @@ class Packed(Mapping[str, str]):
     """Texts by path, some of which are there as the cache keeps them."""
 
     @abstractmethod
-    def packed(self, path: str) -> bytes | None:
+    def packed(self, path: str) -> memoryview | None:
         """The text at the path compressed; None where it is not there so."""
 
 

@@ -38,7 +38,9 @@ def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
         cache.put(unit, key.encode())
 
 
-def _packed_texts(outcome: Outcome, cache: Cache, unit: str) -> Iterator[tuple[str, bytes]]:
+def _packed_texts(
+    outcome: Outcome, cache: Cache, unit: str
+) -> Iterator[tuple[str, bytes | memoryview]]:
     """Each text as it is kept: as in the outcome before, if it has the text.
 
     What is new there is about to be edited again: to compress it takes longer than it is worth.
@@ -48,13 +50,14 @@ def _packed_texts(outcome: Outcome, cache: Cache, unit: str) -> Iterator[tuple[s
     is_edited = before is not None or bool(known)
     for file in outcome.files:
         kept = known.get(file.sha256) if before is None else before.packed(file.path)
-        if kept is None:
-            text = outcome.texts[file.path]
-            kept = _compressed(text, 0 if is_edited and len(text) < _LONG else 1)
-        yield file.path, kept
+        yield file.path, _new(outcome.texts[file.path], is_edited) if kept is None else kept
 
 
-def _last_texts(cache: Cache, unit: str) -> dict[str, bytes]:
+def _new(text: str, is_edited: bool) -> bytes:
+    return _compressed(text, 0 if is_edited and len(text) < _LONG else 1)
+
+
+def _last_texts(cache: Cache, unit: str) -> dict[str, memoryview]:
     """Texts of the last outcome of a unit, as they are kept, by their digests."""
     key = cache.get(unit) if unit else None
     entry = cache.get(key.decode()) if key else None
@@ -77,7 +80,7 @@ def _opened(entry: bytes) -> "tuple[dict[str, Any], _Texts]":
     lengths = [int.from_bytes(entry[at : at + _LENGTH], "big") for at in (0, _LENGTH)]
     start = 2 * _LENGTH
     middle, end = start + lengths[0], start + sum(lengths)
-    texts = _Texts(entry[end:], json.loads(entry[middle:end]))
+    texts = _Texts(memoryview(entry)[end:], json.loads(entry[middle:end]))
     return json.loads(entry[start:middle]), texts
 
 
@@ -89,7 +92,7 @@ def _compressed(text: str, level: int) -> bytes:
     return zlib.compress(text.encode("utf-8", "surrogatepass"), level)
 
 
-def _decompressed(data: bytes) -> str:
+def _decompressed(data: memoryview) -> str:
     return zlib.decompress(data).decode("utf-8", "surrogatepass")
 
 
@@ -137,7 +140,7 @@ def _diagnostic(found: Diagnostic) -> tuple[object, ...]:
 class _Texts(Packed):
     """The texts of an outcome, each unpacked when it is asked for; most runs need none."""
 
-    all: bytes
+    all: memoryview
     lengths: Mapping[str, int]
     """How many bytes of ``all`` are which text, in order."""
 
@@ -145,14 +148,13 @@ class _Texts(Packed):
     def _starts(self) -> dict[str, int]:
         return dict(zip(self.lengths, accumulate(self.lengths.values(), initial=0), strict=False))
 
-    def packed(self, path: str) -> bytes:
+    def packed(self, path: str) -> memoryview:
         """The text at the path, compressed."""
         start = self._starts[path]
         return self.all[start : start + self.lengths[path]]
 
     def __getitem__(self, path: str) -> str:
-        start = self._starts[path]
-        return _decompressed(self.all[start : start + self.lengths[path]])
+        return _decompressed(self.packed(path))
 
     def __contains__(self, path: object) -> bool:
         return path in self.lengths
