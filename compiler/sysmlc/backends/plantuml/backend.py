@@ -1,7 +1,8 @@
 """All diagrams of a graph: views, file names, templates, and what no diagram shows."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
+from typing import NamedTuple
 
 from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
@@ -77,19 +78,27 @@ class PlantUml:
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
-            found = [diagram for kind in KINDS for diagram in kind(graph)]
-            missing.report(graph, found, sink)
+            found = [_Traced(one, one.trace()) for kind in KINDS for one in kind(graph)]
+            missing.report(graph, {id for one in found for id in one.trace}, sink)
             sd_remarks.report(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
             from sysmlc.backends.plantuml import author
 
-            _write(graph, list(author.diagrams(graph, sink)), author.FOLDER, output, sink, options)
+            drawn = [_Traced(one, one.trace()) for one in author.diagrams(graph, sink)]
+            _write(graph, drawn, author.FOLDER, output, sink, options)
+
+
+class _Traced(NamedTuple):
+    """A diagram with the ids of everything that it shows."""
+
+    diagram: Diagram
+    trace: tuple[str, ...]
 
 
 def _write(
     graph: Graph,
-    found: list[Diagram],
+    found: list[_Traced],
     folder: str,
     output: Output,
     sink: Sink,
@@ -98,29 +107,27 @@ def _write(
     if not found:
         return
     renderer = Renderer(options.templates)
-    found.sort(key=lambda diagram: diagram.kind)
-    for kind, group in groupby(found, lambda diagram: diagram.kind):
+    found.sort(key=lambda one: one.diagram.kind)
+    for kind, group in groupby(found, lambda one: one.diagram.kind):
         try:
-            for diagram, file in _named(list(group)):
+            for (diagram, trace), file in _named(list(group)):
                 text = renderer.text(diagram, _header(graph, diagram))
-                output.add(
-                    f"diagrams/{folder}{file}.{kind}.puml", text, diagram.trace(), "plantuml"
-                )
+                output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
         except faults() as error:
             fault = f"{type(error).__name__}: {error}"
             sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 
 
-def _named(found: list[Diagram]) -> Iterable[tuple[Diagram, str]]:
+def _named(found: list[_Traced]) -> Iterable[tuple[_Traced, str]]:
     """File name for each diagram of one kind; equal names are numbered in model order."""
-    keys: dict[str, Diagram] = {}
-    for diagram in found:
-        keys[_free(diagram.name, keys)] = diagram
+    keys: dict[str, _Traced] = {}
+    for one in found:
+        keys[_free(one.diagram.name, keys)] = one
     files = naming.file_names(keys)
-    return [(diagram, files[key]) for key, diagram in keys.items()]
+    return [(one, files[key]) for key, one in keys.items()]
 
 
-def _free(name: str, taken: dict[str, Diagram]) -> str:
+def _free(name: str, taken: Collection[str]) -> str:
     number, key = 1, name
     while key in taken:
         number += 1

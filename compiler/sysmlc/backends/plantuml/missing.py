@@ -1,8 +1,7 @@
 """What no diagram shows: one finding for each owner and kind."""
 
-from collections.abc import Iterable
+from collections.abc import Collection
 
-from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 
@@ -91,13 +90,12 @@ _FILES = frozenset({"caex", "collada", "plcopen", "external-data"})
 _NAMES_SHOWN = 3
 
 
-def report(graph: Graph, found: Iterable[Diagram], sink: Sink) -> None:
-    """Report every element of the model that is in none of the diagrams.
+def report(graph: Graph, shown: Collection[str], sink: Sink) -> None:
+    """Report every element of the model that no diagram shows; ``shown`` are the ids of the others.
 
     What stands inside an element that is reported is not reported again. What a parameter of a
     template stands for is named behind the template's name.
     """
-    shown = {id for diagram in found for id in diagram.trace()}
     known = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
     missed = [item for item in known if item.id not in shown and _is_ours(item)]
     formal = {

@@ -19,6 +19,9 @@ def chunks(
     kept.
     """
     size = sizes or {}
+    every = {*items, *(near for item in items for near in neighbours.get(item, ()))}
+    if items and sum(size.get(member, 1) for member in every) <= limit:
+        return [list(dict.fromkeys(items))]
     place = {item: index for index, item in enumerate(items)}
     parts: list[list[str]] = []
     shown: set[str] = set()

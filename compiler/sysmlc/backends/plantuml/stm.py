@@ -24,6 +24,7 @@ _SHAPES = {
     "exit-point": "exitPoint",
 }
 _POINTS = frozenset(["entry-point", "exit-point"])
+_TRANSITION = Kind.TRANSITION
 _REFERENCE = "connection-point"
 _ROW = 44
 
@@ -185,10 +186,10 @@ def _rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]]:
 
 def _transitions(graph: Graph, machine: Element, aliases: Aliases) -> Iterator[Line]:
     for item in graph.subtree(machine):
+        if item.kind is not _TRANSITION or item.subkind == "internal":
+            continue
         source = graph.target(item, Edge.FLOW_SOURCE)
         target = graph.target(item, Edge.FLOW_TARGET)
-        if item.kind is not Kind.TRANSITION or item.subkind == "internal":
-            continue
         if source is not None and target is not None and {source.id, target.id} <= aliases.keys():
             text = label(transition_text(graph, item))
             shows = tuple(_parts(graph, item))
