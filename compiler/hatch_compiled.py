@@ -14,7 +14,7 @@ REQUIRED = ["mypy[mypyc]>=1.15", "setuptools>=77"]
 _CAEX = (
     *("account", "attributes", "columns", "context", "document", "features", "holders"),
     *("identifiers", "interfaces", "links", "members", "metadata", "pieces", "plain", "plans"),
-    *("roles", "sides", "site", "sites", "slots", "structures", "swift", "tags", "types"),
+    *("roles", "rows", "sides", "site", "sites", "slots", "structures", "swift", "tags", "types"),
 )
 _IR = ("graph", "neighbours", "reference")
 MODULES = (

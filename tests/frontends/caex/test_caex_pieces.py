@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from sysmlc.frontends.caex import columns, pieces, wellformed
+from sysmlc.frontends.caex import columns, pieces, sections, wellformed
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.vocabulary import FOLDED
 from sysmlc.sources import Source, SourceError
@@ -97,6 +97,30 @@ WRITTEN = {
 @pytest.mark.parametrize("write", WRITTEN.values(), ids=WRITTEN)
 def test_plain_files_have_the_same_columns_in_both_ways(write):
     agree(write(PLANT))
+
+
+VALUES = "".join(
+    f'<Attribute Name="{name}"><Value>{number} &gt; 0</Value></Attribute>\n{more}'
+    for number in range(30)
+    for name, more in (("x", ""), ("y", "<Note>text"), ("z", ""), ("z", "<Value>1</Value></Note>"))
+)
+BESIDE = f'<CAEXFile><InternalElement Name="A" ID="a">{VALUES}</InternalElement></CAEXFile>'
+
+
+@pytest.mark.parametrize("size", [*range(200, 300, 9), 1 << 16])
+@pytest.mark.parametrize("text", [PLANT, BESIDE], ids=["plant", "values beside one another"])
+def test_columns_do_not_depend_on_where_the_text_is_cut(text, size, monkeypatch):
+    monkeypatch.setattr(sections, "_AT_ONCE", size)
+    agree(text)
+
+
+@pytest.mark.parametrize("said", ["</Attribute>", "</Value>", "<Value>", "<", ">", "&", "<b>", "/"])
+def test_a_fault_between_values_that_are_alike_is_left_to_the_parser(said):
+    before, sign, behind = BESIDE.rpartition("</Value></Attribute>\n<Attribute")
+    for text in (before + said + sign + behind, before + sign + said + behind):
+        data = text.encode()
+        is_plain = pieces.fill(Document("plant.aml"), Source("plant.aml", data))
+        assert not is_plain or wellformed.root(Source("plant.aml", data)) is not None
 
 
 NOT_PLAIN = {

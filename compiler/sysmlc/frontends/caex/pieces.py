@@ -11,35 +11,18 @@ columns for every file.
 import re
 from collections.abc import Iterator
 from itertools import chain
-from typing import Any
 
 from sysmlc.frontends.caex import wellformed
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.tags import (
-    UNLIKE,
-    NotPlainError,
-    Reader,
-    Tag,
-    is_plain,
-    text_in,
-    without_references,
-)
-from sysmlc.frontends.caex.vocabulary import FOLDED
+from sysmlc.frontends.caex.rows import Rows
+from sysmlc.frontends.caex.sections import in_lists
+from sysmlc.frontends.caex.tags import NotPlainError, Reader, is_plain, without_references
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.encoding import codec
-
-_CHUNK = 1 << 16
-"""Bytes that are cut at once: what comes of them stays near the processor."""
 
 _DECLARATION = re.compile(rb"<\?xml\s.*?\?>", re.DOTALL)
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*(?<!/)>(.*)""", re.DOTALL)
-
-_FOLDED_STARTS = tuple({name[0]: None for name in FOLDED})
-"""What the names of folded elements start with: no others that are frequent do."""
-
-_SILENT, _LISTENING, _FOLDED = range(3)
-"""Whether text is listened to for the row's own; or it was taken for a column of its parent."""
 
 
 def fill(document: Document, source: Source) -> bool:
@@ -55,7 +38,7 @@ def fill(document: Document, source: Source) -> bool:
     if root is None or root[0] != "CAEXFile":
         return False
     try:
-        is_sound = _cut(document, _chunks(data, start), root[1])
+        is_sound = _cut(document, in_lists(data, start), root[1])
     except (NotPlainError, UnicodeDecodeError, IndexError, StopIteration):
         # The last two: more ends than starts, or fewer; it is not well-formed.
         document.clear()
@@ -107,111 +90,18 @@ def _start(document: Document, piece: str, values: dict[str, str]) -> None:
         document.texts[""][0] = without_references(found[1])
 
 
-def _cut(document: Document, chunks: Iterator[list[str]], root: dict[str, str]) -> bool:
+def _cut(document: Document, lists: Iterator[list[str]], root: dict[str, str]) -> bool:
     """Fill the columns with the rows of a text; False when it has to be checked by a parser."""
     reader, ends = Reader(), wellformed.Ends()
-    pieces = chain.from_iterable(chunks)
-    _start(document, next(pieces), root)
-    last = _fill(document, pieces, reader, ends)
+    sections = chain.from_iterable(lists)
+    mark, first = next(sections), next(sections)
+    piece, _, behind = first.partition("<")
+    _start(document, piece, root)
+    rows = Rows(document, reader, ends)
+    rows.add(chain((mark, behind), sections))
     if 0 in document.ends or not is_plain("".join(document.ids)):
         raise NotPlainError
     document.has_changes = reader.has_changes
     document.has_stray = reader.has_stray or ends.has_stray
     document.shapes = {("CAEXFile", tuple(root)), *reader.shapes}
-    return reader.is_sound and ends.is_sound and wellformed.is_end(last)
-
-
-def _fill(document: Document, pieces: Iterator[str], reader: Reader, ended: wellformed.Ends) -> str:
-    """Fill the columns with the rows behind the root; the last piece.
-
-    Text is listened to as in ``columns``: from a start tag that may have some to the next tag.
-    The numbers of rows above are objects, so that rows share them: compiled, each
-    row would have a number of its own otherwise.
-    """
-    tags, ends, texts = document.tags, document.ends, document.texts
-    known, read = reader.known.get, reader.read
-    add_tag, add_attributes, add_id = tags.append, document.attributes.append, document.ids.append
-    add_parent, add_ordinal = document.parents.append, document.ordinals.append
-    add_end, add_alike = ends.append, document.alike.append
-    stack: list[Any] = [0]
-    deepest = DEFAULT_LIMITS.depth
-    push, pop = stack.append, stack.pop
-    ordinal, row, state, piece = 0, 1, _LISTENING, ""
-    for piece in pieces:
-        first = piece[0]
-        if first == "/":
-            above = pop()
-            if tags[above] != ended[piece]:
-                raise NotPlainError
-            ends[above] = row
-            state = _SILENT
-            continue
-        ordinal += 1
-        above = stack[-1]
-        if first in _FOLDED_STARTS and not state:
-            name, sign, said = piece.partition(">")
-            column = texts.get(name)
-            if column is not None and sign and above not in column:
-                column[above] = without_references(said) if "&" in said else said
-                if ended[next(pieces)] != name:
-                    raise NotPlainError
-                continue
-        found = None if first == UNLIKE else known(piece)
-        tag, id = read(piece, row) if found is None else (found, "")
-        name, values, is_empty, has_text, alike = tag
-        if has_text or state:
-            state = _listen(texts, tag, piece, above, row)
-            if state == _FOLDED:
-                _pass_end(tag, pieces, ended)
-                state = _SILENT
-                continue
-        add_tag(name)
-        add_attributes(values)
-        add_id(id)
-        add_alike(alike)
-        add_parent(above)
-        add_ordinal(ordinal)
-        row += 1
-        if is_empty:
-            add_end(row)
-        else:
-            push(row - 1)
-            add_end(0)
-            if len(stack) > deepest:
-                raise NotPlainError
-    return piece
-
-
-def _pass_end(tag: Tag, pieces: Iterator[str], ended: wellformed.Ends) -> None:
-    """Pass over the end tag of an element that is folded."""
-    if not tag[2] and ended[next(pieces)] != tag[0]:
-        raise NotPlainError
-
-
-def _listen(texts: dict[str, dict[int, str]], tag: Tag, piece: str, above: int, row: int) -> int:
-    """Take the text of a start tag; what is listened to then."""
-    name, values, is_empty, _, _ = tag
-    said = "" if is_empty else text_in(piece)
-    column = None if values else texts.get(name)
-    if column is not None and above not in column:
-        column[above] = said
-        return _FOLDED
-    if said:
-        texts[""][row] = said
-    return _SILENT if is_empty else _LISTENING
-
-
-def _chunks(data: bytes, start: int) -> Iterator[list[str]]:
-    """What stands between the signs that start tags, in lists.
-
-    Bytes become text here: new memory is what takes longest in that, and so it is used again.
-    """
-    start, end = data.index(b"<", start) + 1, len(data)
-    while start < end:
-        stop = data.find(b"<", start + _CHUNK)
-        stop = end if stop < 0 else stop
-        text = data[start:stop].decode()
-        if "\r" in text:
-            text = text.replace("\r\n", "\n").replace("\r", "\n")
-        yield text.split("<")
-        start = stop + 1
+    return reader.is_sound and ends.is_sound and wellformed.is_end(rows.last)

@@ -10,15 +10,18 @@ Tag = tuple[str, dict[str, str], bool, bool, int]
 """Local name; attributes; whether it has an end tag of its own; whether text of the element is
 listened to; the first row that said it."""
 
-_Shape = tuple[str, tuple[str, ...], bool, bool, int, int]
-"""What tags have in common that differ in values only: name, names of attributes, as above; how
-many line ends and tabs there are, and -1 where the values have to be looked at one by one."""
+_Shape = tuple[str, tuple[str, ...], bool, bool, bool]
+"""What tags have in common that differ in values only: name, names of attributes, as above, and
+whether all values stand before the end of the tag, and none of them is a namespace."""
 
 _K = TypeVar("_K")
 _V = TypeVar("_V")
 
 UNLIKE = "I"
 """What tags start with of which hardly two are alike: those of internal elements and links."""
+
+WITH_ID = "E"
+"""What tags start with that are alike but for their ID: those of interfaces."""
 
 _REMEMBERED = 1 << 14
 """So many tags are remembered: a file whose tags all differ must not fill the memory."""
@@ -47,9 +50,11 @@ class Reader:
     def __init__(self) -> None:
         self.known: dict[str, Tag] = {}
         """Tags without an ID, by their text."""
-        self._with_id: dict[tuple[str, str], Tag] = {}
+        self.with_id: dict[tuple[str, str], Tag] = {}
         """Tags with an ID, by their text before it and behind it."""
         self._shapes: dict[tuple[str, ...], _Shape] = {}
+        self.beside: dict[str, Tag] = {}
+        """Tags by what stands between the value of an element of their name and their own value."""
         self.has_changes = False
         self.has_stray = False
         self.is_sound = True
@@ -64,15 +69,12 @@ class Reader:
 
         Raises NotPlainError.
         """
-        if piece[0] == UNLIKE:
-            tag = self._parsed(piece, row)
-            return tag, tag[1].get("ID", "")
         head, sign, rest = piece.partition(' ID="')
         id, _, tail = rest.partition('"')
-        known = self._with_id.get((head, tail)) if sign else None
+        known = self.with_id.get((head, tail)) if sign else self.known.get(piece)
         if known is not None:
             return known, id
-        tag = self._parsed(piece, row)
+        tag = self.parsed(piece, row)
         values = tag[1]
         found = values.get("ID", "")
         if tag[3]:
@@ -81,19 +83,34 @@ class Reader:
             _remember(self.known, piece, tag)
         elif sign and found == id and not head.count('"') % 2:
             values["ID"] = ""
-            _remember(self._with_id, (head, tail), tag)
+            _remember(self.with_id, (head, tail), tag)
         return tag, found
 
-    def _parsed(self, piece: str, row: int) -> Tag:
-        """What a tag says, as others of its shape do."""
+    def learn(self, between: str, pieces: list[str], ended: dict[str, str]) -> None:
+        """Remember what stands between two values when it is an end tag and a start tag.
+
+        ``ended`` are the names of elements by their end tags.
+        """
+        _, end, start = pieces
+        tag = self.known.get(start)
+        # What is known has neither text nor an ID.
+        if tag is not None and not tag[2] and end[:1] == "/" and ended[end] == tag[0]:
+            _remember(self.beside, between, tag)
+
+    def parsed(self, piece: str, row: int) -> Tag:
+        """What a tag says, as others of its shape do.
+
+        Raises NotPlainError.
+        """
         parts = piece.split('"')
         key = (*parts[::2],)
         shape = self._shapes.get(key)
         if shape is None:
             shape = self._shape(piece)
             _remember(self._shapes, key, shape)
-        name, names, is_empty, has_text, lines, tabs = shape
-        if "&" in piece or piece.count("\n") != lines or piece.count("\t") != tabs:
+        name, names, is_empty, has_text, is_usual = shape
+        said = piece[: -len(parts[-1])]
+        if not is_usual or "&" in said or "\n" in said or "\t" in said:
             return name, self._values(names, parts), is_empty, has_text, row
         # Most have two or three attributes: three times as fast as a loop.
         if len(parts) == 7:
@@ -130,9 +147,7 @@ class Reader:
         self.has_stray = self.has_stray or (is_over and bool(found[4].strip()))
         self.shapes.add((name, names))
         is_usual = '"' not in found[4] and "xmlns" not in names
-        between = "".join(piece.split('"')[::2])
-        lines = between.count("\n") if is_usual else -1
-        return name, names, bool(found[3]), name not in STRUCTURE, lines, between.count("\t")
+        return name, names, bool(found[3]), name not in STRUCTURE, is_usual
 
 
 def _is_sound(piece: str, names: tuple[str, ...]) -> bool:
