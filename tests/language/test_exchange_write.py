@@ -33,7 +33,7 @@ def made(kind, name=None, *members, membership="OwningMembership", **facts):
 
 def relate(node, kind, *targets):
     reference = Reference(tuple((target.name or "?",) for target in targets))
-    reference.targets = list(targets)
+    reference.lead(list(targets))
     node.relations.append(Relation(kind, reference))
     return node
 

@@ -22,22 +22,23 @@ class Reference:
 
     ``chain`` has a tuple of names for each link of the chain, quotes and escapes undone; a first
     name ``$`` is the global scope. ``targets`` has the element of each link once names are
-    resolved, and is None before; what leads nowhere ends the list early.
+    resolved, and is None before; what leads nowhere ends the list early. ``target`` is the element
+    that the whole chain leads to, if it was found.
     """
 
-    __slots__ = ("chain", "end", "start", "targets")
+    __slots__ = ("chain", "end", "start", "target", "targets")
 
     def __init__(self, chain: tuple[tuple[str, ...], ...], start: int = -1, end: int = -1) -> None:
         self.chain = chain
         self.start = start
         self.end = end
+        self.target: Node | None = None
         self.targets: list[Node] | None = None
 
-    @property
-    def target(self) -> "Node | None":
-        """The element that the whole chain leads to, if it was found."""
-        found = self.targets
-        return found[-1] if found and len(found) == len(self.chain) else None
+    def lead(self, targets: "list[Node]") -> None:
+        """Say the elements that the links of the chain lead to, as far as they were found."""
+        self.targets = targets
+        self.target = targets[-1] if targets and len(targets) == len(self.chain) else None
 
     def __str__(self) -> str:
         return ".".join("::".join(names) for names in self.chain)

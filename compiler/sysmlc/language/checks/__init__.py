@@ -9,5 +9,5 @@ def check(model: Model, sink: Sink) -> None:
     from sysmlc.language.checks import families
 
     for document in model.documents:
-        for node in document.root.walk():
+        for node in model.nodes(document):
             families.check(model, document, node, sink)

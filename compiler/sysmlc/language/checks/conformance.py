@@ -105,7 +105,7 @@ def _is_featured(model: Model, feature: Node) -> bool:
     return any(
         relation.reference.target is feature
         for document in model.documents
-        for node in document.root.walk()
+        for node in model.nodes(document)
         if node.kind == "TypeFeaturing"
         for relation in node.relations
     )

@@ -2,6 +2,7 @@
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules as rules
+from sysmlc.language.composition import is_end
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.positions import own
@@ -12,7 +13,9 @@ _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 _SUCCESSIONS = kinds_of("Succession") | {"TransitionUsage"}
 _OCCURRENCES = kinds_of("Class") | kinds_of("OccurrenceUsage")
 _INTERFACES = kinds_of("InterfaceDefinition") | kinds_of("InterfaceUsage")
-_FLOWS = kinds_of("FlowDefinition")
+_WITH_ENDS = _INTERFACES | kinds_of("FlowDefinition")
+_TYPED = frozenset({"AttributeUsage", "MetadataUsage"})
+"""Usages whose types are looked at here."""
 _VERIFICATIONS = kinds_of("VerificationCaseDefinition") | kinds_of("VerificationCaseUsage")
 _ENUMERATIONS = kinds_of("EnumerationDefinition")
 
@@ -22,7 +25,9 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     owner = node.owner
     if owner is None:
         return
-    broken = _as_member(node, owner) or _by_itself(model, node)
+    broken = _as_member(node, owner)
+    if broken is None and node.kind in _TYPED:
+        broken = _by_itself(model, node)
     if broken is not None:
         place = subject(document, node, node.start)
         name = model.name(node) or node.kind
@@ -43,16 +48,16 @@ def _as_member(node: Node, owner: Node) -> Rule | None:
 def _as_feature(node: Node, owner: Node) -> Rule | None:
     if _is_variation(owner):
         return rules.NO_VARIANT
-    if owner.facts.get("isParallel") and node.kind in _SUCCESSIONS:
+    if node.kind in _SUCCESSIONS and owner.facts.get("isParallel"):
         return rules.PARALLEL
     if "portionKind" in node.facts and owner.kind not in _OCCURRENCES:
         return rules.PORTION_ELSEWHERE
-    is_end = node.membership == "EndFeatureMembership" or node.facts.get("isEnd")
-    if is_end and owner.kind in _INTERFACES and node.kind not in ("PortUsage", "ReferenceUsage"):
-        return rules.END_NO_PORT
-    if is_end and owner.kind in _FLOWS and own(owner, "end").index(node) > 1:
-        return rules.TOO_MANY_ENDS
-    return None
+    if owner.kind not in _WITH_ENDS or not is_end(node):
+        return None
+    if owner.kind in _INTERFACES:
+        is_port = node.kind in ("PortUsage", "ReferenceUsage")
+        return None if is_port else rules.END_NO_PORT
+    return rules.TOO_MANY_ENDS if own(owner, "end").index(node) > 1 else None
 
 
 def _by_itself(model: Model, node: Node) -> Rule | None:

@@ -68,7 +68,8 @@ def _is_conjugated(model: Model, node: Node) -> bool:
 def check_itself(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report a part of a port, and an individual that is of none or of several."""
     owner, name = node.owner, node.name or node.kind
-    if _is_in_port(owner) and node.kind != "PortUsage" and is_composite(node):
+    is_in_port = owner is not None and owner.kind in _PORT_OWNERS
+    if is_in_port and node.kind != "PortUsage" and is_composite(node):
         place = subject(document, node, node.start)
         sink.report(reference_rules.PART_OF_PORT, place, name=name, owner=_name(model, owner))
     if node.facts.get("isIndividual") and any(r.kind == "FeatureTyping" for r in node.relations):
@@ -76,10 +77,6 @@ def check_itself(model: Model, document: Document, node: Node, sink: Sink) -> No
         if len(types) != 1:
             place = subject(document, node, node.start)
             sink.report(reference_rules.INDIVIDUAL, place, name=name, count=len(types))
-
-
-def _is_in_port(owner: Node | None) -> bool:
-    return owner is not None and owner.kind in _PORT_OWNERS
 
 
 def _name(model: Model, node: Node | None) -> str:

@@ -138,7 +138,7 @@ def _resolve(pending: Pending, find: _Finder, path: str, sink: Sink) -> None:
             _report(pending, link, path, sink)
             break
         targets.append(target)
-    pending.reference.targets = targets
+    pending.reference.lead(targets)
 
 
 def _report(pending: Pending, link: str, path: str, sink: Sink) -> None:

@@ -58,5 +58,5 @@ def _relations(model: Model, node: Node) -> list[tuple[str, Node]]:
 
 def _relation(model: Model, kind: str, target: Node) -> Relation:
     reference = Reference((tuple(model.qualified_name(target).split("::")),))
-    reference.targets = [target]
+    reference.lead([target])
     return Relation(kind, reference)

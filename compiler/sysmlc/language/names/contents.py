@@ -26,7 +26,6 @@ _REFERRING_MEMBERSHIPS = frozenset(
         "ViewRenderingMembership",
     }
 )
-_UNNAMED = kinds_of("Import") | {"Comment", "Documentation", "TextualRepresentation"}
 FEATURES = kinds_of("Feature")
 TYPES = kinds_of("Type")
 NAMESPACES = kinds_of("Namespace")
@@ -74,7 +73,7 @@ def payload_of(transition: Node) -> tuple[Node | None, Node | None]:
 
 def naming(node: Node) -> Reference | None:
     """The reference to the feature that gives a nameless one its name, if the text has one."""
-    if not node.relations or node.kind in _UNNAMED or node.kind not in FEATURES:
+    if node.kind not in FEATURES or not node.relations:
         return None
     if node.kind in _REFERRING or node.membership in _REFERRING_MEMBERSHIPS:
         for relation in node.relations:

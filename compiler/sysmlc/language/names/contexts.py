@@ -91,11 +91,8 @@ class Start(NamedTuple):
 def start(node: Node, relation: Relation) -> Start:
     """Where the first name of a relation of ``node`` is looked up."""
     found = _start(node, relation)
-    return found._replace(reference=relation.reference) if _begins_globally(relation) else found
-
-
-def _begins_globally(relation: Relation) -> bool:
-    return relation.reference.chain[0][0] == "$"
+    begins_globally = relation.reference.chain[0][0] == "$"
+    return found._replace(reference=relation.reference) if begins_globally else found
 
 
 def _start(node: Node, relation: Relation) -> Start:

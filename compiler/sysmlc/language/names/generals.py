@@ -44,7 +44,7 @@ class Generals(ABC):
     def abandon(self) -> None:
         """Give up what is being looked for, after an error in the midst of it."""
         for reference in self._active:
-            reference.targets = []
+            reference.lead([])
         self.abandoned |= self._active
         self._active.clear()
         self._placing.clear()
@@ -62,6 +62,8 @@ class Generals(ABC):
         known = self._generals.get(node)
         if known is not None:
             return known
+        if not node.relations:
+            return self._generals.setdefault(node, [])
         before = self.cuts
         found: list[Node] = []
         links: list[Node] = []

@@ -53,7 +53,7 @@ class Lookup(Imports):
         if not is_whole and cuts > _MOST:
             self.given_up.add(reference)
         if is_whole or not self._active or not 0 < cuts <= _MOST:
-            reference.targets = targets
+            reference.lead(targets)
         return targets[-1] if is_whole else None
 
     def _follow(self, node: Node, relation: Relation) -> list[Node]:
@@ -102,11 +102,12 @@ class Lookup(Imports):
             for hits in self._stages_of(start, scope, first):
                 if start.past_subjects:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
-                found = self.among(hits, names, 0, kinds, start.everything)
-                if found is not None:
-                    return found
-                if len(names) > 1 and any(map(self._is_namespace, hits)):
-                    return None
+                if hits:
+                    found = self.among(hits, names, 0, kinds, start.everything)
+                    if found is not None:
+                        return found
+                    if len(names) > 1 and any(map(self._is_namespace, hits)):
+                        return None
             scope = contexts.outer(scope)
         found = self.among(self._roots(first), names, 0, kinds)
         for importing in start.importing if found is None else ():

@@ -71,7 +71,8 @@ class Members(Generals):
             yield tuple([hit for hit in hits if hit.name or hit.short or self._is_named(hit)])
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
-        yield self.imported(scope, name, inside=True)
+        if self.imports(scope):
+            yield self.imported(scope, name, inside=True)
 
     def _without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
         """All own members by one name, and inherited ones."""

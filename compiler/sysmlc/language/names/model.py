@@ -29,6 +29,7 @@ class Model:
         self.library = library
         self.lookup = Lookup(self._roots, self.implied_generals, self._by_role, self._text)
         self._by_root = {document.root: document for document in self.documents}
+        self._nodes: dict[Node, list[Node]] = {}
         self._named: dict[str, list[Node]] = {}
         for document in self.documents:
             for member in document.root.members:
@@ -48,6 +49,13 @@ class Model:
 
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))
+
+    def nodes(self, document: Document) -> list[Node]:
+        """All nodes of a document of the model, owners first, in the order of the text."""
+        known = self._nodes.get(document.root)
+        if known is None:
+            known = self._nodes[document.root] = list(document.root.walk())
+        return known
 
     def packages(self) -> list[Node]:
         """The root members of the documents and of the library files read so far."""

@@ -22,11 +22,10 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     gc.disable()
     sys.setrecursionlimit(max(depth, _DEPTH))
     try:
-        walked = [(document, list(document.root.walk())) for document in model.documents]
-        for document, nodes in walked:
-            _resolve(document, nodes, model, sink)
-        for _, nodes in walked:
-            _settle(nodes, model)
+        for document in model.documents:
+            _resolve(document, model, sink)
+        for document in model.documents:
+            _settle(document, model)
         _report_cycles(model, sink)
         if library.is_core:
             _report_core(model, sink)
@@ -37,8 +36,8 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     return model
 
 
-def _resolve(document: Document, nodes: Sequence[Node], model: Model, sink: Sink) -> None:
-    for node in nodes:
+def _resolve(document: Document, model: Model, sink: Sink) -> None:
+    for node in model.nodes(document):
         for relation in node.relations:
             if relation.reference.target is None:
                 _resolve_one(document, node, relation, model, sink)
@@ -58,10 +57,10 @@ def _resolve_one(
         sink.report(TOO_DEEP, place, name=str(relation.reference))
 
 
-def _settle(nodes: Sequence[Node], model: Model) -> None:
+def _settle(document: Document, model: Model) -> None:
     """Find out what leads through many elements while Python may still call itself that deep."""
     lookup = model.lookup
-    for node in nodes:
+    for node in model.nodes(document):
         try:
             if node.relations:
                 lookup.generals(node)
@@ -88,7 +87,7 @@ def _report_core(model: Model, sink: Sink) -> None:
     uses = [
         (document, node, relation.reference.start)
         for document in model.documents
-        for node in document.root.walk()
+        for node in model.nodes(document)
         for relation in node.relations
         if relation.reference.target is not None and root(relation.reference.target) in roots
     ]
