@@ -2,6 +2,7 @@
 
 import marshal
 import sys
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -94,12 +95,29 @@ def _packed(node: Node, members: tuple[_Packed, ...]) -> _Packed:
 
 def unpack(data: bytes) -> StoredNode | None:
     """The tree that ``pack`` made bytes of; None when it is damaged."""
+    packed = _unpacked(data)
+    return StoredNode(packed, None) if packed is not None else None
+
+
+def _unpacked(data: bytes) -> _Packed | None:
     try:
         packed = marshal.loads(data)
     except (EOFError, TypeError, ValueError):
         return None
-    whole = isinstance(packed, tuple) and len(packed) == _SIZE
-    return StoredNode(packed, None) if whole else None
+    return packed if isinstance(packed, tuple) and len(packed) == _SIZE else None
+
+
+@lru_cache(maxsize=256)
+def _kept(cache: Cache, key: str) -> _Packed:
+    """An entry of the cache, which a process that stays asks for again and again.
+
+    Raises KeyError for none, and for one that is damaged.
+    """
+    entry = cache.get(key)
+    packed = _unpacked(entry) if entry else None
+    if packed is None:
+        raise KeyError(key)
+    return packed
 
 
 def _whole(root: StoredNode) -> Node:
@@ -150,10 +168,10 @@ def read(
     """
     text = source.data.decode("utf-8-sig", "replace")
     key = f"{source.sha256}-{language}-{code()}" if cache else ""
-    entry = cache.get(key) if cache else None
-    root = unpack(entry) if entry else None
-    if root is not None:
-        return Document(path, language, root if is_library else _whole(root), text, source)
+    if cache:
+        with suppress(KeyError):
+            root = StoredNode(_kept(cache, key), None)
+            return Document(path, language, root if is_library else _whole(root), text, source)
     from sysmlc.language.text import parse
 
     before = len(sink)
