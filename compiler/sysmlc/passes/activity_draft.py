@@ -42,6 +42,7 @@ class Draft:
         self.failing: set[str] = set()
         self.listening: dict[str, str] = {}
         self._used: set[str] = set()
+        self._reaching: dict[str, list[TokenEdge]] = {}
         self.takers: dict[str, list[Element]] = {}
         self.incoming: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
         self.outgoing: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
@@ -98,6 +99,7 @@ class Draft:
             listens,
         )
         self.edges.append(edge)
+        self._reaching.setdefault(target, []).append(edge)
         return edge
 
     def path(
@@ -116,7 +118,7 @@ class Draft:
 
     def reaching(self, id: str) -> list[TokenEdge]:
         """Edges so far that reach a node."""
-        return [edge for edge in self.edges if edge.target == id]
+        return self._reaching.get(id, [])
 
     def primary(self, node: Element) -> list[Flow]:
         """Incoming flows without the flow that only brings a decision's input."""

@@ -174,6 +174,8 @@ class _Reader:
             self._check_parts(node, label)
 
     def _read_handlers(self, node: Element, label: str) -> None:
+        if "handlers" not in node.attrs:
+            return
         found = [h for h in handlers_of(self.graph, node) if h.body.id in self.known]
         if found:
             self.drawing.handlers[node.id] = found

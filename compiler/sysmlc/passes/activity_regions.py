@@ -6,6 +6,8 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.values import dataclass
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
+Regions = list[tuple[Element, list[Element]]]
+"""Interruptible regions, each with its nodes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,8 @@ def groups_of(graph: Graph, within: list[Element]) -> dict[str, Element]:
     structured = [node for node in within if node.kind is Kind.STRUCTURED]
     if not structured:
         return {}
-    bodies = {h.body.id for e in within for h in handlers_of(graph, e)}
+    guarded = (one for one in within if "handlers" in one.attrs)
+    bodies = {handler.body.id for one in guarded for handler in handlers_of(graph, one)}
     found: dict[str, Element] = {}
     for node in structured:
         if node.subkind not in ("structured", ""):
@@ -117,9 +120,7 @@ def _after(graph: Graph, element: Element) -> Iterator[Element]:
             yield from graph.targets(flow, Edge.FLOW_TARGET)
 
 
-def interruptible_regions(
-    graph: Graph, within: list[Element], nodes: list[Element]
-) -> list[tuple[Element, list[Element]]]:
+def interruptible_regions(graph: Graph, within: list[Element], nodes: list[Element]) -> Regions:
     """Interruptible regions of an activity with their nodes."""
     return [
         (

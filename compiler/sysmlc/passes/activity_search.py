@@ -49,6 +49,7 @@ def noted(tokens: TokenGraph, found: Found) -> TokenGraph:
     return replace(tokens, nodes=tuple(nodes), rests=found.rests, finishes=found.finishes)
 
 
+@lru_cache(_REMEMBERED)
 def collapsed(tokens: TokenGraph, limit: int) -> TokenGraph:
     """The graph without nodes that only pass tokens on, unless it needs them to be 1-safe."""
     small = collapse(tokens)

@@ -19,7 +19,12 @@ from sysmlc.passes.activity_flows import add_flow, add_rest
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_nodes import add_node
 from sysmlc.passes.activity_raising import Raising
-from sysmlc.passes.activity_regions import FLOWS, interruptible_regions, is_entered_later
+from sysmlc.passes.activity_regions import (
+    FLOWS,
+    Regions,
+    interruptible_regions,
+    is_entered_later,
+)
 from sysmlc.passes.activity_structured import ACCEPTS, add_order, add_start
 from sysmlc.values import replace
 
@@ -37,12 +42,13 @@ def build(
         add_order(draft, node)
     for flow in drawing.flows:
         add_flow(draft, flow)
-    _find_listening(draft)
+    regions = interruptible_regions(graph, drawing.inside, drawing.nodes)
+    _find_listening(draft, regions)
     for node in drawing.nodes:
         add_rest(draft, node)
         add_start(draft, node)
     _check_events(draft)
-    return _result(draft)
+    return _result(draft, regions)
 
 
 def _check_events(draft: Draft) -> None:
@@ -53,16 +59,15 @@ def _check_events(draft: Draft) -> None:
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
 
 
-def _find_listening(draft: Draft) -> None:
+def _find_listening(draft: Draft, regions: Regions) -> None:
     """Accept actions without flows listen when a token enters their interruptible region."""
-    graph, drawing = draft.graph, draft.drawing
-    for region, members in interruptible_regions(graph, drawing.inside, drawing.nodes):
+    for region, members in regions:
         open_ = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
-        for node in open_ if is_entered_later(graph, members) else ():
+        for node in open_ if is_entered_later(draft.graph, members) else ():
             draft.listening[node.id] = region.id
 
 
-def _result(draft: Draft) -> TokenGraph:
+def _result(draft: Draft, regions: Regions) -> TokenGraph:
     activity = draft.drawing.activity
     rounds = list(_rounds(draft))
     again = {edge: round.id for edges, round in rounds for edge in edges}
@@ -79,16 +84,15 @@ def _result(draft: Draft) -> TokenGraph:
         inputs=tuple(draft.inputs.variables.values()),
         pulses=tuple(draft.inputs.pulses),
         interruptibles=(
-            *_regions(draft),
+            *_regions(draft, regions),
             *_exceptions(draft),
             *(round for _, round in rounds),
         ),
     )
 
 
-def _regions(draft: Draft) -> Iterator[Interruptible]:
-    drawing = draft.drawing
-    for region, members in interruptible_regions(draft.graph, drawing.inside, drawing.nodes):
+def _regions(draft: Draft, regions: Regions) -> Iterator[Interruptible]:
+    for region, members in regions:
         yield Interruptible(region.id, region.name, _members(draft, members))
 
 
