@@ -47,16 +47,16 @@ class Cache:
             return None
         return content if content and known == _check_sum(content) else None
 
-    def put(self, key: str, data: bytes) -> None:
-        """Keep an entry; in one step, so that no other process sees half of it."""
+    def put(self, key: str, *parts: bytes | memoryview) -> None:
+        """Keep an entry, of parts; in one step, so that no other process sees half of it."""
         path = self._path(key)
         temporary = f"{path}.{os.getpid()}.{get_ident()}"
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             with open(temporary, "wb", opener=_private) as stream:
-                stream.writelines((_check_sum(data), data))
+                stream.writelines((_check_sum(*parts), *parts))
             os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
-            self._count(len(data))
+            self._count(sum(map(len, parts)))
 
     def _count(self, size: int) -> None:
         """Look through the entries, which takes its time, once after many were put."""
@@ -91,8 +91,11 @@ def _private(path: str, flags: int) -> int:
     return os.open(path, flags, 0o600)
 
 
-def _check_sum(data: bytes) -> bytes:
-    return zlib.crc32(data).to_bytes(_SUM, "big")
+def _check_sum(*parts: bytes | memoryview) -> bytes:
+    found = 0
+    for part in parts:
+        found = zlib.crc32(part, found)
+    return found.to_bytes(_SUM, "big")
 
 
 def default() -> Cache | None:

@@ -33,7 +33,7 @@ def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
     texts = dict(_packed_texts(outcome, cache, unit))
     parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
     lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
-    cache.put(key, b"".join([*lengths, *parts, *texts.values()]))
+    cache.put(key, *lengths, *parts, *texts.values())
     if unit:
         cache.put(unit, key.encode())
 
