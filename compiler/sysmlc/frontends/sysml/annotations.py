@@ -158,7 +158,8 @@ def _namespace(definition: Node | None) -> str:
     """The profile of a stand-in, as it says; that of the recipe levels for our own library."""
     if definition is None:
         return ""
-    if nodes.path_of(definition).startswith(f"{RECIPES}::"):
+    top = nodes.top_of(definition)
+    if top is not definition and nodes.name_of(top) == RECIPES:
         return PROFILE
     for one in nodes.members(definition, "MetadataUsage"):
         if our_name(one) == "External":

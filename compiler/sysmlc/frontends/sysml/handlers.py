@@ -23,6 +23,7 @@ from sysmlc.frontends.sysml.objects import in_behaviour
 from sysmlc.ir import Element, Kind
 from sysmlc.language.tree import Node
 
+_PACKAGES = frozenset({Kind.PACKAGE, Kind.PROFILE})
 _STEPPED = ACTIVITIES
 _BEHAVING = frozenset({Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGION, Kind.RECEPTION})
 
@@ -40,7 +41,7 @@ def _feature(low: Lowering, node: Node, owner: Element | None) -> None:
     """A structural usage by what owns it."""
     if node.kind == "OccurrenceUsage" and marked(node, Kind.CLASS)[0] is Kind.INTERACTION:
         definitions.define(low, node, owner, Kind.INTERACTION, "")
-    elif owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
+    elif owner is None or owner.kind in _PACKAGES:
         usages.in_package(low, node, owner)
     elif owner.kind in STRUCTURAL:
         in_classifier(low, node, owner)
@@ -56,7 +57,7 @@ _INTERACTING = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
 
 
 def _action(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
+    if owner is None or owner.kind in _PACKAGES:
         activities.activity(low, node, owner)
     elif owner.kind in _STEPPED and "direction" in node.facts:
         in_behaviour(low, node, owner)

@@ -222,8 +222,10 @@ class Lowering:
         """A qualified name; what has none, or shares it, is told apart by kind and number."""
         above = "" if owner is None else f"{self._paths[owner.id]}::"
         path = f"{above}{name}" if name else f"{above}<{kind}>"
-        if path in self._taken:
-            path = f"{path}<{kind}>" if name and owner is not None else f"{source}#{path}"
+        if path not in self._taken:
+            self._taken[path] = 1
+            return path
+        path = f"{path}<{kind}>" if name and owner is not None else f"{source}#{path}"
         number = self._taken[path] = self._taken.get(path, 0) + 1
         if number > 1:
             path = f"{path}#{number}"
@@ -248,12 +250,12 @@ class Lowering:
         if target is None:
             self._unresolved(source, edge)
             return
-        known = self.element(target)
-        if known is not None and edge is Edge.SPECIALIZES:
-            self._generals.append((source, known))
+        known = self.elements.get(id(target)) or self.element(target)
         if known is not None:
+            if edge is Edge.SPECIALIZES:
+                self._generals.append((source, known))
             self.graph.connect(edge, source, known)
-        elif self.document(target) is None:
+        elif id(target) not in self._homes:
             self._outside(edge, source, target)
         else:
             self._lost(edge, source, target)

@@ -146,9 +146,9 @@ def is_text(node: Node) -> bool:
     return node.kind in TEXTS
 
 
-def root_of(node: Node) -> Node:
-    """The root namespace that the node stands in."""
-    while node.owner is not None:
+def top_of(node: Node) -> Node:
+    """The member of the root namespace that the node stands in."""
+    while node.owner is not None and node.owner.owner is not None:
         node = node.owner
     return node
 

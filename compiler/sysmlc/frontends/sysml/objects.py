@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
 _BUFFERS = (Kind.OBJECT_NODE, Kind.DATA_STORE)
+_STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED})
 
 
 def in_behaviour(low: "Lowering", node: Node, owner: Element) -> Element:
     """A feature of an activity, a step, a state machine or an operation."""
     is_result = node.membership == "ReturnParameterMembership"
     if "direction" in node.facts or is_result:
-        is_step = owner.kind in (Kind.ACTION, Kind.STRUCTURED)
-        return pin(low, node, owner) if is_step else parameter(low, node, owner)
+        return (pin if owner.kind in _STEPS else parameter)(low, node, owner)
     kind, subkind = marked(node, _kind(low, node, owner))
     if kind in _BUFFERS or subkind == "expansion":
         kind, name = kind if kind in _BUFFERS else Kind.OBJECT_NODE, nodes.name_of(node)

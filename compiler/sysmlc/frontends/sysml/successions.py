@@ -116,8 +116,8 @@ def _flow(
     if _is_elsewhere(low, source) or _is_elsewhere(low, target):
         low.unsupported(node)
         return
-    for point in (source, target):
-        _mention(low, run, point, node)
+    _mention(low, run, source, node)
+    _mention(low, run, target, node)
     is_objects = "ObjectFlow" in annotations.ours(node)
     kind = Kind.OBJECT_FLOW if is_objects else Kind.CONTROL_FLOW
     made = low.add(node, kind, node.name or "", run.owner)
@@ -126,7 +126,7 @@ def _flow(
     elif guard is not None:
         low.later(lambda: values.say(low, made, "guard", guard))
     low.lower_texts(node, made)
-    low.last(lambda: _join(low, made, (source, target), run.ends))
+    low.last(lambda: _join(low, made, (source, target), run))
     if is_objects:
         low.last(lambda: _flow_between_pins(low, node, made))
     if guard is not None:
@@ -198,15 +198,14 @@ def _join(
     low: "Lowering",
     made: Element,
     points: "tuple[Node | Reference | None, Node | Reference]",
-    ends: list[Element] | None,
+    run: _Run,
 ) -> None:
-    owner = low.graph.owner(made)
-    assert owner is not None
+    ends = run.ends
     for edge, point in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), points, strict=True):
         if ends and isinstance(point, Reference) and _is_own_end(low, point):
             found: Element | None = ends[nodes.last_name(point) == "done"]
         else:
-            found = vertex(low, owner, point, is_target=edge is Edge.FLOW_TARGET)
+            found = vertex(low, run.owner, point, is_target=edge is Edge.FLOW_TARGET)
         if found is None:
             low.lead(edge, made, None)
         else:

@@ -13,7 +13,7 @@ _FEATURES = frozenset({"Redefinition", "Subsetting", "ReferenceSubsetting"})
 
 def types_of(low: "Lowering", node: Node) -> list[Node]:
     """Definitions that type a feature, those that it inherits when it states none."""
-    return _types(low, node, set())
+    return _types(low, node, set()) if node.relations else []
 
 
 def _types(low: "Lowering", node: Node, seen: set[int]) -> list[Node]:

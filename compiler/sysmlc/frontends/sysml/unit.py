@@ -85,6 +85,6 @@ def _give_pin(low: Lowering, step: Element, feature: Element) -> None:
 def _say_pins(graph: Graph) -> None:
     """Say what the pins of calls and opaque actions are, where metadata does not."""
     for pin in graph.of_kind(Kind.PIN):
-        owner = graph.owner(pin)
-        if owner is not None and not pin.subkind:
+        owner = None if pin.subkind else graph.owner(pin)
+        if owner is not None:
             graph.set(pin, subkind=pin_subkind(owner, pin) or None)

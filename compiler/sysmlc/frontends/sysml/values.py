@@ -130,13 +130,15 @@ def multiplicity(low: "Lowering", node: Node) -> str:
     """The multiplicity of a feature in UML notation; empty when it is exactly one."""
     if not node.members:
         return ""
-    range_ = next(nodes.members(node, "MultiplicityRange"), None)
-    cross = nodes.crossed(node) if range_ is None else None
-    if cross is not None:
-        return multiplicity(low, cross)
-    if range_ is None:
-        return ""
-    document = low.document(node)
+    for one in node.members:
+        if one.kind == "MultiplicityRange":
+            return _bounds(low, one)
+    cross = nodes.crossed(node)
+    return "" if cross is None else multiplicity(low, cross)
+
+
+def _bounds(low: "Lowering", range_: Node) -> str:
+    document = low.document(range_)
     source = "" if document is None else document.text
     bounds = [_bound(one, source) for one in range_.members if one.kind in nodes.EXPRESSIONS]
     if not bounds:
