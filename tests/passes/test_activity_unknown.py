@@ -45,7 +45,8 @@ def told(body):
 
 def test_a_misspelt_name_is_told_with_the_one_that_was_meant():
     assert told("ful := true") == [
-        "action 'fill' assigns to 'ful', which 'work' does not know; did you mean 'full'?"
+        "action 'fill' assigns to 'ful', which is no feature that 'work' or what it is in has; "
+        "did you mean 'full'?"
     ]
 
 

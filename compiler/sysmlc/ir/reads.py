@@ -189,6 +189,11 @@ class Watched(dict[str, AttrValue]):
         super().clear()
 
 
+def unnoted(element: Element, key: str) -> AttrValue:
+    """An attribute for who asks only for what no literal in it says, such as names."""
+    return dict.get(element.attrs, key)
+
+
 @contextmanager
 def during(graph: "Graph", about: str) -> Iterator[None]:
     """Someone's work on one element of the graph; see ``Reads.part``."""

@@ -13,6 +13,8 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.reads import during
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
+from sysmlc.logic.writers import Writers
+from sysmlc.logic.written import Assigned, assigned
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_bounds import report_stops
@@ -22,8 +24,15 @@ from sysmlc.passes.activity_raising import Raising, find_raising
 from sysmlc.passes.activity_stores import follow, report_unfollowed
 from sysmlc.passes.activity_unknown import report_unknown
 from sysmlc.passes.activity_usages import drawn_of, has_steps
-from sysmlc.passes.activity_written import Assigned, assigned
 from sysmlc.values import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class _Others:
+    """What other behaviours do that matters to an activity: raise exceptions, write features."""
+
+    raising: Raising
+    writers: Writers
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +57,11 @@ class Activities:
         graph.store(TokenGraph, self._token_graphs(graph, sink))
 
     def _token_graphs(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
-        raising = find_raising(graph)
+        others = _others(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
             for one in _played(graph, activity):
                 with during(graph, one.id):
-                    found = self._found(graph, one, raising, sink)
+                    found = self._found(graph, one, others, sink)
                 if found is not None:
                     yield found
 
@@ -62,17 +71,17 @@ class Activities:
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
         """The token graph of an activity, or of an operation by one of a library; or None."""
-        return self._found(graph, about, find_raising(graph), sink)
+        return self._found(graph, about, _others(graph), sink)
 
     def _found(
-        self, graph: Graph, activity: Element, raising: Raising, sink: Sink
+        self, graph: Graph, activity: Element, others: _Others, sink: Sink
     ) -> TokenGraph | None:
         drawn = drawn_of(graph, activity)
         try:
             if drawn is activity:
-                return self._token_graph(graph, activity, raising, sink)
+                return self._token_graph(graph, activity, others, sink)
             # What is odd in a drawing is told where it is drawn.
-            tokens = self._token_graph(graph, drawn, raising, Sink())
+            tokens = self._token_graph(graph, drawn, others, Sink())
         except activity_drawing.CannotPlayError:
             return None
         component = component_of(graph, activity)
@@ -80,7 +89,7 @@ class Activities:
         return replace(tokens, activity=activity.id, component=component, label=label)
 
     def _token_graph(
-        self, graph: Graph, activity: Element, raising: Raising, sink: Sink
+        self, graph: Graph, activity: Element, others: _Others, sink: Sink
     ) -> TokenGraph:
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read(graph, activity, sink)
@@ -89,12 +98,12 @@ class Activities:
             raise activity_drawing.CannotPlayError
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
-        tokens = activity_tokens.build(graph, drawing, inputs, raising, sink)
+        tokens = activity_tokens.build(graph, drawing, inputs, others.raising, sink)
         written = _written(graph, drawing, tokens)
-        tokens, unfollowed = follow(graph, activity, written, tokens, scope)
+        tokens, unfollowed = follow(graph, activity, written, tokens, scope, others.writers)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         report_unfollowed(graph, activity, unfollowed, sink)
-        report_unknown(graph, activity, written, sink)
+        report_unknown(graph, activity, written, scope, others.writers, sink)
         report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
@@ -109,6 +118,10 @@ class Activities:
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
+
+
+def _others(graph: Graph) -> _Others:
+    return _Others(find_raising(graph), Writers(graph))
 
 
 def _depth(graph: Graph, activity: Element, inside: Element) -> int:

@@ -13,9 +13,9 @@ from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.path import saturated
 from sysmlc.logic.simplify import substitute
+from sysmlc.logic.writers import Writers, called
+from sysmlc.logic.written import Assigned
 from sysmlc.passes.activity_expressions import Scope
-from sysmlc.passes.activity_writers import called, writer_elsewhere
-from sysmlc.passes.activity_written import Assigned
 from sysmlc.values import dataclass, replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
@@ -64,19 +64,35 @@ WRITTEN = rule(
     why="The contract follows what actions assign to the activity's own features and those of "
     "its block, as far as they have finitely many values, are written nowhere else, and get values "
     "that can be read. Else it holds for all values, and has ways that are never taken.",
-    help="give an Integer a range (constraint 0 <= {name} <= 9), write the value as an expression "
-    "over known properties, or say what becomes of it in a requirement",
+    help="{advice}, or say what becomes of it in a requirement",
     wrong=_counting("full := measure()"),
     right=_counting("full := true"),
 )
 
 
 @dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a contract cannot follow a feature, and what can be done about it."""
+
+    reason: str
+    advice: str
+
+
+_ENDLESS = Refusal("it has not finitely many values", "give it a type that has")
+_WIDE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)")
+_DECIDED = Refusal("others decide it too", "assign to a feature that is neither given nor constant")
+ELSEWHERE = Refusal("it belongs to another object", "let the object itself do it (an operation)")
+_UNKNOWN = Refusal(
+    "the value that it gets is not known", "write the value as an expression over known properties"
+)
+
+
+@dataclass(frozen=True, slots=True)
 class Unfollowed:
-    """A feature that the activity reads and writes, and why its contract does not follow it."""
+    """A feature that the activity writes, and why its contract does not follow it."""
 
     feature: Element
-    reason: str
+    why: Refusal
     writers: tuple[str, ...]
 
 
@@ -86,11 +102,12 @@ def follow(
     written: Iterable[list[Assigned]],
     tokens: TokenGraph,
     scope: Scope,
+    writers: Writers,
 ) -> tuple[TokenGraph, list[Unfollowed]]:
     """The token graph with the variables that its nodes write; and what it reads but cannot
     follow. ``written`` is what each action assigns.
     """
-    found = _Following(graph, activity, tokens, scope)
+    found = _Following(graph, activity, tokens, scope, writers)
     for statements in written:
         found.note(statements)
     if not found.assigned:
@@ -110,20 +127,39 @@ def report_unfollowed(
             name=one.feature.name,
             writers=" and ".join(one.writers),
             verb="writes" if len(one.writers) == 1 else "write",
-            reason=one.reason,
+            reason=one.why.reason,
+            advice=one.why.advice.format(name=one.feature.name),
         )
+
+
+def feature_of(one: Assigned, scope: Scope, writers: Writers) -> Feature | None:
+    """The feature that an activity knows by the name that is assigned to, or by its own name."""
+    found = scope.named(one.name)
+    if found is None:
+        target = writers.target(one.action, one.name)
+        near = None if target is None else scope.named(target.name)
+        found = near if near is not None and near.element is target else None
+    return found
 
 
 class _Following:
     """Features that actions of one activity assign, by the names of their variables."""
 
-    def __init__(self, graph: Graph, activity: Element, tokens: TokenGraph, scope: Scope) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        activity: Element,
+        tokens: TokenGraph,
+        scope: Scope,
+        writers: Writers,
+    ) -> None:
         self.graph, self.activity, self.tokens, self.scope = graph, activity, tokens, scope
+        self.writers = writers
         self.nodes = {node.id: node for node in tokens.workers()}
         self.features: dict[str, Feature] = {}
         self.assigned: dict[str, list[Assigned]] = {}
         self.writes: dict[str, list[Write]] = {}
-        self.refused: dict[str, str] = {}
+        self.refused: dict[str, Refusal] = {}
         self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
 
@@ -132,7 +168,7 @@ class _Following:
         left: dict[str, _Cases] = {}
         stops: dict[str, tuple[Formula, ...]] = {}
         for one in statements:
-            feature = self.scope.named(one.name)
+            feature = feature_of(one, self.scope, self.writers)
             if feature is None:
                 continue
             name = feature.variable
@@ -145,7 +181,8 @@ class _Following:
             else:
                 left.pop(name, None)
                 said = f"'{one.text}' is not known, or has too many cases"
-                self.refused.setdefault(name, said if one.text else _UNKNOWN)
+                why = replace(_UNKNOWN, reason=said) if one.text else _UNKNOWN
+                self.refused.setdefault(name, why)
         text = statements[0].text if len(statements) == 1 else ""
         for name, cases in left.items():
             node = statements[0].action.id
@@ -222,24 +259,24 @@ class _Following:
     def _other_writer(self, feature: Feature) -> Element | None:
         name = feature.variable
         if name not in self.others:
-            self.others[name] = writer_elsewhere(self.graph, self.activity, feature)
+            self.others[name] = self.writers.beside(feature.element, self.activity)
         return self.others[name]
 
-    def _refusal(self, name: str) -> str:
-        """Why the contract cannot follow the variable; empty when it can."""
+    def _refusal(self, name: str) -> Refusal | None:
+        """Why the contract cannot follow the variable; None when it can."""
         feature = self.features[name]
         if feature.domain is None:
-            return "it has not finitely many values"
+            return _ENDLESS
         if feature.is_assumed:
-            return "it has no range"
+            return _WIDE
         if feature.direction in ("in", "inout") or feature.constant:
-            return "others decide it too"
+            return _DECIDED
         if self.scope.is_of_another(name):
-            return "it belongs to another object"
+            return ELSEWHERE
         if name in self.refused:
             return self.refused[name]
         other = None if self._is_local(feature) else self._other_writer(feature)
-        return "" if other is None else f"'{called(self.graph, other)}' writes it too"
+        return None if other is None else _shared(called(self.graph, other))
 
     def _store(self, name: str) -> Store:
         feature = self.features[name]
@@ -252,11 +289,21 @@ class _Following:
         """What is read and written and not followed, with the reason."""
         found = []
         for name, writes in self.assigned.items():
-            reason = self._refusal(name) if name in self.read or self._is_shared(name) else ""
-            if reason:
+            why = self._refusal(name) if self._matters(name) else None
+            if why is not None:
                 labels = dict.fromkeys(self.nodes[one.action.id].label for one in writes)
-                found.append(Unfollowed(self.features[name].element, reason, tuple(labels)))
+                found.append(Unfollowed(self.features[name].element, why, tuple(labels)))
         return found
+
+    def _matters(self, name: str) -> bool:
+        """Whether someone misses it; what calls give alone is the environment's anyway."""
+        if all(one.is_bound for one in self.assigned[name]) and not self._is_shared(name):
+            return False
+        return name in self.read or self._is_shared(name) or self.scope.is_of_another(name)
+
+
+def _shared(writer: str) -> Refusal:
+    return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
 
 
 def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
@@ -264,9 +311,6 @@ def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> It
         yield from saturated(case, value, domain, spread)
     else:
         yield case, value, False
-
-
-_UNKNOWN = "the value that it gets is not known"
 
 
 def _after(

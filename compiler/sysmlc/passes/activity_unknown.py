@@ -1,10 +1,14 @@
-"""Names that actions assign to although nobody has them (SM545)."""
+"""Names that actions assign to although nobody has them (SM545), or another object (SM544)."""
 
 from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
-from sysmlc.passes.activity_written import Assigned
+from sysmlc.logic.expressions.context import named_values
+from sysmlc.logic.writers import Writers, called
+from sysmlc.logic.written import Assigned
+from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_stores import ELSEWHERE, Unfollowed, feature_of, report_unfollowed
 from sysmlc.suggest import did_you_mean
 
 
@@ -32,7 +36,8 @@ UNKNOWN = rule(
     "SM545",
     "assigns-to-nobody",
     Severity.INFO,
-    "action '{action}' assigns to '{name}', which '{activity}' does not know; {suggestion}",
+    "action '{action}' assigns to '{name}', which is no feature that '{activity}' or what it is in "
+    "has; {suggestion}",
     why="An action assigns to features of its activity and of the block that has it. The contract "
     "leaves out what it cannot find, so that the assignment has no effect there.",
     help="correct the name, or give the block or the activity a property of that name",
@@ -42,29 +47,41 @@ UNKNOWN = rule(
 
 
 def report_unknown(
-    graph: Graph, activity: Element, written: Iterable[list[Assigned]], sink: Sink
+    graph: Graph,
+    activity: Element,
+    written: Iterable[list[Assigned]],
+    scope: Scope,
+    writers: Writers,
+    sink: Sink,
 ) -> None:
-    """Report each name that one of the actions assigns to and nobody has."""
+    """Report each name that one of the actions assigns to and that the activity does not know."""
     # What a write action writes is a reference, no name.
     named = [one for found in written for one in found if one.action.subkind != "write"]
-    if not named:
-        return
-    known = set(_known(graph, activity))
-    for action, name in ((one.action, one.name) for one in named):
-        if name.partition(".")[0] not in known:
-            suggestion = did_you_mean(name, known)
+    for one in named:
+        if one.is_bound or feature_of(one, scope, writers) is not None:
+            continue
+        target = writers.target(one.action, one.name)
+        if target is not None:
+            if activity in graph.ancestors(target):
+                continue
+            label = called(graph, one.action)
+            unfollowed = Unfollowed(target, ELSEWHERE, (f"action '{label}'",))
+            report_unfollowed(graph, activity, [unfollowed], sink)
+        elif one.name.partition(".")[0] not in (known := set(_known(graph, activity))):
             sink.report(
                 UNKNOWN,
-                graph.subject(action),
-                action=action.name,
+                graph.subject(one.action),
+                action=one.action.name,
                 activity=activity.name,
-                name=name,
-                suggestion=suggestion,
+                name=one.name,
+                suggestion=did_you_mean(one.name, known),
             )
 
 
 def _known(graph: Graph, activity: Element) -> Iterator[str]:
     """Names of what the activity has, and of features of the classifiers that it is in."""
-    owners = (one for one in graph.ancestors(activity) if one.kind in query.CLASSIFIERS)
-    features = (one for owner in owners for one in query.features(graph, owner))
-    return (one.name for one in (*features, *graph.subtree(activity)) if one.name)
+    around = (activity, *graph.ancestors(activity))
+    owners = [one for one in around if one.kind in query.CLASSIFIERS]
+    features = (name for owner in owners for name in named_values(graph, owner))
+    yield from (name for name in features if name)
+    yield from (one.name for one in graph.subtree(activity) if one.name)

@@ -21,6 +21,7 @@ from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.statements import statements
 from sysmlc.logic.services import conditions
 from sysmlc.logic.services import derivation as services
+from sysmlc.logic.writers import Writers
 from sysmlc.passes.contract_formulas import add_formulas, report_general
 from sysmlc.values import dataclass, replace
 
@@ -72,9 +73,10 @@ class Contracts:
         graph.store(Contract, sorted(found, key=lambda contract: contract.component))
 
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
+        writers = Writers(graph)
         for element in graph.of_kind(Kind.STATE_MACHINE):
             with during(graph, element.id):
-                contract = self.part(graph, element, sink)
+                contract = self._of_machine(graph, element, writers, sink)
             if contract is not None:
                 yield contract
 
@@ -96,10 +98,15 @@ class Contracts:
             found = (one for one in graph.derived(TokenGraph) if one.activity == about.id)
             tokens = next(found, None)
             return None if tokens is None else activity_contract.derive(tokens)
+        return self._of_machine(graph, about, Writers(graph), sink)
+
+    def _of_machine(
+        self, graph: Graph, about: Element, writers: Writers, sink: Sink
+    ) -> Contract | None:
         if not _is_behaviour(graph, about):
             return None
         options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
-        machine = read_machine(graph, about, sink, options)
+        machine = read_machine(graph, about, sink, options, writers)
         if machine is None:
             return None
         return statemachine.derive(graph, machine, query.component_name(graph, about), sink)

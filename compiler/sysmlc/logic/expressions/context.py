@@ -13,6 +13,9 @@ from sysmlc.logic.expressions.features import Features, variables
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.values import dataclass
 
+VALUES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
+"""Kinds of what has a value in a context."""
+
 ASSUMED_RANGE = rule(
     "SM410",
     "assumed-range",
@@ -86,26 +89,23 @@ def variables_of(
 
 
 def _known(graph: Graph, classifier: Element, within: Element | None) -> dict[str, Element]:
-    named = of_ports(graph, classifier) | _named(graph, classifier)
+    named = of_ports(graph, classifier) | named_values(graph, classifier)
     named |= of_objects(graph, classifier)
     if within is not None and within is not classifier:
-        named |= _named(graph, within) | of_objects(graph, within)
+        named |= named_values(graph, within) | of_objects(graph, within)
     return named
 
 
-def _named(graph: Graph, classifier: Element) -> dict[str, Element]:
+def named_values(graph: Graph, classifier: Element) -> dict[str, Element]:
+    """What has values in a classifier by its name, what it inherits, too; own ones go before."""
     known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
-    found = [one for one in known if one.name and _is_value(one)]
+    found = [one for one in known if one.name and one.kind in VALUES]
     return {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
 
 
 def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:
     for general in query.generals(graph, classifier):
-        yield from (one for one in graph.owned(general) if one.name and _is_value(one))
-
-
-def _is_value(element: Element) -> bool:
-    return element.kind in (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
+        yield from (one for one in graph.owned(general) if one.name and one.kind in VALUES)
 
 
 def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:

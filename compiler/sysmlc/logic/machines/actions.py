@@ -8,6 +8,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.context import Context, note_range
+from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import (
     ElaborationError,
     Fault,
@@ -32,8 +33,10 @@ from sysmlc.logic.expressions.expression import (
     print_statement,
 )
 from sysmlc.logic.machines.machine import Action, Assign, Raise
+from sysmlc.logic.machines.shared import SHARED, Sharing
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine
+from sysmlc.logic.writers import called
 from sysmlc.values import dataclass
 
 
@@ -121,6 +124,7 @@ class Reading:
     context: Context
     names: Names
     tick_seconds: float
+    sharing: Sharing
     made: dict[str, Variable] = field(default_factory=dict)
     """Variables beside the properties, by what they stand for."""
     used: dict[str, None] = field(default_factory=dict)
@@ -246,10 +250,31 @@ def _behaviour(reading: Reading, behaviour: Element, edge: Edge) -> list[Action]
 
 
 def _opaque(reading: Reading, text: str, behaviour: Element) -> Raise:
-    output = reading.output(f"done {text.strip()}", text, behaviour.id)
+    output = _shown(reading, text, behaviour)
     subject = reading.graph.subject(behaviour)
     reading.sink.report(OPAQUE_EFFECT, subject, text=text.strip(), variable=output)
     return Raise(output, behaviour.id)
+
+
+def _shown(reading: Reading, text: str, behaviour: Element) -> str:
+    """The output that tells that something was done."""
+    return reading.output(f"done {text.strip()}", text, behaviour.id)
+
+
+def _is_shared(reading: Reading, feature: Feature, text: str, behaviour: Element) -> bool:
+    """Whether others write a feature, too; that is reported."""
+    other = reading.sharing.other(feature.element)
+    if other is not None:
+        reading.sink.report(
+            SHARED,
+            reading.graph.subject(behaviour),
+            machine=reading.sharing.machine.name,
+            name=feature.element.name,
+            text=text.strip(),
+            variable=_shown(reading, text, behaviour),
+            writer=called(reading.graph, other),
+        )
+    return other is not None
 
 
 def _action(reading: Reading, statement: Statement, text: str, behaviour: Element) -> Action:
@@ -272,6 +297,8 @@ def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: E
     if feature is None or feature.domain is None or feature.constant:
         reading.sink.report(NOT_ASSIGNABLE, subject, text=text, name=name, context=context)
         return _opaque(reading, text, behaviour)
+    if _is_shared(reading, feature, text, behaviour):
+        return Raise(_shown(reading, text, behaviour), behaviour.id)
     try:
         value = meaning(statement.value, reading.scope, feature.domain)
         _check_assignable(value.domain, feature.domain, statement.value)

@@ -10,12 +10,14 @@ from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element
 from sysmlc.logic.machines.orthogonal import is_undisturbed
 from sysmlc.logic.machines.overrides import report_overrides
 from sysmlc.logic.machines.shape import has_ends, is_well_formed
+from sysmlc.logic.machines.shared import Sharing
 from sysmlc.logic.machines.support import is_supported
 from sysmlc.logic.machines.transitions import join_up, read_transitions
 from sysmlc.logic.machines.triggers import Parts
 from sysmlc.logic.machines.vertices import read_regions, remember
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine
+from sysmlc.logic.writers import Writers
 from sysmlc.values import dataclass, replace
 
 NONDETERMINISTIC = rule(
@@ -58,16 +60,21 @@ def context_classifier(graph: Graph, behaviour: Element) -> Element | None:
 
 
 def read_machine(
-    graph: Graph, machine: Element, sink: Sink, options: MachineOptions | None = None
+    graph: Graph,
+    machine: Element,
+    sink: Sink,
+    options: MachineOptions | None = None,
+    writers: Writers | None = None,
 ) -> Machine | None:
     """The state machine as values, or None when something in it is not derived.
 
-    Everything that is missing or wrong is reported.
+    Everything that is missing or wrong is reported. What others of the ``writers`` write, too, is
+    the environment's; without them the machine alone is looked at.
     """
-    options = options or MachineOptions()
     if not is_supported(graph, machine, sink):
         return None
-    parts = _start(graph, machine, sink, options)
+    sharing = Sharing(graph, machine, writers)
+    parts = _start(graph, sharing, sink, options or MachineOptions())
     top = read_regions(parts, machine, "", machine)
     remember(parts)
     read_transitions(parts)
@@ -83,12 +90,13 @@ def read_machine(
     return made
 
 
-def _start(graph: Graph, machine: Element, sink: Sink, options: MachineOptions) -> Parts:
+def _start(graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions) -> Parts:
+    machine = sharing.machine
     found = context_classifier(graph, machine)
     context = context_of(graph, found, options.assumed_range, machine)
     taken = [*context.variables.values(), *context.features]
     names = Names("event", NO_EVENT, *taken)
-    return Parts(Reading(graph, sink, context, names, options.tick_seconds), machine)
+    return Parts(Reading(graph, sink, context, names, options.tick_seconds, sharing), machine)
 
 
 # -- the whole ---------------------------------------------------------------------------------

@@ -1,12 +1,14 @@
-"""What the actions of an activity write, in the order in which their tokens come.
+"""What an action writes, one after the other.
 
-An action assigns (``x := e`` in its body), or writes a structural feature (UML 2.5.1, 16.8.3: Add
-Structural Feature Value, its value given by a literal).
+It assigns (``x := e`` in its body), writes a structural feature (UML 2.5.1, 16.8.3: Add Structural
+Feature Value, its value given by a literal), or gives an output of what it calls to a feature that
+is bound to it (SysML 2.0, 7.16: ``out x = level``).
 """
 
 from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.reads import unnoted
 from sysmlc.logic.expressions.expression import (
     Assignment,
     Expression,
@@ -26,6 +28,8 @@ class Assigned:
     action: Element
     name: str
     value: Expression | None
+    is_bound: bool = False
+    """Whether it is an output of what the action calls: the environment decides it."""
 
     @property
     def text(self) -> str:
@@ -40,6 +44,36 @@ def assigned(graph: Graph, action: Element) -> Iterator[Assigned]:
     body = action.attrs.get("body")
     if action.subkind in ("opaque", "function") and isinstance(body, str) and ":=" in body:
         yield from _said(action, body)
+    for name in bound(graph, action):
+        yield Assigned(action, name, None, is_bound=True)
+
+
+def written_names(graph: Graph, action: Element) -> Iterator[str]:
+    """The names of what an action writes but for a write action, which refers to its feature.
+
+    Literals in its text may change without changing them: nobody notes this as a question.
+    """
+    body = unnoted(action, "body")
+    if action.subkind in ("opaque", "function") and isinstance(body, str) and ":=" in body:
+        yield from (one.name for one in _said(action, body))
+    yield from bound(graph, action)
+
+
+def bound(graph: Graph, action: Element) -> Iterator[str]:
+    """The names of features that are outputs of what an action calls."""
+    for pin in graph.owned(action) if action.kind is Kind.ACTION else ():
+        if pin.attrs.get("direction") in ("out", "inout", "return"):
+            text = unnoted(pin, "value")
+            name = _name(text) if isinstance(text, str) else None
+            if name:
+                yield name
+
+
+def _name(text: str) -> str | None:
+    try:
+        return name_of(parse_expression(text))
+    except ExpressionError:
+        return None
 
 
 def _said(action: Element, body: str) -> Iterator[Assigned]:

@@ -1,0 +1,101 @@
+"""Who writes which feature: what all behaviours of a model assign, found once."""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.expressions.context import VALUES, named_values
+from sysmlc.logic.written import written_names
+
+_STEP = re.compile(r"::|\.")
+_NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
+"""What has a value, and what others are in."""
+
+
+class Writers:
+    """The actions and effects of a graph by the features that they write.
+
+    Nothing is looked for before somebody asks. The graph must stay as it is.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._writing: dict[str, list[Element]] | None = None
+        self._named: dict[str, dict[str, Element]] = {}
+
+    def beside(self, feature: Element, behaviour: Element) -> Element | None:
+        """What writes the feature and does not stand inside of the behaviour; the first of all.
+
+        An object has one value for a feature and for what redefines it.
+        """
+        for one in self._of(feature):
+            if one is not behaviour and behaviour not in self._graph.ancestors(one):
+                return one
+        return None
+
+    def target(self, writer: Element, name: str) -> Element | None:
+        """The feature that a name leads to (``full``, ``arm.load``, ``Plant::total``), from where
+        it is written; None when it leads nowhere.
+        """
+        first, *more = _STEP.split(name)
+        found = self._first(writer, first)
+        for step in more:
+            found = None if found is None else self._next(found, step)
+        return found if found is not None and found.kind in VALUES else None
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _of(self, feature: Element) -> list[Element]:
+        if self._writing is None:
+            self._writing = {}
+            for writer, written in self._all():
+                self._writing.setdefault(written.id, []).append(writer)
+        slots = (feature, *query.redefined(self._graph, feature), *self._redefining(feature))
+        return [one for slot in slots for one in self._writing.get(slot.id, ())]
+
+    def _redefining(self, feature: Element) -> Iterable[Element]:
+        """All that redefines the feature, directly or not."""
+        found = {feature.id: feature}
+        waiting = [feature]
+        for one in waiting:
+            new = [o for o in self._graph.sources(one, Edge.REDEFINES) if o.id not in found]
+            found.update((o.id, o) for o in new)
+            waiting += new
+        return waiting[1:]
+
+    def _all(self) -> Iterator[tuple[Element, Element]]:
+        graph = self._graph
+        for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
+            if one.subkind == "write":
+                yield from ((one, each) for each in graph.targets(one, Edge.CALLS))
+            for name in written_names(graph, one):
+                feature = self.target(one, name)
+                if feature is not None:
+                    yield one, feature
+
+    def _first(self, writer: Element, name: str) -> Element | None:
+        """What a name means where something is written: the nearest around it that has it."""
+        for above in (writer, *self._graph.ancestors(writer)):
+            found = self._inside(above, name)
+            if found is not None:
+                return found
+        return next((one for one in self._graph.roots() if one.name == name), None)
+
+    def _next(self, of: Element, name: str) -> Element | None:
+        type_ = query.type_of(self._graph, of)
+        return self._inside(of, name) or (type_ and self._inside(type_, name))
+
+    def _inside(self, scope: Element, name: str) -> Element | None:
+        known = self._named.get(scope.id)
+        if known is None:
+            owned = (one for one in self._graph.owned(scope) if one.kind in _NAMED)
+            known = {one.name: one for one in owned if one.name}
+            if scope.kind in query.CLASSIFIERS:
+                known |= named_values(self._graph, scope)
+            self._named[scope.id] = known
+        return known.get(name)
+
+
+def called(graph: Graph, one: Element) -> str:
+    """What is named, or what a nameless effect or action is in."""
+    return next((each.name for each in (one, *graph.ancestors(one)) if each.name), one.subkind)
