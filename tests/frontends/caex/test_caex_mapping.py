@@ -717,6 +717,16 @@ def test_a_facet_or_group_realizes_the_role_that_makes_it_one():
     assert found == [["Roles::View"], ["Roles::Set"], []]
 
 
+def test_each_role_that_makes_it_one_is_read_whatever_other_elements_play():
+    view, base = playing("Roles/View"), playing(f"{BASE_ROLE}/Facet")
+    reading = Read(
+        roles(f'<RoleClass Name="View" RefBaseClassPath="{BASE_ROLE}/Facet"/>')
+        + plant(f'<InternalElement Name="v" ID="v">{base}{view}</InternalElement>')
+    )
+    assert reading.to("Plant::v", "realizes") == ["Roles::View"]
+    assert reading.findings == []
+
+
 def showing(role, inside, beside=""):
     return Read(
         plant(
@@ -746,6 +756,7 @@ def test_a_group_may_hold_groups():
     ("facet", "findings"),
     [
         ("plc", []),
+        (" plc\n", []),
         (
             "plcs",
             [

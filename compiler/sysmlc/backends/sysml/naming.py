@@ -17,7 +17,7 @@ def name_all(plan: Plan) -> None:
     stack = list(plan.tops)
     while stack:
         top = stack.pop()
-        _name(plan, top.members, set(top.shape.inherited))
+        _name(plan, top.members, set(top.shape.reserved))
         stack.extend(top.members)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
+from sysmlc.backends.sysml.inherited import inherited
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.branches import is_joined
 from sysmlc.ir.query import type_of
@@ -32,7 +33,12 @@ class Shape:
 
     @property
     def inherited(self) -> frozenset[str]:
-        """Names that members have from the standard library, whatever the element specialises."""
+        """Names that it has from the standard library, whatever the element specialises."""
+        return inherited(self.keyword)
+
+    @property
+    def reserved(self) -> frozenset[str]:
+        """Those of them that mean something where a behaviour is written: no member has them."""
         return _IN_BEHAVIOURS if self.plain in _RUNNING else frozenset()
 
 

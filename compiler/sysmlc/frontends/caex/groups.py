@@ -47,14 +47,15 @@ def kind_of(context: Context, site: Site) -> Kind | None:
     document = site.document
     for row in site.roles:
         path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "")
-        key = (document, path)
-        kind = context.shown[key] if key in context.shown else _look_up(context, document, path)
+        kind = _look_up(context, document, path)
         if kind is not None:
             return kind
     return None
 
 
 def _look_up(context: Context, document: Document, path: str) -> Kind | None:
+    if (document, path) in context.shown:
+        return context.shown[document, path]
     role = context.look_up(path.strip(), Family.ROLE, document) if path.strip() else None
     kind = context.shown[document, path] = _kind_of(role) if isinstance(role, Type) else None
     return kind
@@ -83,12 +84,12 @@ def lower(context: Context, site: Site, kind: Kind) -> None:
     site.part = element.id
     for role in map(site.document.node, site.roles):
         path = role.attributes.get(ROLE_REFERENCES[role.tag], "")
-        if context.shown.get((site.document, path)) is kind:
+        if _look_up(context, site.document, path) is kind:
             role.verdict = Verdict.MAPPED
             _realize(context, site, element, path.strip())
     for node in site.node.of("Attribute"):
         if node.name == "AssociatedFacet":
-            context.graph.set(element, associated_facet=node.text("Value") or None)
+            context.graph.set(element, associated_facet=(node.text("Value") or "").strip() or None)
             node.verdict = Verdict.MAPPED
 
 

@@ -1,0 +1,49 @@
+"""What the standard library gives every member of a kind hides what has such a name further out."""
+
+import pytest
+from judging import judged
+from writing import lines_of, refined
+
+from sysmlc.backends.sysml.inherited import BASES, inherited
+from sysmlc.language.library import find
+from sysmlc.language.names import Model
+
+MODEL = """\
+Package p "Plant"
+  Class sh "{part}" role="block"
+  Class fo "{item}" role="block"
+  Class c "Cell" role="block"
+    Property a "a" role="part" aggregation="composite"
+      -> typed-by sh
+    Activity w "work"
+      Parameter x "x" direction="in"
+        -> typed-by fo
+"""
+
+
+@pytest.fixture(scope="module")
+def library():
+    return Model([], find())
+
+
+@pytest.mark.parametrize("keyword", sorted(BASES))
+def test_the_names_are_those_of_the_standard_library(library, keyword):
+    base = library.find(BASES[keyword])
+    members = [one for one in library.members(base) if one.visibility != "private"]
+    names = {name for one in members for name in (one.name, one.short) if name}
+    assert inherited(keyword) == inherited(f"{keyword} def") == names
+
+
+@pytest.mark.parametrize(
+    ("part", "item"), [("shape", "forks"), ("ownedStates", "self"), ("start", "joins")]
+)
+def test_a_block_with_such_a_name_is_named_with_its_package(part, item):
+    text = MODEL.format(part=part, item=item)
+    assert {f"part a : Plant::{part};", f"in item x : Plant::{item};"} <= {*lines_of(text)}
+    complaints, differences, _ = judged(refined(text))
+    assert (complaints, differences) == ([], [])
+
+
+def test_other_names_stay_short():
+    lines = lines_of(MODEL.format(part="Arm", item="forces"))
+    assert {"part a : Arm;", "in item x : forces;"} <= {*lines}
