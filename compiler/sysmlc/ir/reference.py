@@ -2,7 +2,7 @@
 
 from bisect import bisect
 from collections.abc import Collection, Iterator
-from itertools import compress
+from itertools import chain, compress
 from typing import NamedTuple
 
 from sysmlc.ir.element import Element
@@ -122,8 +122,9 @@ class References:
 
     def forget_elements(self) -> None:
         """Know all ends by their ids alone: elements may leave the graph."""
-        self.sources = list(map(id_of, self.sources))
-        self.targets = list(map(id_of, self.targets))
+        if not {str}.issuperset(map(type, chain(self.sources, self.targets))):
+            self.sources = list(map(id_of, self.sources))
+            self.targets = list(map(id_of, self.targets))
 
     def clear(self) -> None:
         """Forget all references."""

@@ -3,6 +3,7 @@
 import json
 import os
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from sysmlc.cache import Cache
@@ -13,6 +14,8 @@ from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
 
 VARIABLE = "SYSML_LIBRARY_PATH"
 """Environment variable: the folder or .kpar of the standard library."""
+_REMEMBERED = 256
+"""Files of libraries that are kept in memory."""
 _SUFFIXES = {".sysml": "sysml", ".kerml": "kerml"}
 _DISTRIBUTION = "sysml"
 """The distribution whose model files are the standard library; they are read as data only."""
@@ -196,9 +199,20 @@ def _of_folder(folder: Path) -> list[Source]:
             if suffix in _SUFFIXES or suffix == ".kpar":
                 path = Path(below) / file
                 name = path.relative_to(folder).as_posix()
-                source = Source(name, path.read_bytes())
+                source = _source(path, name)
                 found += entries(source, _is_model) if suffix == ".kpar" else [source]
     return sorted(found, key=lambda source: source.name)
+
+
+def _source(path: Path, name: str) -> Source:
+    told = path.stat()
+    return _kept(path, name, told.st_size, told.st_mtime_ns)
+
+
+@lru_cache(_REMEMBERED)
+def _kept(path: Path, name: str, _size: int, _changed: int) -> Source:
+    """The file as it was changed last: a process that compiles again need not read it."""
+    return Source(name, path.read_bytes())
 
 
 def _is_model(name: str) -> bool:
