@@ -98,13 +98,16 @@ def golden(request):
     return Golden(request.config.getoption("--update-golden"), terminal.line)
 
 
+def pytest_runtest_setup(item):
+    is_on_corpus = "corpus" in item.fixturenames or item.get_closest_marker("corpus")
+    if is_on_corpus and not os.environ.get("SYSMLC_CORPUS"):
+        pytest.skip("SYSMLC_CORPUS is not set")
+
+
 @pytest.fixture(scope="session")
 def corpus() -> Path:
     """The folder with real models; a test that uses it carries the mark ``corpus``."""
-    folder = os.environ.get("SYSMLC_CORPUS")
-    if not folder:
-        pytest.skip("SYSMLC_CORPUS is not set")
-    return Path(folder)
+    return Path(os.environ["SYSMLC_CORPUS"])
 
 
 @pytest.fixture(scope="session")
