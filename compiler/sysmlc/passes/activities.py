@@ -17,6 +17,7 @@ from sysmlc.logic.writers import Writers
 from sysmlc.logic.written import Assigned, assigned
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
+from sysmlc.passes.activity_assignable import report_faults
 from sysmlc.passes.activity_bounds import report_stops
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
@@ -104,6 +105,7 @@ class Activities:
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         report_unfollowed(graph, activity, unfollowed, sink)
         report_unknown(graph, activity, written, scope, others.writers, sink)
+        report_faults(graph, activity, written, scope, others.writers, sink)
         report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)

@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
+from sysmlc.logic.contract import BooleanDomain, Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of, note_range
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import (
@@ -17,9 +17,9 @@ from sysmlc.logic.expressions.expression import (
     Expression,
     ExpressionError,
     parse_expression,
-    print_expression,
 )
 from sysmlc.logic.formula import Formula, const, var, variables
+from sysmlc.logic.machines.actions import check_assignable
 
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)
 
@@ -66,18 +66,23 @@ class Scope:
         """Whether the variable stands for a feature of a part or of what a reference leads to."""
         return all("." in name for name, one in self._variables.items() if one == variable)
 
+    def domain(self, variable: str) -> Domain:
+        """The values that a variable may have; what stands for no property is Boolean."""
+        known = (self._feature(name) for name, one in self._variables.items() if one == variable)
+        found = (one.domain for one in known if one is not None and one.domain is not None)
+        return next(found, BooleanDomain())
+
     def variable(self, name: str) -> Variable | None:
         """The variable of a property as an input; reports the range that it is given."""
         return self._variable(name)
 
     def value(self, expression: Expression, domain: Domain) -> Meaning:
         """The values that an expression has. Raises ElaborationError when it has none of the
-        domain's kind.
+        domain's kind; numbers may lie outside.
         """
         found = meaning(expression, self._symbol, domain)
-        if type(found.domain) is not type(domain):
-            text = print_expression(expression)
-            raise ElaborationError(Fault.TYPE, f"'{text}' is of another type", text, 0)
+        if not isinstance(found.domain, IntegerDomain) or not isinstance(domain, IntegerDomain):
+            check_assignable(found.domain, domain, expression)
         return found
 
     def declare(self, name: str, formula: Formula) -> None:

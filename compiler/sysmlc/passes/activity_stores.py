@@ -12,7 +12,7 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.path import saturated
-from sysmlc.logic.simplify import substitute
+from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
 from sysmlc.passes.activity_expressions import Scope
@@ -160,13 +160,15 @@ class _Following:
         self.assigned: dict[str, list[Assigned]] = {}
         self.writes: dict[str, list[Write]] = {}
         self.refused: dict[str, Refusal] = {}
+        self.outside: set[str] = set()
+        """Actions that assign what no value of a range is."""
         self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
 
     def note(self, statements: list[Assigned]) -> None:
         """Remember what an action assigns, and the value that it leaves in each variable."""
         left: dict[str, _Cases] = {}
-        stops: dict[str, tuple[Formula, ...]] = {}
+        stops: dict[str, list[Formula]] = {}
         for one in statements:
             feature = feature_of(one, self.scope, self.writers)
             if feature is None:
@@ -177,16 +179,16 @@ class _Following:
             ways = self._cases(one, feature, left)
             if ways:
                 left[name] = tuple((when, value) for when, value, _ in ways)
-                stops[name] = tuple(when for when, _, is_bound in ways if is_bound)
+                stops.setdefault(name, []).extend(when for when, _, is_bound in ways if is_bound)
             else:
                 left.pop(name, None)
                 said = f"'{one.text}' is not known, or has too many cases"
                 why = replace(_UNKNOWN, reason=said) if one.text else _UNKNOWN
                 self.refused.setdefault(name, why)
-        text = statements[0].text if len(statements) == 1 else ""
+        node = statements[0].action.id
+        text = statements[0].text if len(statements) == 1 and node not in self.outside else ""
         for name, cases in left.items():
-            node = statements[0].action.id
-            self.writes.setdefault(name, []).append(Write(node, text, cases, stops[name]))
+            self.writes.setdefault(name, []).append(Write(node, text, cases, tuple(stops[name])))
 
     def _cases(self, one: Assigned, feature: Feature, left: dict[str, _Cases]) -> list[_Way]:
         """The values that an assignment gives, each with its condition and whether it is a bound
@@ -198,14 +200,22 @@ class _Following:
             found = self.scope.value(one.value, feature.domain)
         except ElaborationError:
             return []
+        if _is_outside(feature.domain, found.domain):
+            self.outside.add(one.action.id)
         after = (way for t in found.terms for way in _after(t.condition, t.value, left))
         ways: list[_Way] = []
         for case, value in after:
-            found_ways = _within(case, value, feature.domain, found.domain)
-            ways += [way for way in found_ways if way[0] != f.FALSE]
+            for when, given, is_bound in _within(case, value, feature.domain, found.domain):
+                possible = self._possible(when)
+                ways += [(possible, given, is_bound)] if possible != f.FALSE else []
             if len(ways) > _MOST_CASES:
                 return []
         return ways
+
+    def _possible(self, when: Formula) -> Formula:
+        """The condition in few words; false when no values make it true."""
+        known = {one.name: self.scope.domain(one.name) for one in f.variables(when)}
+        return tidy(when, known) if is_satisfiable(when, known) else f.FALSE
 
     # -- which of them are followed ------------------------------------------------------------
 
@@ -306,9 +316,18 @@ def _shared(writer: str) -> Refusal:
     return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
 
 
+def _is_outside(domain: Domain, spread: Domain) -> bool:
+    if not isinstance(domain, IntegerDomain) or not isinstance(spread, IntegerDomain):
+        return False
+    return spread.low > domain.high or spread.high < domain.low
+
+
 def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
     if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
-        yield from saturated(case, value, domain, spread)
+        # What is always outside is an error of its own.
+        is_outside = _is_outside(domain, spread)
+        for when, given, is_bound in saturated(case, value, domain, spread):
+            yield when, given, is_bound and not is_outside
     else:
         yield case, value, False
 

@@ -216,12 +216,82 @@ def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
 
 
 def test_assignments_in_a_row_are_one_value_as_long_as_they_have_few_cases():
-    def of(body):
-        graph, sink = v1(V1.replace("n := n + 1", body))
+    def of(body, bound="total <= 9"):
+        graph, sink = v1(V1.replace("n := n + 1", body).replace("total <= 9", bound))
         told = [one.message for one in sink if one.rule.code == "SM544"]
         return [one for one in said(contract(graph)) if "'count'" in one], told
 
     assert of("n := 2; n := n + 1") == (["When action 'count' is done, 'n' becomes 3."], [])
-    _, told = of("; ".join(["n := n + 1"] * 80))
+    made, told = of("; ".join(["n := n + 1"] * 80))
+    assert (len(made), told) == (4, [])
+    primes = (2, 3, 5, 7, 11, 13)
+    body = "; ".join(f"n := if (total + n) % {one} == 1 ? n + 1 else 0" for one in primes)
+    _, told = of(body, "total <= 999")
     assert len(told) == 1
-    assert told[0].endswith("'n + 1' is not known, or has too many cases")
+    assert told[0].endswith("is not known, or has too many cases")
+
+
+BODY = """
+package Plant {
+    private import ScalarValues::*;
+    enum def Mode { enum on; enum off; }
+    enum def Color { enum red; enum blue; }
+    part def Cell {
+        attribute n : Integer := 9 { assert constraint { 0 <= n and n <= 9 } }
+        attribute mode : Mode;
+        constant attribute full : Boolean := false;
+        action work {
+            first start;
+            then action up { BODY }
+            then done;
+        }
+    }
+}
+"""
+
+
+def told_of(body):
+    graph, sink = v2(BODY.replace("BODY", body))
+    (made,) = graph.derived(Contract)
+    becomes = [one.text for one in made.guarantees if "becomes" in one.text]
+    return [f"{one.rule.code} {one.severity}: {one.message}" for one in sink], becomes
+
+
+def test_a_value_that_is_always_outside_is_told_and_the_contract_says_what_it_becomes():
+    told, becomes = told_of("assign n := 12;")
+    assert told == ["SM414 warning: assignment 'n := 12': 12 is outside 0..9"]
+    assert becomes == ["When action 'up' is done, 'n' becomes 9."]
+
+
+def test_it_is_an_error_where_state_machines_have_one():
+    graph, sink = v1(V1.replace("n := n + 1", "n := 12"))
+    assert ["error"] == [str(one.severity) for one in sink if one.rule.code == "SM414"]
+
+
+def test_each_of_several_assignments_stops_at_the_bound_for_itself():
+    told, becomes = told_of("assign n := n + 2; assign n := n - 2;")
+    assert told == [
+        "SM428 warning: action 'up' can take 'n' out of its range; it stops at the bound"
+    ]
+    assert becomes == [
+        "When action 'up' is done and n>7, 'n' becomes 7.",
+        "When action 'up' is done and n<=7, 'n' becomes n + 2 - 2.",
+    ]
+
+
+def test_an_assignment_to_a_constant_is_told():
+    told, becomes = told_of("assign full := true;")
+    assert told[0] == (
+        "SM415 warning: 'full := true' assigns to 'full', which is no changeable property with "
+        "finite values of Cell"
+    )
+    assert becomes == []
+
+
+def test_a_value_of_another_type_is_told():
+    told, becomes = told_of("assign mode := Color::red;")
+    assert told[0] == (
+        "SM413 warning: assignment 'mode := Color::red': 'Color::red' is one of red, blue, not of "
+        "on, off"
+    )
+    assert becomes == []

@@ -107,7 +107,7 @@ OPAQUE_EFFECT = rule(
     wrong=_doing("open the gate"),
     right=_doing("openGate()"),
 )
-_RULE_OF = {
+RULE_OF = {
     Fault.UNKNOWN: UNKNOWN_NAME,
     Fault.TYPE: TYPE_MISMATCH,
     Fault.OUTSIDE: OUT_OF_DOMAIN,
@@ -199,7 +199,7 @@ def read_condition(reading: Reading, text: str, what: str, element: Element) -> 
     except ExpressionError as error:
         return _give_up(reading, NOT_UNDERSTOOD, text, what, element, str(error), "")
     except ElaborationError as error:
-        broken = _RULE_OF[error.fault]
+        broken = RULE_OF[error.fault]
         return _give_up(reading, broken, text, what, element, str(error), error.name)
     reading.note_use(expression)
     return expression
@@ -301,12 +301,12 @@ def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: E
         return Raise(_shown(reading, text, behaviour), behaviour.id)
     try:
         value = meaning(statement.value, reading.scope, feature.domain)
-        _check_assignable(value.domain, feature.domain, statement.value)
+        check_assignable(value.domain, feature.domain, statement.value)
     except ElaborationError as error:
         if error.fault is Fault.UNSUPPORTED:
             return _opaque(reading, text, behaviour)
         reading.sink.report(
-            _RULE_OF[error.fault],
+            RULE_OF[error.fault],
             subject,
             what="effect",
             text=text,
@@ -321,7 +321,8 @@ def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: E
     return Assign(feature.variable, statement.value, behaviour.id)
 
 
-def _check_assignable(found: Domain, wanted: Domain, value: Expression) -> None:
+def check_assignable(found: Domain, wanted: Domain, value: Expression) -> None:
+    """Raises ElaborationError when no value of the one domain is one of the other."""
     text = print_expression(value)
     if type(found) is not type(wanted):
         message = f"'{text}' is {describe(found)}, not {describe(wanted)}"
