@@ -39,9 +39,9 @@ SATURATES = rule(
     "SM428",
     "assignment-leaves-range",
     Severity.WARNING,
-    "{transition} can take '{variable}' out of its range; it stops at the bound",
+    "{transition} {can} take '{variable}' out of its range; it stops at the bound",
     why="The contract has finite domains: a value beyond them is taken as the nearest bound.",
-    help="guard the transition, or give the property a wider range",
+    help="let a guard on the way there leave room, or give the property a wider range",
     wrong=machine(arrow("a", "b", "start", effect="level := level + 1")),
     right=machine(arrow("a", "b", "start", "level < 9", "level := level + 1")),
 )
@@ -278,7 +278,7 @@ def _report(
     named = words.name_transition(one)
     for path in paths:
         for variable, _ in path.saturated:
-            sink.report(SATURATES, subject, transition=named, variable=variable)
+            sink.report(SATURATES, subject, transition=named, can="can", variable=variable)
     target = machine.vertices[one.target] if one.target else None
     if target is None or target.is_stable or one.kind == "internal":
         return
