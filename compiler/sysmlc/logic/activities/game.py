@@ -4,8 +4,10 @@ These are the parts that the conjuncts of an activity's contract are put togethe
 """
 
 from collections.abc import Iterator
+from functools import cached_property
 
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.together import Together
 from sysmlc.logic.activities.tokens import (
     ACTIVITY_REGION,
     Duration,
@@ -38,6 +40,11 @@ class Game:
         self._complete: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
         self._endings: dict[str, Formula] = {}
+
+    @cached_property
+    def together(self) -> Together:
+        """What may have tokens at the same time."""
+        return Together(self.graph)
 
     # -- nodes -----------------------------------------------------------------------------
 

@@ -27,7 +27,7 @@ def updates(game: Game, store: Store) -> Iterator[Conjunct]:
     again = game.begins(ACTIVITY_REGION) if store.local and store.first is not None else f.FALSE
     fired = [game.finishes(game.graph.node(write.node)) for write in store.writes]
     for write, fires in zip(store.writes, fired, strict=True):
-        yield from _write(game, store, write, fires)
+        yield from _write(game, store, write, fires, _at_once(game, store, write))
     origin, name = store.variable.origin, store.variable.name
     if store.first is not None and again != f.FALSE:
         value = _equals(store, Const(store.first), is_next=True)
@@ -39,10 +39,17 @@ def updates(game: Game, store: Store) -> Iterator[Conjunct]:
     yield Conjunct(frame, Class.SAFETY, origin, text)
 
 
-def _write(game: Game, store: Store, write: Write, fires: Formula) -> Iterator[Conjunct]:
+def _at_once(game: Game, store: Store, write: Write) -> list[Formula]:
+    """The other writes that may happen in the same step."""
+    others = (other for other in store.writes if other is not write)
+    beside = [one for one in others if game.together.are(write.node, one.node)]
+    return [way for one in beside for way in _ways(game, store, one)]
+
+
+def _write(
+    game: Game, store: Store, write: Write, fires: Formula, at_once: list[Formula]
+) -> Iterator[Conjunct]:
     node, name = game.graph.node(write.node), store.variable.name
-    others = [other for other in store.writes if other is not write]
-    at_once = [way for other in others for way in _ways(game, store, other)]
     for condition, value in write.values:
         case = f.both(fires, condition)
         given = f.either(_equals(store, value, is_next=True), *at_once)
