@@ -309,7 +309,9 @@ class _Following:
         """Whether someone misses it; what calls give alone is the environment's anyway."""
         if all(one.is_bound for one in self.assigned[name]) and not self._is_shared(name):
             return False
-        return name in self.read or self._is_shared(name) or self.scope.is_of_another(name)
+        # That a constant is assigned to is told by a rule of its own.
+        is_seen = self._is_seen(name) and not self.features[name].constant
+        return name in self.read or is_seen or self.scope.is_of_another(name)
 
 
 def _shared(writer: str) -> Refusal:
