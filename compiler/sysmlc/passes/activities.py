@@ -22,7 +22,8 @@ from sysmlc.passes.activity_bounds import report_stops
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
 from sysmlc.passes.activity_raising import Raising, find_raising
-from sysmlc.passes.activity_stores import follow, report_unfollowed
+from sysmlc.passes.activity_refusals import report_unfollowed
+from sysmlc.passes.activity_stores import follow
 from sysmlc.passes.activity_unknown import report_unknown
 from sysmlc.passes.activity_usages import drawn_of, has_steps
 from sysmlc.values import dataclass, replace

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator
 from itertools import product
 
-from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
@@ -16,84 +15,22 @@ from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
 from sysmlc.passes.activity_expressions import Scope
-from sysmlc.values import dataclass, replace
+from sysmlc.passes.activity_refusals import (
+    DECIDED,
+    ELSEWHERE,
+    ENDLESS,
+    UNKNOWN,
+    WIDE,
+    Refusal,
+    Unfollowed,
+    shared,
+)
+from sysmlc.values import replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
 _Way = tuple[Formula, Formula, bool]
 _MOST_CASES = 64
 """Most cases of what an action leaves in a variable: assignments in a row multiply them."""
-
-
-def _counting(body: str) -> str:
-    return f"""\
-Package p "Plant"
-  Class c "Cell" role="block"
-    Property n "full"
-      -> typed-by bool
-    Activity a "work"
-      Control i subkind="initial"
-      Control m subkind="merge"
-      Action w "fill" subkind="opaque" body="{body}"
-      Control d "enough" subkind="decision"
-      Control e subkind="final"
-      ControlFlow im
-        -> flow-source i
-        -> flow-target m
-      ControlFlow mw
-        -> flow-source m
-        -> flow-target w
-      ControlFlow wd
-        -> flow-source w
-        -> flow-target d
-      ControlFlow dm guard="not full"
-        -> flow-source d
-        -> flow-target m
-      ControlFlow de guard="full"
-        -> flow-source d
-        -> flow-target e
-  DataType bool "Boolean"
-"""
-
-
-WRITTEN = rule(
-    "SM544",
-    "guard-reads-what-is-written",
-    Severity.INFO,
-    "the contract of '{activity}' leaves '{name}' to the environment, although {writers} {verb} "
-    "it: {reason}",
-    why="The contract follows what actions assign to the activity's own features and those of "
-    "its block, as far as they have finitely many values, are written nowhere else, and get values "
-    "that can be read. Else it holds for all values, and has ways that are never taken.",
-    help="{advice}, or say what becomes of it in a requirement",
-    wrong=_counting("full := measure()"),
-    right=_counting("full := true"),
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """Why a contract cannot follow a feature, and what can be done about it."""
-
-    reason: str
-    advice: str
-
-
-_ENDLESS = Refusal("it has not finitely many values", "give it a type that has")
-_WIDE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)")
-_DECIDED = Refusal("others decide it too", "assign to a feature that is neither given nor constant")
-ELSEWHERE = Refusal("it belongs to another object", "let the object itself do it (an operation)")
-_UNKNOWN = Refusal(
-    "the value that it gets is not known", "write the value as an expression over known properties"
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Unfollowed:
-    """A feature that the activity writes, and why its contract does not follow it."""
-
-    feature: Element
-    why: Refusal
-    writers: tuple[str, ...]
 
 
 def follow(
@@ -113,23 +50,6 @@ def follow(
     if not found.assigned:
         return tokens, []
     return found.followed(), found.unfollowed()
-
-
-def report_unfollowed(
-    graph: Graph, activity: Element, unfollowed: Iterable[Unfollowed], sink: Sink
-) -> None:
-    """Report each feature whose values are left to the environment although actions write it."""
-    for one in unfollowed:
-        sink.report(
-            WRITTEN,
-            graph.subject(one.feature),
-            activity=activity.name,
-            name=one.feature.name,
-            writers=" and ".join(one.writers),
-            verb="writes" if len(one.writers) == 1 else "write",
-            reason=one.why.reason,
-            advice=one.why.advice.format(name=one.feature.name),
-        )
 
 
 def feature_of(one: Assigned, scope: Scope, writers: Writers) -> Feature | None:
@@ -183,7 +103,7 @@ class _Following:
             else:
                 left.pop(name, None)
                 said = f"'{one.text}' is not known, or has too many cases"
-                why = replace(_UNKNOWN, reason=said) if one.text else _UNKNOWN
+                why = replace(UNKNOWN, reason=said) if one.text else UNKNOWN
                 self.refused.setdefault(name, why)
         node = statements[0].action.id
         text = statements[0].text if len(statements) == 1 and node not in self.outside else ""
@@ -276,17 +196,17 @@ class _Following:
         """Why the contract cannot follow the variable; None when it can."""
         feature = self.features[name]
         if feature.domain is None:
-            return _ENDLESS
+            return ENDLESS
         if feature.is_assumed:
-            return _WIDE
+            return WIDE
         if feature.direction in ("in", "inout") or feature.constant:
-            return _DECIDED
+            return DECIDED
         if self.scope.is_of_another(name):
             return ELSEWHERE
         if name in self.refused:
             return self.refused[name]
         other = None if self._is_local(feature) else self._other_writer(feature)
-        return None if other is None else _shared(called(self.graph, other))
+        return None if other is None else shared(called(self.graph, other))
 
     def _store(self, name: str) -> Store:
         feature = self.features[name]
@@ -312,10 +232,6 @@ class _Following:
         # That a constant is assigned to is told by a rule of its own.
         is_seen = self._is_seen(name) and not self.features[name].constant
         return name in self.read or is_seen or self.scope.is_of_another(name)
-
-
-def _shared(writer: str) -> Refusal:
-    return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
 
 
 def _is_outside(domain: Domain, spread: Domain) -> bool:

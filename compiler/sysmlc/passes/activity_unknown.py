@@ -8,7 +8,8 @@ from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
 from sysmlc.passes.activity_expressions import Scope
-from sysmlc.passes.activity_stores import ELSEWHERE, Unfollowed, feature_of, report_unfollowed
+from sysmlc.passes.activity_refusals import ELSEWHERE, Unfollowed, report_unfollowed
+from sysmlc.passes.activity_stores import feature_of
 from sysmlc.suggest import did_you_mean
 
 
