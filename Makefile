@@ -38,8 +38,7 @@ format: .venv/.ready ## put the code into its form
 
 bench: .venv/.ready ## the measurements of benchmarks/
 	@failed=0; for name in startup xmi aml cache; do \
-	  echo "== $$name"; [ $$name = aml ] && how=--compiled || how=; \
-	  .venv/bin/python benchmarks/$$name.py $$how || failed=1; \
+	  echo "== $$name"; .venv/bin/python benchmarks/$$name.py || failed=1; \
 	done; exit $$failed
 
 wheel: .venv/.ready ## a wheel for this platform with compiled modules, in dist (docs/performance.md)
