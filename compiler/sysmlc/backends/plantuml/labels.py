@@ -15,7 +15,7 @@ _TOOL_NAMESPACE = pattern(
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
 _MODIFIERS = ("ordered", "readonly", "static")
 _APPLICATION, _PARAMETER = Kind.APPLICATION, Kind.PARAMETER
-"""Members by names of the module: in Python 3.11 those of a class take ten times as long."""
+"""Members by names of the module: in Python 3.11 those of a class take twice as long."""
 _ROLE_WORDS = {
     "block": "block",
     "interface block": "interfaceBlock",

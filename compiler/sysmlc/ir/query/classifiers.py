@@ -36,7 +36,7 @@ FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
 DOMAINS = ("physical", "information")
 
 _PARAMETER = Kind.PARAMETER
-"""By a name of the module: in Python 3.11 that of a class takes ten times as long."""
+"""By a name of the module: in Python 3.11 that of a class takes twice as long."""
 
 
 def generals(graph: Graph, classifier: Element) -> list[Element]:
