@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.expressions.context import VALUES, named_values
-from sysmlc.logic.written import written_names
+from sysmlc.logic.written import last_of, mentioned, written_names
 
 _STEP = re.compile(r"::|\.")
 _NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
@@ -45,13 +45,30 @@ class Writers:
 
     # -- inside --------------------------------------------------------------------------------
 
-    def _of(self, feature: Element) -> list[Element]:
+    def _of(self, feature: Element) -> Iterator[Element]:
+        slots = (feature, *query.redefined(self._graph, feature), *self._redefining(feature))
+        for slot in slots:
+            for writer in self._candidates(slot.name):
+                if slot in self._written(writer, slot.name):
+                    yield writer
+
+    def _candidates(self, name: str) -> list[Element]:
+        """What may write a feature of the name: to read all texts would take ten times as long."""
         if self._writing is None:
             self._writing = {}
-            for writer, written in self._all():
-                self._writing.setdefault(written.id, []).append(writer)
-        slots = (feature, *query.redefined(self._graph, feature), *self._redefining(feature))
-        return [one for slot in slots for one in self._writing.get(slot.id, ())]
+            graph = self._graph
+            for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
+                for written in dict.fromkeys(mentioned(graph, one)):
+                    self._writing.setdefault(written, []).append(one)
+        return self._writing.get(name, [])
+
+    def _written(self, writer: Element, last: str) -> Iterator[Element | None]:
+        """The features that something writes by names that end with this one."""
+        if writer.subkind == "write":
+            yield from self._graph.targets(writer, Edge.CALLS)
+        for name in written_names(self._graph, writer):
+            if last_of(name) == last:
+                yield self.target(writer, name)
 
     def _redefining(self, feature: Element) -> Iterable[Element]:
         """All that redefines the feature, directly or not."""
@@ -62,16 +79,6 @@ class Writers:
             found.update((o.id, o) for o in new)
             waiting += new
         return waiting[1:]
-
-    def _all(self) -> Iterator[tuple[Element, Element]]:
-        graph = self._graph
-        for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
-            if one.subkind == "write":
-                yield from ((one, each) for each in graph.targets(one, Edge.CALLS))
-            for name in written_names(graph, one):
-                feature = self.target(one, name)
-                if feature is not None:
-                    yield one, feature
 
     def _first(self, writer: Element, name: str) -> Element | None:
         """What a name means where something is written: the nearest around it that has it."""

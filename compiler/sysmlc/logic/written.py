@@ -18,7 +18,11 @@ from sysmlc.logic.expressions.expression import (
     parse_expression,
     print_expression,
 )
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
+
+_ASSIGNED = pattern(r"([^\W\d]\w*)\s*:=")
+"""The last names of what is assigned to where no name is in quotes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +61,24 @@ def written_names(graph: Graph, action: Element) -> Iterator[str]:
     if action.subkind in ("opaque", "function") and isinstance(body, str) and ":=" in body:
         yield from (one.name for one in _said(action, body))
     yield from bound(graph, action)
+
+
+def mentioned(graph: Graph, action: Element) -> Iterator[str]:
+    """The last names of what an action may write, found without reading its text."""
+    if action.subkind == "write":
+        yield from (one.name for one in graph.targets(action, Edge.CALLS))
+    body = unnoted(action, "body")
+    if isinstance(body, str) and ":=" in body:
+        if "'" in body:
+            yield from (last_of(name) for name in written_names(graph, action))
+        else:
+            yield from _ASSIGNED.findall(body)
+    yield from (last_of(name) for name in bound(graph, action))
+
+
+def last_of(name: str) -> str:
+    """The last step of a path: ``load`` of ``arm.load``."""
+    return name.rpartition("::")[2].rpartition(".")[2]
 
 
 def bound(graph: Graph, action: Element) -> Iterator[str]:
