@@ -30,6 +30,13 @@ def test_bodies_in_bodies_are_read_as_deep_as_the_notation_allows(opening, inner
     assert [one.name for one in reading.graph if one.name == name] == [name]
 
 
+def test_what_waits_until_all_is_there_may_be_as_deep():
+    ends = f"end port a : Q {{ {'port p : Q { ' * 190}port last : Q;{'}' * 190} }} end port b : Q;"
+    reading = read(f"package P {{ port def Q; interface def W {{ {ends} }} }}")
+    assert reading.codes() == []
+    assert [one.name for one in reading.graph if one.name == "last"] == ["last"]
+
+
 def test_a_condition_may_have_a_thousand_others_after_it():
     choice = "if true { action pick; } else " * 1_000
     reading = read(f"package P {{ action move {{ {choice} {{ action place; }} }} }}")

@@ -42,11 +42,12 @@ def lower(
     found = together(each)
     low.accepted = accepted(found)
     low.flowing = flowing(found)
-    for document in documents:
-        with room_for(_depth(document.root)):
+    # What waits until all else is there, such as ends of connections, may be as deep.
+    with room_for(max(_depth(document.root) for document in documents)):
+        for document in documents:
             low.lower_all(document.root.members, None)
-    low.last(lambda: _give_pins(low, found))
-    low.finish()
+        low.last(lambda: _give_pins(low, found))
+        low.finish()
     low.end_branches()
     _say_pins(graph)
     literals.finish(graph)
