@@ -8,6 +8,8 @@ from functools import cache
 
 from sysmlc import resources
 
+FILE = "library-members.txt"
+"""Names by base; ``generate_inherited`` makes it of the library."""
 BASES = {
     "action": "Actions::Action",
     "allocation": "Allocations::Allocation",
@@ -46,7 +48,7 @@ def inherited(keyword: str) -> frozenset[str]:
 def _names() -> dict[str, frozenset[str]]:
     """By base; its names follow in lines that are indented."""
     found: dict[str, list[str]] = {}
-    for line in resources.text("metamodels", "library-members.txt").splitlines():
+    for line in resources.text("metamodels", FILE).splitlines():
         if not line.startswith(" "):
             names = found[line] = []
         else:
