@@ -14,10 +14,10 @@ from sysmlc.ir.reads import during
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.logic.writers import Writers
-from sysmlc.logic.written import Assigned, assigned
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_assignable import report_faults
+from sysmlc.passes.activity_assignments import written_by
 from sysmlc.passes.activity_bounds import report_stops
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_inputs import Inputs
@@ -101,12 +101,13 @@ class Activities:
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, others.raising, sink)
-        written = _written(graph, drawing, tokens)
-        tokens, unfollowed = follow(graph, activity, written, tokens, scope, others.writers)
+        actions, writers = _played_actions(drawing, tokens), others.writers
+        written = written_by(graph, actions, scope, writers)
+        tokens, unfollowed = follow(graph, activity, written, tokens, scope, writers)
         tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
         report_unfollowed(graph, activity, unfollowed, sink)
-        report_unknown(graph, activity, written, scope, others.writers, sink)
-        report_faults(graph, activity, written, scope, others.writers, sink)
+        report_unknown(graph, activity, written, writers, sink)
+        report_faults(graph, activity, written, scope, sink)
         report_stops(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapsed(tokens, self.max_markings)
@@ -133,13 +134,10 @@ def _depth(graph: Graph, activity: Element, inside: Element) -> int:
     return next(number for number, one in around if one is activity)
 
 
-def _written(
-    graph: Graph, drawing: activity_drawing.Drawing, tokens: TokenGraph
-) -> list[list[Assigned]]:
-    """What each action assigns that has a token of its own; only those that assign something."""
+def _played_actions(drawing: activity_drawing.Drawing, tokens: TokenGraph) -> Iterator[Element]:
+    """The actions that have a token of their own."""
     played = {node.id for node in tokens.workers()}
-    actions = (one for one in drawing.inside if one.kind is Kind.ACTION and one.id in played)
-    return [found for one in actions if (found := list(assigned(graph, one)))]
+    return (one for one in drawing.inside if one.kind is Kind.ACTION and one.id in played)
 
 
 def _played(graph: Graph, activity: Element) -> list[Element]:

@@ -8,26 +8,23 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF, check_assignable
-from sysmlc.logic.writers import Writers
-from sysmlc.logic.written import Assigned
+from sysmlc.passes.activity_assignments import Written
 from sysmlc.passes.activity_expressions import Scope
-from sysmlc.passes.activity_stores import feature_of
 
 
 def report_faults(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Assigned]],
+    written: Iterable[list[Written]],
     scope: Scope,
-    writers: Writers,
     sink: Sink,
 ) -> None:
     """Report assignments to constants (SM415), and of values that what they assign to never has:
     of another type (SM413), or always out of range (SM414). ``written`` is what each action
     assigns.
     """
-    for one in (each for statements in written for each in statements):
-        feature = feature_of(one, scope, writers)
+    for each in (one for statements in written for one in statements):
+        one, feature = each.said, each.feature
         if feature is None or one.value is None:
             continue
         subject, text = graph.subject(one.action), f"{one.name} := {one.text}"

@@ -14,6 +14,7 @@ from sysmlc.logic.machines.path import saturated
 from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
+from sysmlc.passes.activity_assignments import Written
 from sysmlc.passes.activity_expressions import Scope
 from sysmlc.passes.activity_refusals import (
     DECIDED,
@@ -36,7 +37,7 @@ _MOST_CASES = 64
 def follow(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Assigned]],
+    written: Iterable[list[Written]],
     tokens: TokenGraph,
     scope: Scope,
     writers: Writers,
@@ -50,16 +51,6 @@ def follow(
     if not found.assigned:
         return tokens, []
     return found.followed(), found.unfollowed()
-
-
-def feature_of(one: Assigned, scope: Scope, writers: Writers) -> Feature | None:
-    """The feature that an activity knows by the name that is assigned to, or by its own name."""
-    found = scope.named(one.name)
-    if found is None:
-        target = writers.target(one.action, one.name)
-        near = None if target is None else scope.named(target.name)
-        found = near if near is not None and near.element is target else None
-    return found
 
 
 class _Following:
@@ -85,12 +76,11 @@ class _Following:
         self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
 
-    def note(self, statements: list[Assigned]) -> None:
+    def note(self, statements: list[Written]) -> None:
         """Remember what an action assigns, and the value that it leaves in each variable."""
         left: dict[str, _Cases] = {}
         stops: dict[str, list[Formula]] = {}
-        for one in statements:
-            feature = feature_of(one, self.scope, self.writers)
+        for one, feature in ((each.said, each.feature) for each in statements):
             if feature is None:
                 continue
             name = feature.variable
@@ -105,8 +95,9 @@ class _Following:
                 said = f"'{one.text}' is not known, or has too many cases"
                 why = replace(UNKNOWN, reason=said) if one.text else UNKNOWN
                 self.refused.setdefault(name, why)
-        node = statements[0].action.id
-        text = statements[0].text if len(statements) == 1 and node not in self.outside else ""
+        first = statements[0].said
+        node = first.action.id
+        text = first.text if len(statements) == 1 and node not in self.outside else ""
         for name, cases in left.items():
             self.writes.setdefault(name, []).append(Write(node, text, cases, tuple(stops[name])))
 

@@ -6,10 +6,8 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.writers import Writers, called
-from sysmlc.logic.written import Assigned
-from sysmlc.passes.activity_expressions import Scope
+from sysmlc.passes.activity_assignments import Written
 from sysmlc.passes.activity_refusals import ELSEWHERE, Unfollowed, report_unfollowed
-from sysmlc.passes.activity_stores import feature_of
 from sysmlc.suggest import did_you_mean
 
 
@@ -50,16 +48,15 @@ UNKNOWN = rule(
 def report_unknown(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Assigned]],
-    scope: Scope,
+    written: Iterable[list[Written]],
     writers: Writers,
     sink: Sink,
 ) -> None:
     """Report each name that one of the actions assigns to and that the activity does not know."""
     # What a write action writes is a reference, no name.
-    named = [one for found in written for one in found if one.action.subkind != "write"]
-    for one in named:
-        if one.is_bound or feature_of(one, scope, writers) is not None:
+    lost = (one.said for found in written for one in found if one.feature is None)
+    for one in lost:
+        if one.is_bound or one.action.subkind == "write":
             continue
         target = writers.target(one.action, one.name)
         if target is not None:
