@@ -69,8 +69,14 @@ def _inherit_method(graph: Graph, operation: Element) -> None:
     for one in (operation, *redefined(graph, operation)):
         methods = graph.targets(one, Edge.METHOD)
         if methods:
-            graph.replace_targets(Edge.METHOD, operation, methods)
+            if one is not operation or not _is_alone(graph, operation, methods):
+                graph.replace_targets(Edge.METHOD, operation, methods)
             return
+
+
+def _is_alone(graph: Graph, operation: Element, methods: list[Element]) -> bool:
+    """Whether nobody else has the methods, so that to link them again would change no order."""
+    return all(graph.sources(one, Edge.METHOD) == [operation] for one in methods)
 
 
 def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
