@@ -120,3 +120,44 @@ def test_attributes_that_elements_share_are_set_for_one_of_them_alone() -> None:
         graph["two"].attrs["role"] = "value"
     with pytest.raises(TypeError):
         graph["two"].attrs.update(role="value")
+
+
+CHANGES = {
+    "rename": lambda graph: graph.rename(graph["gate"], "Door"),
+    "set": lambda graph: graph.set(graph["gate"], role="block"),
+    "move": lambda graph: graph.move(graph["pallet"], graph["gate"]),
+    "remove": lambda graph: graph.remove(graph["out"]),
+    "connect": lambda graph: graph.connect(Edge.TYPED_BY, "pallet", "gate"),
+    "connect all": lambda graph: graph.connect_all(
+        [Edge.TYPED_BY], [graph["pallet"]], [graph["gate"]]
+    ),
+    "connect each": lambda graph: graph.connect_each(
+        Edge.TYPED_BY, [graph["pallet"]], [graph["gate"]]
+    ),
+    "disconnect": lambda graph: graph.disconnect(Edge.TYPED_BY, "in", "pallet"),
+    "replace targets": lambda graph: graph.replace_targets(
+        Edge.TYPED_BY, graph["in"], [graph["gate"]]
+    ),
+    "add": lambda graph: graph.add(Element("new", Kind.CLASS)),
+    "new": lambda graph: graph.new("new", Kind.CLASS, "", "line", 0, ""),
+    "one for another": lambda graph: (
+        graph.remove(graph["pallet"]),
+        graph.add(Element("pallet", Kind.CLASS)),
+    ),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
+def test_every_change_shows_in_the_number_of_elements_or_of_changes(change):
+    graph = parse_text(LINE)
+    before = len(graph), graph.changes
+    change(graph)
+    assert (len(graph), graph.changes) != before
+
+
+def test_what_is_there_already_is_no_change():
+    graph = parse_text(LINE)
+    before = graph.changes
+    graph.connect(Edge.TYPED_BY, "in", "pallet")
+    graph.disconnect(Edge.TYPED_BY, "pallet", "in")
+    assert graph.changes == before

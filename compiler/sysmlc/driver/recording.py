@@ -4,9 +4,10 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 
 from sysmlc.diagnostics import Diagnostic, Sink
-from sysmlc.ir import Graph, Kind
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.reads import Literal, Reads, Value
 from sysmlc.ir.rows import Rows, rows
+from sysmlc.ir.seen import see
 from sysmlc.output import Artefact
 from sysmlc.values import dataclass
 
@@ -50,12 +51,15 @@ class Recording:
         self._reads = graph.reads = Reads()
         self._heard: dict[str, list[Diagnostic]] = {}
         self._seen: Rows | None = None
+        self._at = (0, 0)
 
     def begin(self, reader: str, is_repeatable: bool) -> None:
         """From now on ``reader`` is at work; one that is repeatable leaves the graph as it is."""
         self._reads.reader = reader
         if is_repeatable and self._seen is None and self._reads.literals:
             self._seen = rows(self._graph)
+            self._at = self._state()
+            see(self._graph, self._seen)
         if self._seen is not None:
             self._sink.listen(self._heard.setdefault(reader, []))
 
@@ -64,7 +68,7 @@ class Recording:
         self._sink.listen(None)
         self._graph.reads = None
         reads, seen = self._reads, self._seen
-        if seen is None or len(self._graph.pending) or not _is_as_kept(self._graph, seen):
+        if seen is None or self._at != self._state() or not _is_as_kept(self._graph):
             return None
         return Recorded(
             graph=seen,
@@ -81,14 +85,18 @@ class Recording:
             made=tuple(made(one) for one in artefacts),
         )
 
+    def _state(self) -> tuple[int, int]:
+        """Another one when the graph was changed in between."""
+        return len(self._graph), self._graph.changes
 
-def _is_as_kept(graph: Graph, kept: Rows) -> bool:
-    """Whether a graph of the rows is like the graph, also in the order of each kind."""
-    of_kind: dict[str, list[str]] = {}
-    for row in kept[0]:
-        of_kind.setdefault(row[1], []).append(row[0])
-    known = {kind.value: [one.id for one in graph.of_kind(kind)] for kind in Kind}
-    return kept == rows(graph) and {name: ids for name, ids in known.items() if ids} == of_kind
+
+def _is_as_kept(graph: Graph) -> bool:
+    """Whether a graph of its rows is like the graph, also in the order of each kind."""
+    of_kind: dict[Kind, list[Element]] = {}
+    for one in graph:
+        of_kind.setdefault(one.kind, []).append(one)
+    known = {kind: graph.of_kind(kind) for kind in Kind}
+    return not len(graph.pending) and {k: ones for k, ones in known.items() if ones} == of_kind
 
 
 def made(artefact: Artefact) -> Made:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
@@ -22,6 +22,9 @@ from sysmlc.ir.reads import Reads
 from sysmlc.ir.reference import End, Reference, References
 from sysmlc.ir.shared import NOTHING, Shared
 from sysmlc.ir.tables import large_table
+
+if TYPE_CHECKING:
+    from sysmlc.ir.seen import Seen
 
 _T = TypeVar("_T")
 
@@ -47,6 +50,10 @@ class Graph:
         self.pending = References()
         self.reads: Reads | None = None
         """Who asks for values of the text; None: nobody wants to know."""
+        self.seen: Seen | None = None
+        """What was made of the graph before this one; None: nothing is remembered."""
+        self.changes = 0
+        """How often it was changed, but by new elements and their first edges."""
 
     # -- reading -------------------------------------------------------------------------------
 
@@ -250,6 +257,7 @@ class Graph:
         self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
         """Add many edges; those without a target, or from an element that is not there, are not."""
+        self.changes += 1
         last: Edge | None = None
         for edge, source, target in zip(edges, self.find_all(sources), targets, strict=True):
             if source is None or target is None:
@@ -266,6 +274,7 @@ class Graph:
         self, edge: Edge, sources: Sequence[Element | None], targets: Sequence[Element | None]
     ) -> None:
         """Add edges of one kind; those without source or target are not added."""
+        self.changes += 1
         out, drawn = self._out[edge], self._drawn.get(edge)
         if drawn is not None and put_each_new(out, sources, targets):
             ends = cast("Iterable[tuple[Element, Element]]", zip(sources, targets, strict=True))
@@ -298,6 +307,7 @@ class Graph:
 
     def move(self, element: Element, owner: Element | None) -> None:
         """Give the element another owner, or none."""
+        self.changes += 1
         if owner is not None and any(a is element for a in (owner, *self.ancestors(owner))):
             raise ValueError(f"{element!r} cannot own itself")
         if element.owner is not None:
@@ -308,6 +318,7 @@ class Graph:
 
     def remove(self, element: Element) -> None:
         """Remove the element, what it owns, and all their edges."""
+        self.changes += 1
         self.pending.forget_elements()
         for doomed in reversed(list(self.subtree(element))):
             self._cut(doomed)
@@ -316,10 +327,12 @@ class Graph:
 
     def rename(self, element: Element, name: str) -> None:
         """Give the element another name."""
+        self.changes += 1
         element.name = name
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Set attributes; ``_`` in a keyword is kept. None removes the attribute."""
+        self.changes += 1
         if isinstance(element.attrs, Shared):
             element.attrs = {**element.attrs}
         for key, value in attrs.items():
@@ -365,6 +378,7 @@ class Graph:
 
     def fill(self, edge: Edge, forwards: Index, backwards: Index) -> None:
         """Take all edges of one kind, as ``index`` gave them of an equal graph."""
+        self.changes += 1
         self._out[edge] = forwards
         if edge is Edge.OWNS:
             self._owned = forwards
@@ -410,6 +424,7 @@ class Graph:
     def _link(self, edge: Edge, source: Element, target: Element) -> None:
         if not put(self._out[edge], source.id, target):
             return
+        self.changes += 1
         known = self._in.get(edge)
         if known is None:
             self._drawn[edge] += (source, target)
@@ -418,6 +433,7 @@ class Graph:
 
     def _unlink(self, edge: Edge, source: Element, target: Element) -> None:
         if drop(self._out[edge], source.id, target):
+            self.changes += 1
             drop(self._incoming(edge), target.id, source)
 
     def _cut(self, element: Element) -> None:
