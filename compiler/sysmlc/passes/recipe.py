@@ -6,7 +6,8 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_context import NODES, Context, activity_nodes
+from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.values import dataclass
 
 _MODELS = "sysmlc.recipe.model"
@@ -31,7 +32,7 @@ class Recipe:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the recipe models of the graph."""
-        context = Context(graph, dict(self.levels))
+        context = Context.of(graph, self.levels)
         found = list(recipes(context))
         if found or graph.has_derived(_MODELS):
             self._store(context, found, sink)
@@ -61,11 +62,12 @@ def recipes(context: Context) -> Iterator[Element]:
 
     What has no steps and only says what recipes are, by being their general, is none.
     """
+    calling = {_activity(context, one) for one in context.of_level("task") if one.kind in NODES}
     for activity in context.graph.of_kind(Kind.ACTIVITY):
         level = context.own_level(activity)
         if level == "recipe" and _only_names(context, activity):
             continue
-        if level == "recipe" or (not level and _has_task(context, activity)):
+        if level == "recipe" or (not level and activity.id in calling):
             yield activity
 
 
@@ -74,8 +76,12 @@ def _only_names(context: Context, activity: Element) -> bool:
     return is_general and not activity_nodes(context, activity)
 
 
-def _has_task(context: Context, activity: Element) -> bool:
-    return any(context.level(node) == "task" for node in activity_nodes(context, activity))
+def _activity(context: Context, node: Element) -> str | None:
+    """Id of what has the node as a step, be it in an inlined node."""
+    owner = context.graph.owner(node)
+    while owner is not None and is_inlined(context.graph, owner):
+        owner = context.graph.owner(owner)
+    return None if owner is None else owner.id
 
 
 def _subject(graph: Graph, id: str) -> Subject:

@@ -5,27 +5,15 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.passes.recipe_levels import by_name, followers
+from sysmlc.passes.recipe_levels import followers, said, stereotypes, subjects
 from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Range, ValueType
 
-NAMESPACE = "urn:sysmlc:profile:1"
-"""Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
-
-LEVELS = {
-    "Recipe": "recipe",
-    "Task": "task",
-    "MachineService": "machine service",
-    "InfrastructureService": "infrastructure service",
-    "MachineFunction": "machine function",
-    "Machine": "machine",
-    "Material": "material",
-}
 SERVICES = ("machine service", "infrastructure service")
-_NODES = frozenset(
+NODES = frozenset(
     [
         Kind.ACTION,
         Kind.CONTROL,
@@ -45,62 +33,40 @@ class Context:
 
     graph: Graph
     levels: Mapping[str, str] = field(default_factory=dict)
+    said: Mapping[str, str] = field(default_factory=dict)
+    """Levels by id that elements have themselves: said of them, or derived."""
+    able: frozenset[str] = frozenset()
+    """Ids of what may have a level: most of a model has none."""
     derived: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that follow from others; what is said wins over them."""
+    subjects: frozenset[str] = frozenset()
+    """Ids of what stereotypes are applied to."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
-    _able: set[str] = field(default_factory=set)
-    """Ids of what may have a level."""
     _literals: dict[str, list[Element]] = field(default_factory=dict)
-    _stated: dict[str, str] = field(default_factory=dict)
-    _chosen: dict[str, str] = field(default_factory=dict)
-    _subjects: set[str] = field(default_factory=set)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     types: dict[str, "ValueType"] = field(default_factory=dict)
     """Types of values by the id of what types them, as far as somebody asked."""
+
+    @classmethod
+    def of(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
+        """The context of a graph; ``levels`` by ids or qualified names win over what it says."""
+        bare = cls(graph, levels)
+        own = said(graph, levels, bare._segment)
+        able = frozenset(followers(graph, own))
+        return replace(bare, said=own, able=able, subjects=frozenset(subjects(graph)))
 
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
         """Level that the options, ``classify`` or a stereotype give the element itself."""
-        found = self._stated.get(element.id)
-        if found is None:
-            found = self._stated[element.id] = self._stated_level(element)
-        return found or self.derived.get(element.id, "")
-
-    def _stated_level(self, element: Element) -> str:
-        chosen = self.levels.get(element.id) or self._named().get(element.id)
-        if chosen:
-            return chosen
-        found = str(element.attrs.get("level", ""))
-        if found in LEVELS.values():
-            return found
-        return self._applied_level(element)
-
-    def _named(self) -> dict[str, str]:
-        """What the options say by qualified names."""
-        if not self._chosen:
-            self._chosen.update(by_name(self.graph, self.levels, self._segment))
-        return self._chosen
-
-    def _applied_level(self, element: Element) -> str:
-        if element.id not in self._typed():
-            return ""
-        found = query.applications(self.graph, element)
-        names = {name for one in found for name in _stereotypes(one)}
-        return next((level for name, level in LEVELS.items() if name in names), "")
-
-    def _typed(self) -> set[str]:
-        """Ids of what stereotypes are applied to."""
-        if not self._subjects:
-            self._subjects.update(_subjects(self.graph))
-        return self._subjects
+        return self.said.get(element.id, "")
 
     def level(self, element: Element | None) -> str:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
-        if element is None:
+        if element is None or element.id not in self.able:
             return ""
         found = self._levels.get(element.id)
         if found is None:
@@ -110,25 +76,24 @@ class Context:
 
     def with_derived(self, derived: Mapping[str, str]) -> "Context":
         """The same with levels (by id) that follow from others: who has theirs is asked again."""
-        changed = followers(self.graph, map(self.graph.__getitem__, derived))
+        changed = followers(self.graph, derived)
         known = {id: level for id, level in self._levels.items() if id not in changed}
-        return replace(self, derived=derived, _levels=known, _of_level={}, types={})
+        return replace(
+            self,
+            said={**derived, **self.said},
+            able=self.able | changed,
+            derived=derived,
+            _levels=known,
+            _of_level={},
+            types={},
+        )
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""
-        if not self._of_level:
-            self._of_level[""] = []
-            for element in self._may_have_one():
+        if self.able and not self._of_level:
+            for element in (one for one in self.graph if one.id in self.able):
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
-
-    def _may_have_one(self) -> list[Element]:
-        """What may have a level, in the order of the graph: most of a model has none."""
-        named = {*self.levels, *self._named(), *self._typed(), *self.derived}
-        said = [one for one in self.graph if "level" in one.attrs or one.id in named]
-        own = [one for one in said if one.id not in self._able and self.own_level(one)]
-        self._able.update(followers(self.graph, own))
-        return [one for one in self.graph if one.id in self._able]
 
     def literal(self, name: str) -> Element | None:
         """The enumeration literal ``Enumeration::literal``; None where two are called so."""
@@ -170,10 +135,10 @@ class Context:
 
     def applied(self, element: Element, stereotype: str) -> Element | None:
         """Application of a stereotype of the shipped profile, or of one that specialises it."""
-        for application in query.applications(self.graph, element):
-            if stereotype in _stereotypes(application):
-                return application
-        return None
+        if element.id not in self.subjects:
+            return None
+        found = query.applications(self.graph, element)
+        return next((one for one in found if stereotype in stereotypes(one)), None)
 
     def tags(self, element: Element, stereotype: str) -> "Tags":
         """Tagged values of one stereotype of the profile; empty when it is not applied."""
@@ -208,23 +173,9 @@ class Context:
         return self._segments[element.id]
 
 
-def _subjects(graph: Graph) -> Iterator[str]:
-    """Ids of what stereotypes are applied to; the empty one, so that it is never nothing."""
-    yield ""
-    for application in graph.of_kind(Kind.APPLICATION):
-        yield from (one.id for one in graph.targets(application, Edge.SUBJECT))
-
-
-def _stereotypes(application: Element) -> tuple[str, ...]:
-    """Stereotypes that are applied; what another profile calls like ours only by its general."""
-    names = query.lineage(application)
-    is_ours = application.attrs.get("namespace") in (NAMESPACE, None)
-    return names if is_ours or len(names) > 1 else ()
-
-
 def activity_nodes(context: Context, activity: Element) -> list[Element]:
     """Nodes of the activity, those in for-each regions and plain blocks too."""
-    return [one for one in context.contents(activity) if one.kind in _NODES]
+    return [one for one in context.contents(activity) if one.kind in NODES]
 
 
 @dataclass(frozen=True, slots=True)

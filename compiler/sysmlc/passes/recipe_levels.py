@@ -2,24 +2,70 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from sysmlc.ir import Edge, Element, Graph
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+
+NAMESPACE = "urn:sysmlc:profile:1"
+"""Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
+
+LEVELS = {
+    "Recipe": "recipe",
+    "Task": "task",
+    "MachineService": "machine service",
+    "InfrastructureService": "infrastructure service",
+    "MachineFunction": "machine function",
+    "Machine": "machine",
+    "Material": "material",
+}
 
 _FOLLOWED = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edge.METHOD)
 """Edges along which an element has the level of another one."""
 
 
-def by_name(
+def said(
     graph: Graph, levels: Mapping[str, str], segment: Callable[[Element], str]
-) -> Iterator[tuple[str, str]]:
-    """The ids of what qualified names stand for, with their levels.
+) -> dict[str, str]:
+    """Levels by id that elements have themselves: by the options, ``classify`` or a stereotype.
 
-    ``segment`` is the part of an element in such a name. The empty id is there, too, so that the
-    answer is never nothing.
+    ``levels`` are those of the options, by ids or qualified names, which win. ``segment`` is the
+    part of an element in such a name.
     """
-    yield "", ""
+    found = _applied(graph)
+    known = frozenset(LEVELS.values())
+    for one in graph:
+        if "level" in one.attrs and (level := str(one.attrs["level"])) in known:
+            found[one.id] = level
     roots = graph.roots() if levels else []
     for name, level in levels.items():
-        yield from ((one.id, level) for one in _named(graph, name, roots, segment))
+        found.update((one.id, level) for one in _named(graph, name, roots, segment) if level)
+    found.update((id, level) for id, level in levels.items() if level and id in graph)
+    return found
+
+
+def _applied(graph: Graph) -> dict[str, str]:
+    """Levels by id that follow from the stereotypes that are applied."""
+    names: dict[str, set[str]] = {}
+    for application in graph.of_kind(Kind.APPLICATION):
+        for one in graph.targets(application, Edge.SUBJECT):
+            names.setdefault(one.id, set()).update(stereotypes(application))
+    levels = LEVELS.items()
+    found = (
+        (id, next((level for name, level in levels if name in own), ""))
+        for id, own in names.items()
+    )
+    return {id: level for id, level in found if level}
+
+
+def subjects(graph: Graph) -> Iterator[str]:
+    """Ids of what stereotypes are applied to."""
+    for application in graph.of_kind(Kind.APPLICATION):
+        yield from (one.id for one in graph.targets(application, Edge.SUBJECT))
+
+
+def stereotypes(application: Element) -> tuple[str, ...]:
+    """Stereotypes that are applied; what another profile calls like ours only by its general."""
+    names = query.lineage(application)
+    is_ours = application.attrs.get("namespace") in (NAMESPACE, None)
+    return names if is_ours or len(names) > 1 else ()
 
 
 def _named(
@@ -34,9 +80,9 @@ def _named(
             yield from _named(graph, name[len(part) + 2 :], graph.owned(one), segment)
 
 
-def followers(graph: Graph, first: Iterable[Element]) -> set[str]:
+def followers(graph: Graph, first: Iterable[str]) -> set[str]:
     """Ids of these elements, and of all that may have a level because one of them has it."""
-    waiting = list(first)
+    waiting = [graph[id] for id in first]
     found = {one.id for one in waiting}
     while waiting:
         one = waiting.pop()

@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
-from sysmlc.passes.recipe_context import NAMESPACE, Context, Tags
+from sysmlc.passes.recipe_context import Context, Tags
+from sysmlc.passes.recipe_levels import NAMESPACE
 from sysmlc.recipe import samples
 
 UNREADABLE_TAG = rule(
