@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import field
+from functools import partial
 
 from sysmlc.backends.plantuml import actions, labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -11,7 +12,7 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.reads import during
+from sysmlc.ir.seen import again
 from sysmlc.plantuml import label, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -30,12 +31,12 @@ def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
     for activity in graph.of_kind(Kind.ACTIVITY):
         if activity.attrs.get("external") or only not in ("", activity.id):
             continue
-        with during(graph, f"act {activity.id}"):
-            found = list(_of_activity(graph, activity))
-        yield from found
+        make = partial(_of_activity, id=activity.id)
+        yield from again(graph, f"act {activity.id}", (), make)
 
 
-def _of_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
+def _of_activity(graph: Graph, id: str) -> Iterator[Diagram]:
+    activity = graph[id]
     inside = list(graph.subtree(activity))
     if not any(item.kind in _DRAWN for item in inside):
         return

@@ -128,7 +128,8 @@ class _Drawing:
         return [(), *typed] if in_frame or not typed else typed
 
     def _of(self, owner: Element, prefix: _Ids) -> Iterator[Line]:
-        for one in connections(self.choice.graph, owner, free_flows(self.choice.graph)):
+        graph = self.choice.graph
+        for one in connections(graph, owner, free_flows(graph).get(owner.id, ())):
             if not self.choice.ids.isdisjoint(one.shows):
                 source, target = self._end(prefix, one.source), self._end(prefix, one.target)
                 if source and target:

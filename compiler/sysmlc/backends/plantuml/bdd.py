@@ -1,7 +1,7 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import nullcontext
+from functools import partial
 
 from sysmlc.backends.plantuml import foreign, labels, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -10,7 +10,7 @@ from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import BoxView, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.reads import during
+from sysmlc.ir.seen import again
 from sysmlc.plantuml import keyword_label, padded, plain
 
 CLASSIFIERS = (
@@ -47,9 +47,12 @@ def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
     for package, classifiers in homes.items():
         if only not in ("", package):
             continue
-        with nullcontext() if package is None else during(graph, f"bdd {package}"):
-            found = list(_of_package(graph, graph.get(package), classifiers, every, drawn))
-        yield from found
+        own = tuple(item.id for item in classifiers)
+        ours = tuple(relation for relation in every if _is_ours(relation, set(own), drawn))
+        make = partial(_of_package, package=package, ids=own, found=ours)
+        yield from (
+            make(graph) if package is None else again(graph, f"bdd {package}", (own, ours), make)
+        )
 
 
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:
@@ -92,21 +95,16 @@ def is_in_frame(graph: Graph, instance: Element) -> bool:
 
 
 def _of_package(
-    graph: Graph,
-    package: Element | None,
-    classifiers: list[Element],
-    every: Iterable[Relation],
-    drawn: set[str],
+    graph: Graph, package: str | None, ids: tuple[str, ...], found: tuple[Relation, ...]
 ) -> Iterator[Diagram]:
-    own = {item.id for item in classifiers}
-    ours = [relation for relation in every if _is_ours(relation, own, drawn)]
-    in_rows = {r.row: r.shows for r in ours if r.row and r.target not in own}
-    ours = [relation for relation in ours if relation.row not in in_rows]
-    ours += _containments(graph, classifiers)
+    about, own = graph.get(package), set(ids)
+    in_rows = {r.row: r.shows for r in found if r.row and r.target not in own}
+    ours = [relation for relation in found if relation.row not in in_rows]
+    ours += _containments(graph, [graph[id] for id in ids])
     ours, rows = foreign.folded(ours, own)
     near = neighbours(own, ours)
-    parts = split.chunks([item.id for item in classifiers], near)
-    whole = graph.qualified_name(package) if package is not None else "model"
+    parts = split.chunks(ids, near)
+    whole = graph.qualified_name(about) if about is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
         inside = [r for r in ours if _belongs(r, set(part), own)]
@@ -117,7 +115,7 @@ def _of_package(
             frame=plain(f"bdd [package] {whole}"),
             heading=("Block definition diagram", whole),
             view=_view(graph, shown, inside, in_rows, rows),
-            about=package.id if package is not None else "",
+            about=package or "",
             footer=plain(split.footer(index, len(parts), whole)),
         )
 

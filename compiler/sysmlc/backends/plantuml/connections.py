@@ -1,6 +1,6 @@
 """Connections inside a block: connectors with their item flows, and item flows between parts."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.domains import coloured, styled
@@ -59,19 +59,19 @@ class Connection:
         return stack([keyword_label(self.label), *rows])
 
 
-FreeFlows = dict[str, list[tuple[Element, Element, Element]]]
-"""Flow, source and target by the id of the owner of both."""
+FreeFlow = tuple[str, str, str]
+"""Ids of flow, source and target."""
 
 
-def connections(graph: Graph, block: Element, flows: FreeFlows) -> list[Connection]:
+def connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) -> list[Connection]:
     """Connectors of the block; item flows without a connector and allocations between features.
 
-    ``flows`` are those of the whole graph (``free_flows``), for they are few and blocks are many.
+    ``flows`` are those of the block (``free_flows``), for they are few and blocks are many.
     What is bound to a constraint parameter stands in the parametric diagram.
     """
     owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
     drawn = [made for item in owned for made in _connector(graph, item)]
-    free = [_free_flow(graph, *ends) for ends in flows.get(block.id, ())]
+    free = [_free_flow(graph, *map(graph.__getitem__, ends)) for ends in flows]
     return [*drawn, *free, *_allocations(graph, block)]
 
 
@@ -194,17 +194,17 @@ def _fits(graph: Graph, path: Path, named: set[str]) -> int:
     return 1 if named & types else 0
 
 
-def free_flows(graph: Graph) -> FreeFlows:
+def free_flows(graph: Graph) -> dict[str, tuple[FreeFlow, ...]]:
     """Item flows that no connector realises, by what owns both the features that they join."""
-    found: FreeFlows = {}
+    found: dict[str, list[FreeFlow]] = {}
     for flow in graph.of_kind(Kind.ITEM_FLOW):
         if graph.targets(flow, Edge.REALIZING):
             continue
         for source in graph.targets(flow, Edge.FLOW_SOURCE):
             for target in graph.targets(flow, Edge.FLOW_TARGET):
                 if source.owner is not None and source.owner == target.owner:
-                    found.setdefault(source.owner, []).append((flow, source, target))
-    return found
+                    found.setdefault(source.owner, []).append((flow.id, source.id, target.id))
+    return {owner: tuple(flows) for owner, flows in found.items()}
 
 
 def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:

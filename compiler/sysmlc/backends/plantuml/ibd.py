@@ -5,10 +5,17 @@ An instance, and a hierarchy of AutomationML whose instances are linked, have on
 
 from collections.abc import Iterator
 from dataclasses import field
+from functools import partial
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.connections import Connection, Path, connections, free_flows
+from sysmlc.backends.plantuml.connections import (
+    Connection,
+    FreeFlow,
+    Path,
+    connections,
+    free_flows,
+)
 from sysmlc.backends.plantuml.domains import in_order
 from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.sides import sides
@@ -16,7 +23,7 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
-from sysmlc.ir.reads import during
+from sysmlc.ir.seen import again
 from sysmlc.plantuml import label, lines, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -36,14 +43,15 @@ def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
         if only not in ("", block.id):
             continue
-        with during(graph, f"ibd {block.id}"):
-            joined = connections(graph, block, flows)
-            is_drawn = joined and not block.attrs.get("external")
-            found = list(_of_block(graph, block, joined)) if is_drawn else []
-        yield from found
+        own = flows.get(block.id, ())
+        yield from again(graph, f"ibd {block.id}", own, partial(_of_block, id=block.id, flows=own))
 
 
-def _of_block(graph: Graph, block: Element, found: list[Connection]) -> Iterator[Diagram]:
+def _of_block(graph: Graph, id: str, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
+    block = graph[id]
+    found = connections(graph, block, flows)
+    if not found or block.attrs.get("external"):
+        return
     whole = graph.qualified_name(block)
     parts = _divided(graph, block, found)
     for index, (shown, inside) in enumerate(parts):
