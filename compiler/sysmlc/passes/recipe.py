@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.passes.recipe_context import NODES, Context, activity_nodes
+from sysmlc.passes.recipe_context import NODES, Context
 from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.values import dataclass
 
@@ -73,7 +73,7 @@ def recipes(context: Context) -> Iterator[Element]:
 
 def _only_names(context: Context, activity: Element) -> bool:
     is_general = bool(context.graph.sources(activity, Edge.SPECIALIZES))
-    return is_general and not activity_nodes(context, activity)
+    return is_general and not context.nodes(activity)
 
 
 def _activity(context: Context, node: Element) -> str | None:

@@ -10,7 +10,7 @@ from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
-    from sysmlc.recipe.model import Range, ValueType
+    from sysmlc.recipe.model import Parameter, Range, ValueType
 
 SERVICES = ("machine service", "infrastructure service")
 NODES = frozenset(
@@ -47,8 +47,17 @@ class Context:
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
     _literals: dict[str, list[Element]] = field(default_factory=dict)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
+    _nodes: dict[str, list[Element]] = field(default_factory=dict)
     types: dict[str, "ValueType"] = field(default_factory=dict)
     """Types of values by the id of what types them, as far as somebody asked."""
+    parameters: dict[str, "Parameter"] = field(default_factory=dict)
+    """Parameters of recipes by the id of what they are made of, as far as somebody asked."""
+    kinds: dict[tuple[str, str], str] = field(default_factory=dict)
+    """Kinds of recipe nodes by id and level of the activity, as far as somebody asked."""
+    refined: dict[str, Element | None] = field(default_factory=dict)
+    """What refines a definition, by its id, as far as somebody asked."""
+    members: dict[str, dict[str, Element]] = field(default_factory=dict)
+    """Features by name, by the id of what has them, as far as somebody asked."""
 
     @classmethod
     def of(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
@@ -86,6 +95,8 @@ class Context:
             _levels=known,
             _of_level={},
             types={},
+            parameters={},
+            kinds={},
         )
 
     def of_level(self, level: str) -> list[Element]:
@@ -131,6 +142,14 @@ class Context:
             found = self._contents[activity.id] = list(contents(self.graph, activity))
         return found
 
+    def nodes(self, activity: Element) -> list[Element]:
+        """Nodes of the activity, those in for-each regions and plain blocks too."""
+        found = self._nodes.get(activity.id)
+        if found is None:
+            inside = self.contents(activity)
+            found = self._nodes[activity.id] = [one for one in inside if one.kind in NODES]
+        return found
+
     # -- stereotypes and tagged values ---------------------------------------------------------
 
     def applied(self, element: Element, stereotype: str) -> Element | None:
@@ -171,11 +190,6 @@ class Context:
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
             self._segments.update(_numbered(siblings))
         return self._segments[element.id]
-
-
-def activity_nodes(context: Context, activity: Element) -> list[Element]:
-    """Nodes of the activity, those in for-each regions and plain blocks too."""
-    return [one for one in context.contents(activity) if one.kind in NODES]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, measures, query
-from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_context import Context
 from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
 from sysmlc.values import dataclass
@@ -119,9 +119,7 @@ def _only_waits(context: Context, activity: Element) -> bool:
     parameters = query.parameters(context.graph, activity)
     if len(parameters) != 1 or query.direction_of(parameters[0]) != "in":
         return False
-    is_alone = not activity_nodes(context, activity) and not query.applications(
-        context.graph, activity
-    )
+    is_alone = not context.nodes(activity) and not query.applications(context.graph, activity)
     return is_alone and _is_duration(context, parameters[0])
 
 

@@ -86,9 +86,12 @@ def assignments(text: str) -> list[tuple[str, Expr]] | None:
 
 def parameter(context: Context, element: Element) -> Parameter:
     """A parameter, pin or property as a recipe's parameter."""
-    return Parameter(
-        context.label(element), value_type(context, element), unit(context, element), given(element)
-    )
+    found = context.parameters.get(element.id)
+    if found is None:
+        type_, measure = value_type(context, element), unit(context, element)
+        found = Parameter(context.label(element), type_, measure, given(element))
+        context.parameters[element.id] = found
+    return found
 
 
 def is_data(context: Context, element: Element) -> bool:

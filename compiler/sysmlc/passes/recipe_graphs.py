@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_draft import Draft, add_ends, add_results, close_region, open_region
 from sysmlc.passes.recipe_regions import is_inlined
@@ -25,7 +25,7 @@ def flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:
     """The graph of an activity; ``inside`` is its level, ``task`` or ``service``."""
     data = Data.of(context, activity)
     draft = Draft()
-    nodes = activity_nodes(context, activity)
+    nodes = context.nodes(activity)
     for node in nodes:
         _add_nodes(context, node, step_kind(context, node, inside), data, draft)
     regions = [node for node in nodes if is_inlined(context.graph, node)]
@@ -169,6 +169,8 @@ def _item(context: Context, flow: Element) -> str:
 def _bounds(context: Context, activity: Element, draft: Draft) -> dict[str, int]:
     found: dict[str, int] = {}
     for element in context.contents(activity):
+        if element.id not in context.subjects:
+            continue
         bound = context.tags(element, "Loop").integer("maxIterations")
         if bound is not None and bound > 0:
             found[draft.first.get(element.id, element.id)] = bound

@@ -5,7 +5,7 @@ from dataclasses import field
 from typing import Protocol, TypeVar
 
 from sysmlc.ir import Element
-from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_machines import machine, material
@@ -94,7 +94,7 @@ def _refine(context: Context, activity: Element, inside: str, closure: _Closure)
     if activity.id in graphs:
         return
     graphs[activity.id] = flow_graph(context, activity, inside)
-    for node in activity_nodes(context, activity):
+    for node in context.nodes(activity):
         kind = step_kind(context, node, inside)
         if kind == "call":
             helper = refinement(context, context.definition(node))

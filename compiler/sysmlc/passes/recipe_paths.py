@@ -24,8 +24,12 @@ def feature_at(context: Context, activity: Element, name: str) -> Element | None
 
 def member(context: Context, type_: Element, name: str) -> Element | None:
     """The feature of a type, or of a general, that has the name."""
-    found = query.features(context.graph, type_)
-    return next((one for one in found if one.name == name), None)
+    found = context.members.get(type_.id)
+    if found is None:
+        # The first of several that have one name.
+        features = reversed(query.features(context.graph, type_))
+        found = context.members[type_.id] = {one.name: one for one in features}
+    return found.get(name)
 
 
 # -- literals ----------------------------------------------------------------------------------

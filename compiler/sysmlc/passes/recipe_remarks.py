@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
-from sysmlc.passes.recipe_context import Context, activity_nodes
+from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.passes.recipe_steps import by_position, step_kind
 from sysmlc.passes.recipe_tasks import steps
@@ -79,7 +79,7 @@ def remark(context: Context, model: Model, sink: Sink) -> None:
     graphs += [(one, "service") for one in model.function_graphs]
     for graph, inside in graphs:
         activity = context.graph[graph.element]
-        for node in activity_nodes(context, activity):
+        for node in context.nodes(activity):
             _step(context, activity, node, inside, sink)
 
 
@@ -91,7 +91,7 @@ def _tasks(context: Context, recipe: Element, sink: Sink) -> None:
             names = context.name(step.node), context.name(other)
             subject = context.graph.subject(step.node)
             sink.report(SAME_NAME, subject, element=names[0], other=names[1])
-    for node in activity_nodes(context, recipe):
+    for node in context.nodes(recipe):
         if node.kind is Kind.CONTROL and node.subkind == "decision":
             names = context.name(node), context.name(recipe)
             subject = context.graph.subject(node)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe_context import SERVICES, Context, activity_nodes
+from sysmlc.passes.recipe_context import SERVICES, Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import assignments, optional, read_time
 from sysmlc.passes.recipe_regions import is_block, is_for_each
@@ -22,12 +22,19 @@ CONTROL_KINDS = {
 _HELPERS = ("opaque", "function")
 
 
-def step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
+def step_kind(context: Context, node: Element, inside: str) -> str:
     """Kind of the recipe node that an activity node becomes; empty for a buffer of data.
 
     ``inside`` is the level of the activity: what a task calls is a service, what a service
     calls is a function, unless a level says otherwise.
     """
+    found = context.kinds.get((node.id, inside))
+    if found is None:
+        found = context.kinds[node.id, inside] = _step_kind(context, node, inside)
+    return found
+
+
+def _step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
     if node.kind is Kind.CONTROL:
         return CONTROL_KINDS.get(node.subkind, "action")
     if node.kind is Kind.STRUCTURED:
@@ -61,13 +68,19 @@ def refinement(context: Context, definition: Element | None) -> Element | None:
     """The activity that a definition is, that implements it, or that it runs; with content."""
     if definition is None:
         return None
+    if definition.id not in context.refined:
+        context.refined[definition.id] = _refinement(context, definition)
+    return context.refined[definition.id]
+
+
+def _refinement(context: Context, definition: Element) -> Element | None:
     graph = context.graph
     candidates = [definition, graph.target(definition, Edge.METHOD)]
     candidates.append(query.classifier_behavior(graph, definition))
     candidates += [one for one in graph.owned(definition) if one.kind is Kind.ACTIVITY]
     candidates += graph.sources(definition, Edge.REFINES)
     for one in candidates:
-        if one is not None and one.kind is Kind.ACTIVITY and activity_nodes(context, one):
+        if one is not None and one.kind is Kind.ACTIVITY and context.nodes(one):
             return one
     return None
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.passes.recipe_context import Context, activity_nodes, number
+from sysmlc.passes.recipe_context import Context, number
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import optional
 from sysmlc.passes.recipe_machines import (
@@ -31,7 +31,7 @@ class Step:
 def steps(context: Context, recipe: Element) -> list[Step]:
     """The task nodes of a recipe, in order; what a recipe calls is a task."""
     found = []
-    for node in activity_nodes(context, recipe):
+    for node in context.nodes(recipe):
         calls = node.kind is Kind.ACTION and node.subkind in ("call-behavior", "call-operation")
         level = context.level(node)
         if level == "task" or (calls and not level):
