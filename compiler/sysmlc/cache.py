@@ -53,9 +53,13 @@ class Cache:
         temporary = f"{path}.{os.getpid()}.{get_ident()}"
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            with open(temporary, "wb", opener=_private) as stream:
-                stream.writelines((_check_sum(*parts), *parts))
-            os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
+            try:
+                with open(temporary, "wb", opener=_private) as stream:
+                    stream.writelines((_check_sum(*parts), *parts))
+                os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
+            except BaseException:
+                Path(temporary).unlink(missing_ok=True)
+                raise
             self._count(sum(map(len, parts)))
 
     def _count(self, size: int) -> None:

@@ -16,6 +16,8 @@ from functools import partial
 import pytest
 
 from sysmlc.cli import settling
+from sysmlc.cli.session import Settings
+from sysmlc.cli.watching import Watch
 
 BOUND = 60
 HEAD = (
@@ -138,6 +140,23 @@ def test_a_file_that_is_replaced_or_gone_for_a_moment_is_no_error(watch):
     assert watched.said() == ""
 
 
+def test_a_text_that_is_empty_or_gone_for_a_moment_clears_no_outputs(watch):
+    """An empty text is no error, and neither is a folder with one file less."""
+    files = {"a.sysml": b"package A;\n", "b.sysml": b"package B;\n"}
+    watched = watch(files, ".")
+    path = watched.folder / "a.sysml"
+    path.write_bytes(b"")
+    time.sleep(0.6)
+    path.write_bytes(b"package Written;\n")
+    watched.until_built("Written")
+    path.rename(watched.folder / "a.bak")
+    time.sleep(0.6)
+    path.write_bytes(b"package Replaced;\n")
+    watched.until_built("Replaced")
+    watched.until(lambda: len(watched.built()) > 2)
+    assert len(watched.built()) == 3
+
+
 def test_an_archive_that_is_saved_in_place_is_no_error(watch):
     watched = watch({"plant.mdzip": mdzip("Old")}, "plant.mdzip")
     in_pieces(watched.folder / "plant.mdzip", mdzip("New"), 0.3)
@@ -255,6 +274,25 @@ def test_the_configuration_is_watched_too(watch):
     assert watched.said() == ""
 
 
+def test_findings_that_were_told_before_are_not_waited_for(tmp_path, monkeypatch):
+    """A model with known errors is compiled as soon as any other."""
+    waited = []
+    real = settling.rested
+
+    def rested(paths, seconds):
+        waited.append(seconds)
+        return real(paths, 0)
+
+    monkeypatch.setattr(settling, "rested", rested)
+    path = tmp_path / "plant.uml"
+    path.write_bytes(model("Old")[:-20])
+    watched = Watch((path,), tmp_path / "out", Settings(has_cache=False), 0.05)
+    watched.build()
+    path.write_bytes(model("Others")[:-20])
+    watched.build()
+    assert waited == [0.05, 1.5, 0.05]
+
+
 class Clock:
     """Time that passes only when somebody sleeps; at some times something is saved."""
 
@@ -301,4 +339,8 @@ def test_rest_is_told_by_size_and_time(tmp_path):
     assert settling.is_fresh({missing: None}, 1)
     path.write_bytes(b"xy")
     assert settling.stamps([path]) != {path: (1, 0)}
+    assert settling.blank(seen) == {missing}
+    path.write_bytes(b"")
+    assert settling.blank(settling.stamps([path, missing, tmp_path])) == {path, missing}
+    path.write_bytes(b"xy")
     assert settling.is_fresh(settling.stamps([path]), 3600)

@@ -151,6 +151,54 @@ def test_a_cache_that_cannot_be_written_costs_time_only(runs, tmp_path, monkeypa
     assert len(runs) == 2
 
 
+@pytest.fixture
+def watched(monkeypatch):
+    """``sysmlc watch`` of a model that is built, saved once and built again."""
+    import watchfiles
+
+    def saves(*_folders, **_options):
+        Path("plant.ir").write_text(PLANT.replace("Robot", "Arm"))
+        yield {(1, "plant.ir")}
+
+    monkeypatch.setattr(watchfiles, "watch", saves)
+    Path("plant.ir").write_text(PLANT)
+    return lambda: sysmlc("watch", "plant.ir")
+
+
+def test_what_is_watched_is_written_before_it_is_kept_and_then_found(runs, watched, monkeypatch):
+    put, seen = Cache.put, []
+
+    def noted(store, *parts):
+        seen.append("Arm" in Path("out/trace.json").read_text())
+        put(store, *parts)
+
+    monkeypatch.setattr(Cache, "put", noted)
+    assert watched()[0] == 0
+    assert not seen[0]
+    assert seen[-1]
+    sysmlc("plant.ir")
+    assert len(runs) == 2
+
+
+@pytest.mark.parametrize("at", ["open", "replace"])
+def test_an_entry_that_is_interrupted_leaves_nothing(runs, watched, tmp_path, monkeypatch, at):
+    real = getattr(os, at)
+
+    def interrupted(path, *others):
+        if ".entry." in str(path):
+            raise KeyboardInterrupt
+        return real(path, *others)
+
+    monkeypatch.setattr(os, at, interrupted)
+    assert watched()[0] == 130
+    assert "Robot" in Path("out/trace.json").read_text()
+    assert not [path for path in (tmp_path / "cache").rglob("*") if path.is_file()]
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
+    assert sysmlc("plant.ir", "--check")[0] == 0
+
+
 def test_a_missing_file_is_reported_every_time(runs):
     assert sysmlc("check", "plant.ir")[0] == 2
     assert sysmlc("check", "plant.ir")[0] == 2

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -23,6 +23,10 @@ _AS_WRITTEN = frozenset({"resolve", "kept"})
 _SHOWN = 1_000
 """Findings that a reader is shown unless all are asked for: nobody reads more at once."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
+
+
+Keep = Callable[[], None]
+"""Puts an outcome into the cache."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,22 +170,39 @@ def outcome_of(
 
     Without ``has_files`` the findings are enough.
     """
-    from sysmlc.driver import depends_on, keep, kept, open_unit, outcome
+    found, keep = unkept(unit, config, settings, has_files)
+    keep()
+    return found
+
+
+def unkept(
+    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
+) -> "tuple[Outcome, Keep]":
+    """The same, and what puts it into the cache if it is not there: outputs need not wait."""
+    from sysmlc.driver import STILL, depends_on, keep, kept, open_unit, outcome
 
     request = _request(unit.files, config, settings)
     store = request.cache
     if store is None:
-        return outcome(_compile(_with_backends(request, unit.emit), settings), has_files)
+        made = _compile(_with_backends(request, unit.emit), settings)
+        return outcome(made, has_files), _nothing
     opened = open_unit(request)
     on = depends_on(opened, request, unit.emit, has_files)
-    found = kept(store, on, opened, request)
-    if found is None:
-        request = _with_backends(request, unit.emit)
-        made = _compile(request, settings, opened)
-        found = outcome(made, has_files)
-        names = [backend.name for backend in request.backends]
-        keep(store, on, opened, found, names, made.recorded)
-    return found
+    known = kept(store, on, opened, request)
+    if known is not None:
+        found, recorded = known
+        if recorded is None:
+            return found, _nothing
+        return found, lambda: keep(store, on, opened, found, STILL, recorded)
+    request = _with_backends(request, unit.emit)
+    made = _compile(request, settings, opened)
+    found = outcome(made, has_files)
+    names = [backend.name for backend in request.backends]
+    return found, lambda: keep(store, on, opened, found, names, made.recorded())
+
+
+def _nothing() -> None:
+    """There is nothing to keep."""
 
 
 def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 _STEP = 0.05
+"""Seconds after which files are looked at again, if they are to rest for longer."""
 _LONGEST = 30.0
 """Seconds after which files that never rest are compiled as they are."""
 
@@ -27,7 +28,7 @@ def rested(paths: Iterable[Path], seconds: float) -> Stamps:
     start = since = time.monotonic()
     last = stamps(paths)
     while time.monotonic() - since < seconds and time.monotonic() - start < _LONGEST:
-        time.sleep(_STEP)
+        time.sleep(min(_STEP, seconds))
         current = stamps(paths)
         if current != last:
             last, since = current, time.monotonic()
@@ -38,6 +39,15 @@ def is_fresh(seen: Stamps, seconds: float) -> bool:
     """Whether a file is not there or was changed in the last seconds: it may be half saved."""
     now = time.time()
     return any(stamp is None or abs(now - stamp[1] / 1e9) < seconds for stamp in seen.values())
+
+
+def blank(seen: Stamps) -> frozenset[Path]:
+    """Files that are empty or not there."""
+    return frozenset(
+        path
+        for path, stamp in seen.items()
+        if stamp is None or (stamp[0] == 0 and stamp != _FOLDER)
+    )
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 _LOOK = 1000
 """Milliseconds after which files are looked at though the system reported no change."""
+_STEP = 20
+"""Milliseconds without a further change after which changes are told."""
 
 
 @click.command(
@@ -27,10 +29,11 @@ Example:
 @click.option(
     "--settle",
     type=click.IntRange(0, 60_000),
-    default=300,
+    default=50,
     show_default=True,
     metavar="MS",
-    help="How long files must rest before they are compiled; errors wait five times as long.",
+    help="How long files must rest before they are compiled; new findings wait 1.5 s, or five "
+    "times as long.",
 )
 @options.emitting
 @options.reporting
@@ -61,8 +64,7 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
     """Compile each unit once; write those that have no error. Say whether all were written."""
     from sysmlc.cli.watching import compiled, publish
 
-    made = compiled(models, output, settings)
-    written = [publish(unit, one, settings) for unit, one in made]
+    written = [publish(one, settings) for one in compiled(models, output, settings)]
     return all(written)
 
 
@@ -78,6 +80,7 @@ def _saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
         *folders,
         watch_filter=_is_input,
         raise_interrupt=False,
+        step=_STEP,
         rust_timeout=_LOOK,
         yield_on_timeout=True,
     )

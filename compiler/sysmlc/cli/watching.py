@@ -8,15 +8,28 @@ from typing import TYPE_CHECKING
 
 import click
 
+from sysmlc.values import dataclass
+
 if TYPE_CHECKING:
-    from sysmlc.cli.session import Settings, Unit
+    from sysmlc.cli.session import Keep, Settings, Unit
     from sysmlc.cli.settling import Stamps
     from sysmlc.config import Config
     from sysmlc.driver import Outcome
 
-_PATIENCE = 5
-"""How many settling times old a save must be before a new finding in it is believed."""
+_PATIENCE = 1.5
+"""Seconds without a save before what looks half saved is believed, if files must rest at all."""
+_PATIENT = 5
+"""Settling times for the same, if that is longer."""
 _ROUNDS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """What a unit comes to, and what puts that into the cache."""
+
+    unit: "Unit"
+    outcome: "Outcome"
+    keep: "Keep"
 
 
 class Watch:
@@ -27,6 +40,7 @@ class Watch:
     ) -> None:
         self._models, self._output, self._settings = models, output, settings
         self._settle = settle
+        self._patience = max(_PATIENCE, _PATIENT * settle) if settle else 0.0
         config, files = _unit_files(models, settings)
         self._config = config.folder
         named = [*files, *settings.overlay, *([config.file] if config.file else [])]
@@ -35,6 +49,8 @@ class Watch:
         self._built: Stamps = {}
         self._told: frozenset[tuple[str, str]] = frozenset()
         """Findings of what was compiled last."""
+        self._blank: frozenset[Path] = frozenset()
+        """Files that were empty or not there then."""
 
     def folders(self) -> list[Path]:
         """Folders whose files are inputs; ends with exit code 2 when one is not there."""
@@ -64,78 +80,82 @@ class Watch:
             if stamp is None and path not in self._named:
                 del self._paths[path]
         self._built = {path: self._built.get(path) for path in self._paths}
-        for unit, one in made:
-            publish(unit, one, self._settings)
+        # Whoever saved waits for the outputs, and not for what a later process finds in the cache.
+        for one in made:
+            publish(one, self._settings)
+        for one in made:
+            one.keep()
 
-    def _settled(self) -> "list[tuple[Unit, Outcome]]":
+    def _settled(self) -> "list[Compiled]":
         """What the inputs come to when they have come to rest.
 
-        What was saved while it was compiled is compiled again, and so is what has errors, or
-        findings that were not there before, and was saved just now: the tool may be about to
-        write the rest, or the next file.
+        What was saved while it was compiled is compiled again, and so is what was saved just now
+        and has findings that were not there before, or a file that is empty or gone: the tool
+        may be about to write the rest, or the next file.
         """
         from sysmlc.cli import settling
 
-        patience = self._settle * _PATIENCE
         for _ in range(_ROUNDS):
-            before = settling.rested(self._paths, self._rest(patience))
+            before = settling.rested(self._paths, self._rest())
             made = compiled(self._models, self._output, self._settings)
             if settling.stamps(before) != before:
                 continue
-            new = dict.fromkeys(path for _, one in made for path in _read_by(one))
+            new = dict.fromkeys(path for one in made for path in _read_by(one.outcome))
             self._paths |= new
             self._built = {**settling.stamps(new), **before}
-            told = _findings(made)
-            is_doubtful = any(one.exit_code() for _, one in made) or not told <= self._told
-            if not is_doubtful or not settling.is_fresh(before, patience):
+            told, blank = _findings(made), settling.blank(before)
+            is_known = told <= self._told and blank <= self._blank
+            if is_known or not settling.is_fresh(before, self._patience):
                 break
-            if settling.rested(before, patience) == before:
+            if settling.rested(before, self._patience) == before:
                 break
-        self._told = _findings(made)
+        self._told, self._blank = _findings(made), settling.blank(before)
         return made
 
-    def _rest(self, patience: float) -> float:
+    def _rest(self) -> float:
         """How long files must rest: faults of a configuration are told at once, when it is read."""
         from sysmlc.cli import settling
         from sysmlc.config import FILE_NAME
 
         named = [path for path in self._paths if path.name in (FILE_NAME, "pyproject.toml")]
-        is_new = bool(named) and settling.is_fresh(settling.stamps(named), patience)
-        return patience if is_new else self._settle
+        is_new = bool(named) and settling.is_fresh(settling.stamps(named), self._patience)
+        return self._patience if is_new else self._settle
 
 
 def compiled(
     models: tuple[Path, ...], output: Path | None, settings: "Settings"
-) -> "list[tuple[Unit, Outcome]]":
+) -> "list[Compiled]":
+    """What each unit comes to; keeping it in the cache is left to do."""
     from sysmlc.cli import session
 
     # Front ends freeze the graphs that they made; those of earlier compilations may go now.
     gc.unfreeze()
     config = session.load_config(models, settings.config)
     units = session.units(models, config, output, settings.emit)
-    return [(unit, session.outcome_of(unit, config, settings)) for unit in units]
+    return [Compiled(unit, *session.unkept(unit, config, settings)) for unit in units]
 
 
-def publish(unit: "Unit", made: "Outcome", settings: "Settings") -> bool:
+def publish(made: Compiled, settings: "Settings") -> bool:
     """Show the findings; write the outputs unless there are errors."""
     from sysmlc.cli import session
     from sysmlc.driver import OutputError, apply, plan
 
-    session.report([made], settings)
-    if made.exit_code():
-        click.echo(f"{unit.output}: kept as it is, the model has errors")
+    folder = made.unit.output
+    session.report([made.outcome], settings)
+    if made.outcome.exit_code():
+        click.echo(f"{folder}: kept as it is, the model has errors")
         return False
     try:
-        changed = apply(plan(made, unit.output))
+        changed = apply(plan(made.outcome, folder))
     except OutputError as problem:
         session.fail(str(problem))
-    click.echo(f"{unit.output}: {len(changed)} changed")
+    click.echo(f"{folder}: {len(changed)} changed")
     return True
 
 
-def _findings(made: "list[tuple[Unit, Outcome]]") -> frozenset[tuple[str, str]]:
+def _findings(made: "list[Compiled]") -> frozenset[tuple[str, str]]:
     """Rules and messages; lines may move without anything being new."""
-    found = (finding.diagnostic for _, one in made for finding in one.findings)
+    found = (finding.diagnostic for one in made for finding in one.outcome.findings)
     return frozenset((one.rule.code, one.message) for one in found)
 
 

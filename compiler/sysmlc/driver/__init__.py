@@ -9,7 +9,7 @@ from sysmlc.driver.compilation import (
     open_unit,
 )
 from sysmlc.driver.dependencies import depends_on
-from sysmlc.driver.keeping import keep, kept
+from sysmlc.driver.keeping import STILL, keep, kept
 from sysmlc.driver.manifest import manifest_text
 from sysmlc.driver.outcome import Outcome, outcome
 from sysmlc.driver.publish import OutputError, Plan, apply, plan
@@ -23,6 +23,7 @@ from sysmlc.driver.registry import (
 from sysmlc.driver.tracing import trace_text
 
 __all__ = [
+    "STILL",
     "BackendError",
     "Compilation",
     "Observer",

@@ -91,12 +91,15 @@ class Compilation:
     sources: tuple[Source, ...] = ()
     is_complete: bool = True
     """Whether every input could be read; if not, nothing old is removed."""
-    recorded: Recorded | None = None
-    """What it takes to do parts of the compilation again; None where that is not possible."""
+    recording: Recording | None = None
 
     def written(self) -> list[Artefact]:
         """The artefacts that are not withheld, sorted by path."""
         return [artefact for artefact in self.artefacts if artefact.path not in self.withheld]
+
+    def recorded(self) -> Recorded | None:
+        """What it takes to do parts of it again; None where that is not possible."""
+        return self.recording.recorded() if self.recording else None
 
     def exit_code(self, strict: bool = False) -> int:
         """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
@@ -181,6 +184,8 @@ class _Run:
             self._report_unsupported()
         diagnostics = self._findings()
         withheld = withheld_artefacts(emitted, self._graph, diagnostics)
+        if self._recording is not None:
+            self._recording.end(emitted)
         return Compilation(
             root=self._root,
             graph=self._graph,
@@ -190,7 +195,7 @@ class _Run:
             artefacts=tuple(emitted),
             withheld=withheld,
             sources=self._sources(reading),
-            recorded=self._recording.end(emitted) if self._recording else None,
+            recording=self._recording,
             is_complete=reading.is_complete
             and not broken
             and not any(map(_cuts_short, diagnostics)),

@@ -19,13 +19,15 @@ STILL = frozenset({"contracts", "plantuml", "recipe"})
 """Back ends whose files state no places in the inputs."""
 
 
-def kept(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
-    """The outcome that an earlier run came to, or that it would come to now; else None."""
-    return (
-        recall(cache, on.key(), opened.root)
-        or _moved(cache, on, opened)
-        or _restated(cache, on, opened, request)
-    )
+def kept(
+    cache: Cache, on: Dependencies, opened: Opened, request: Request
+) -> tuple[Outcome, Recorded | None] | None:
+    """The outcome that an earlier run came to, or that it would come to now; else None.
+
+    One that is to be kept for these texts comes with what was recorded.
+    """
+    found = recall(cache, on.key(), opened.root) or _moved(cache, on, opened)
+    return (found, None) if found else _restated(cache, on, opened, request)
 
 
 def keep(
@@ -68,18 +70,15 @@ def _moved(cache: Cache, on: Dependencies, opened: Opened) -> Outcome | None:
     return found and _adapted(found, known, texts, opened)
 
 
-def _restated(cache: Cache, on: Dependencies, opened: Opened, request: Request) -> Outcome | None:
+def _restated(
+    cache: Cache, on: Dependencies, opened: Opened, request: Request
+) -> tuple[Outcome, Recorded] | None:
     known = kept_shape(cache, on, opened)
     if known is None:
         return None
     from sysmlc.driver.restoring import restored
 
-    found = restored(cache, known, opened, request)
-    if found is None:
-        return None
-    outcome, recorded = found
-    keep(cache, on, opened, outcome, STILL, recorded)
-    return outcome
+    return restored(cache, known, opened, request)
 
 
 def _adapted(

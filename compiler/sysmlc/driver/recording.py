@@ -52,6 +52,7 @@ class Recording:
         self._heard: dict[str, list[Diagnostic]] = {}
         self._seen: Rows | None = None
         self._at = (0, 0)
+        self._artefacts: tuple[Artefact, ...] = ()
 
     def begin(self, reader: str, is_repeatable: bool) -> None:
         """From now on ``reader`` is at work; one that is repeatable leaves the graph as it is."""
@@ -63,10 +64,14 @@ class Recording:
         if self._seen is not None:
             self._sink.listen(self._heard.setdefault(reader, []))
 
-    def end(self, artefacts: Iterable[Artefact]) -> Recorded | None:
-        """What was noted; None when nothing can be done again: a later pass changed the graph."""
+    def end(self, artefacts: Iterable[Artefact]) -> None:
+        """Nobody is at work any more; these files were made."""
         self._sink.listen(None)
         self._graph.reads = None
+        self._artefacts = tuple(artefacts)
+
+    def recorded(self) -> Recorded | None:
+        """What was noted; None when nothing can be done again: a later pass changed the graph."""
         reads, seen = self._reads, self._seen
         if seen is None or self._at != self._state() or not _is_as_kept(self._graph):
             return None
@@ -82,7 +87,7 @@ class Recording:
             stored={module: tuple(who) for module, who in reads.stored.items()},
             used={module: tuple(who) for module, who in reads.used.items()},
             heard={reader: digest_of_findings(found) for reader, found in self._heard.items()},
-            made=tuple(made(one) for one in artefacts),
+            made=tuple(made(one) for one in self._artefacts),
         )
 
     def _state(self) -> tuple[int, int]:
