@@ -32,18 +32,14 @@ def digests(text: str) -> tuple[str, str]:
     What stands before the first is not looked at. The second knows of literals of what kind they
     are: a text, a natural or another number, a truth value, the body of a comment.
     """
-    found = spans(text)
-    if found is None or "\0" in text:
+    found = list(TOKEN.finditer(text))
+    if "\0" in text or BAD in {match.lastindex for match in found}:
         return "", ""
-    said, shape, last = [], [], found[0][0]
-    for start, end in found:
-        piece, between = text[start:end], _between(text, last, start)
-        whole = f"{between}{len(piece)} {piece}"
-        kind = literal_kind(piece)
-        said.append(whole)
-        shape.append(f"{between}{kind}" if kind else whole)
-        last = end
-    return _hashed(said), _hashed(shape)
+    # A text says the same few hundred things again and again.
+    pieces = [match[0] for match in found]
+    told = {piece: _told(piece) for piece in set(pieces)}
+    each = [told[piece] for piece in pieces]
+    return _hashed([said for said, _ in each]), _hashed([shape for _, shape in each])
 
 
 def digest(text: str) -> str:
@@ -51,8 +47,19 @@ def digest(text: str) -> str:
     return digests(text)[0]
 
 
+def _told(piece: str) -> tuple[str, str]:
+    """What a token says with what parts it from the one before, and that without its value."""
+    found = TOKEN.match(piece)
+    token = found[found.lastindex or 0] if found and found.lastindex else ""
+    between = _between(piece, 0, len(piece) - len(token))
+    whole = f"{between}{len(token)} {token}"
+    kind = literal_kind(token)
+    return whole, f"{between}{kind}" if kind else whole
+
+
 def _hashed(said: list[str]) -> str:
-    return sha256("".join(said).encode("utf-8", "surrogatepass")).hexdigest()
+    together = "".join(said).lstrip()
+    return sha256(together.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def literal_kind(piece: str) -> str:
