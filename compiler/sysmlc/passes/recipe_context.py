@@ -10,6 +10,7 @@ from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
+    from sysmlc.passes.recipe_refined import Refined
     from sysmlc.recipe.model import Parameter, Range, ValueType
 
 SERVICES = ("machine service", "infrastructure service")
@@ -28,6 +29,20 @@ MATERIAL_USES = ("consumed", "produced", "carried")
 
 
 @dataclass(frozen=True, slots=True)
+class Whole:
+    """What no part of a graph can tell alone, all of it texts."""
+
+    said: Mapping[str, str]
+    """Levels by id that elements have themselves: said of them, or derived."""
+    roots: Mapping[str, str]
+    """Of what nothing owns: the part in qualified names, by id."""
+    literals: Mapping[str, str]
+    """Ids of enumeration literals by ``Enumeration::literal``; empty where two are called so."""
+    has_functions: bool
+    """Whether anything is a machine function."""
+
+
+@dataclass(frozen=True, slots=True)
 class Context:
     """The graph with what the user said about levels; it remembers what it has computed."""
 
@@ -35,17 +50,17 @@ class Context:
     levels: Mapping[str, str] = field(default_factory=dict)
     said: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that elements have themselves: said of them, or derived."""
-    able: frozenset[str] = frozenset()
-    """Ids of what may have a level: most of a model has none."""
+    able: frozenset[str] | None = frozenset()
+    """Ids of what may have a level, for most of a model has none; None: nobody knows."""
     derived: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that follow from others; what is said wins over them."""
-    subjects: frozenset[str] = frozenset()
-    """Ids of what stereotypes are applied to."""
+    subjects: frozenset[str] | None = frozenset()
+    """Ids of what stereotypes are applied to; None: nobody knows."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
-    _literals: dict[str, list[Element]] = field(default_factory=dict)
+    _whole: list[Whole] = field(default_factory=list)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     _nodes: dict[str, list[Element]] = field(default_factory=dict)
     types: dict[str, "ValueType"] = field(default_factory=dict)
@@ -56,6 +71,8 @@ class Context:
     """Kinds of recipe nodes by id and level of the activity, as far as somebody asked."""
     refined: dict[str, Element | None] = field(default_factory=dict)
     """What refines a definition, by its id, as far as somebody asked."""
+    refinements: dict[tuple[str, str], "Refined"] = field(default_factory=dict)
+    """What activities say, by the level of what they refine and by id, as far as somebody asked."""
     members: dict[str, dict[str, Element]] = field(default_factory=dict)
     """Features by name, by the id of what has them, as far as somebody asked."""
 
@@ -67,6 +84,21 @@ class Context:
         able = frozenset(followers(graph, own))
         return replace(bare, said=own, able=able, subjects=frozenset(subjects(graph)))
 
+    @classmethod
+    def part(cls, graph: Graph, whole: Whole) -> "Context":
+        """The context of a part of a graph: all but the ``whole`` is asked of the graph."""
+        made = cls(graph, said=whole.said, able=None, subjects=None, _whole=[whole])
+        made._segments.update(whole.roots)
+        return made
+
+    def whole(self) -> Whole:
+        """What no part of the graph can tell."""
+        if not self._whole:
+            roots = {one.id: self._segment(one) for one in self.graph.roots()}
+            has_functions = bool(self.of_level("machine function"))
+            self._whole.append(Whole(self.said, roots, _literals(self.graph), has_functions))
+        return self._whole[0]
+
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
@@ -75,7 +107,7 @@ class Context:
 
     def level(self, element: Element | None) -> str:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
-        if element is None or element.id not in self.able:
+        if element is None or (self.able is not None and element.id not in self.able):
             return ""
         found = self._levels.get(element.id)
         if found is None:
@@ -90,29 +122,29 @@ class Context:
         return replace(
             self,
             said={**derived, **self.said},
-            able=self.able | changed,
+            able=(self.able or frozenset()) | changed,
             derived=derived,
             _levels=known,
             _of_level={},
+            _whole=[],
             types={},
             parameters={},
             kinds={},
+            refinements={},
         )
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""
-        if self.able and not self._of_level:
-            for element in (one for one in self.graph if one.id in self.able):
+        able = self.able
+        if able and not self._of_level:
+            for element in (one for one in self.graph if one.id in able):
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
 
     def literal(self, name: str) -> Element | None:
         """The enumeration literal ``Enumeration::literal``; None where two are called so."""
-        if not self._literals:
-            for one in self.graph.of_kind(Kind.ENUMERATION_LITERAL):
-                self._literals.setdefault(_last_two(self.graph.qualified_name(one)), []).append(one)
-        found = self._literals.get(_last_two(name), [])
-        return found[0] if len(found) == 1 else None
+        found = self.whole().literals.get(_last_two(name))
+        return self.graph.get(found) if found else None
 
     def _level(self, element: Element) -> str:
         own = self.own_level(element)
@@ -154,10 +186,14 @@ class Context:
 
     def applied(self, element: Element, stereotype: str) -> Element | None:
         """Application of a stereotype of the shipped profile, or of one that specialises it."""
-        if element.id not in self.subjects:
+        if not self.may_have_stereotype(element):
             return None
         found = query.applications(self.graph, element)
         return next((one for one in found if stereotype in stereotypes(one)), None)
+
+    def may_have_stereotype(self, element: Element) -> bool:
+        """Whether a stereotype may be applied to the element: most have none."""
+        return self.subjects is None or element.id in self.subjects
 
     def tags(self, element: Element, stereotype: str) -> "Tags":
         """Tagged values of one stereotype of the profile; empty when it is not applied."""
@@ -260,6 +296,15 @@ def number(text: str) -> int | float | None:
     if value != value or value in (float("inf"), float("-inf")):
         return None
     return int(value) if value == int(value) else value
+
+
+def _literals(graph: Graph) -> dict[str, str]:
+    """Ids of enumeration literals by the last two parts of their names, empty for one of two."""
+    found: dict[str, str] = {}
+    for one in graph.of_kind(Kind.ENUMERATION_LITERAL):
+        name = _last_two(graph.qualified_name(one))
+        found[name] = "" if name in found else one.id
+    return found
 
 
 def _last_two(name: str) -> str:

@@ -169,7 +169,7 @@ def _item(context: Context, flow: Element) -> str:
 def _bounds(context: Context, activity: Element, draft: Draft) -> dict[str, int]:
     found: dict[str, int] = {}
     for element in context.contents(activity):
-        if element.id not in context.subjects:
+        if not context.may_have_stereotype(element):
             continue
         bound = context.tags(element, "Loop").integer("maxIterations")
         if bound is not None and bound > 0:

@@ -7,11 +7,11 @@ from typing import Protocol, TypeVar
 from sysmlc.ir import Element
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_data import Data
-from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_machines import machine, material
 from sysmlc.passes.recipe_performances import performances
+from sysmlc.passes.recipe_refined import refined
 from sysmlc.passes.recipe_services import function, service
-from sysmlc.passes.recipe_steps import activity_flows, refinement, step_kind
+from sysmlc.passes.recipe_steps import activity_flows, refinement
 from sysmlc.passes.recipe_tasks import (
     Step,
     material_of,
@@ -93,22 +93,17 @@ def _refine(context: Context, activity: Element, inside: str, closure: _Closure)
     graphs = closure.service_graphs if inside == "task" else closure.function_graphs
     if activity.id in graphs:
         return
-    graphs[activity.id] = flow_graph(context, activity, inside)
-    for node in context.nodes(activity):
-        kind = step_kind(context, node, inside)
-        if kind == "call":
-            helper = refinement(context, context.definition(node))
-            if helper is not None:
-                _refine(context, helper, "service", closure)
-            continue
-        table = {"service": closure.services, "function": closure.functions}.get(kind)
-        if table is None:
-            continue
-        definition = context.definition(node) or node
-        table.setdefault(definition.id, (definition, []))[1].append(node)
-        refined = refinement(context, definition) if kind == "service" else None
-        if refined is not None:
-            _refine(context, refined, "service", closure)
+    made = refined(context, activity, inside)
+    graphs[activity.id] = made.graph
+    tables = {"service": closure.services, "function": closure.functions}
+    for called in made.calls:
+        definition = context.graph[called.definition]
+        if called.kind in tables:
+            callers = tables[called.kind].setdefault(definition.id, (definition, []))[1]
+            callers.append(context.graph[called.node])
+        inner = None if called.kind == "function" else refinement(context, definition)
+        if inner is not None:
+            _refine(context, inner, "service", closure)
 
 
 def _materials(context: Context, recipe: Recipe, activity: Element) -> set[str]:

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
 from sysmlc.passes.recipe_context import Context
-from sysmlc.passes.recipe_regions import is_inlined
-from sysmlc.passes.recipe_steps import by_position, step_kind
+from sysmlc.passes.recipe_refined import refined
 from sysmlc.passes.recipe_tasks import steps
 from sysmlc.recipe import samples
 from sysmlc.recipe.model import Model
@@ -68,8 +67,6 @@ SAME_NAME = rule(
     samples.recipe(),
 )
 
-_LEVELS = {"service": "service", "function": "machine function"}
-
 
 def remark(context: Context, model: Model, sink: Sink) -> None:
     """Report what was decided by position, left out, or looks alike."""
@@ -79,8 +76,8 @@ def remark(context: Context, model: Model, sink: Sink) -> None:
     graphs += [(one, "service") for one in model.function_graphs]
     for graph, inside in graphs:
         activity = context.graph[graph.element]
-        for node in context.nodes(activity):
-            _step(context, activity, node, inside, sink)
+        for id, level in refined(context, activity, inside).remarks:
+            _step(context, activity, context.graph[id], level, sink)
 
 
 def _tasks(context: Context, recipe: Element, sink: Sink) -> None:
@@ -106,13 +103,11 @@ def _namesakes(context: Context, node: Element) -> Iterator[Element]:
     )
 
 
-def _step(context: Context, activity: Element, node: Element, inside: str, sink: Sink) -> None:
-    kind = step_kind(context, node, inside)
-    if node.kind is Kind.STRUCTURED and not is_inlined(context.graph, node):
-        sink.report(STRUCTURED, context.graph.subject(node), element=context.name(node))
-    elif by_position(context, node, kind):
-        called = context.definition(node) or node
-        _by_position(context, called, _LEVELS[kind], activity, sink)
+def _step(context: Context, activity: Element, found: Element, level: str, sink: Sink) -> None:
+    if level:
+        _by_position(context, found, level, activity, sink)
+    else:
+        sink.report(STRUCTURED, context.graph.subject(found), element=context.name(found))
 
 
 def _by_position(

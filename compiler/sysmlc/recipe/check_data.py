@@ -29,6 +29,7 @@ from sysmlc.recipe.model import (
     Task,
     ValueType,
 )
+from sysmlc.recipe.remembered import remembered
 
 _EARLY = ("s g", "g d", "d a ok", "d b else", "a m", "b m", "m l", "l e")
 
@@ -77,13 +78,17 @@ UNREADABLE = rule(
 def guards(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC005: Boolean guards, one else at most, no overlap, no gap."""
     for graph in graphs(model):
-        types = {name: one.type for name, one in declared(graph).items()}
-        for node in graph.nodes:
-            if node.kind in ("decision", "loop"):
-                edges = [edge for edge in graph.edges if edge.source == node.id]
-                for problem in _guard_problems(edges, types):
-                    facts = {"decision": node.id, "problem": problem}
-                    yield Finding(GUARDS, node.element, facts)
+        for node, problem in _decision_problems(graph):
+            yield Finding(GUARDS, node.element, {"decision": node.id, "problem": problem})
+
+
+@remembered
+def _decision_problems(graph: FlowGraph) -> Iterator[tuple[Node, str]]:
+    types = {name: one.type for name, one in declared(graph).items()}
+    for node in graph.nodes:
+        if node.kind in ("decision", "loop"):
+            edges = [edge for edge in graph.edges if edge.source == node.id]
+            yield from ((node, problem) for problem in _guard_problems(edges, types))
 
 
 def _guard_problems(edges: list[FlowEdge], types: Mapping[str, ValueType | None]) -> Iterator[str]:
@@ -138,8 +143,14 @@ def _shown(value: Scalar) -> str:
 def names(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC006: variables are declared and have a value; what is bound fits in type and unit."""
     for graph in graphs(model):
-        for element, problem in (*_undeclared(graph), *_unset(graph), *_misfits(graph, tables)):
+        for element, problem in (*_name_problems(graph), *_misfits(graph, tables)):
             yield Finding(UNDECLARED, element, {"graph": graph.id, "problem": problem})
+
+
+@remembered
+def _name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
+    yield from _undeclared(graph)
+    yield from _unset(graph)
 
 
 def _uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expr]]:
@@ -242,20 +253,30 @@ def _fits(given: ValueType, wanted: ValueType) -> bool:
 
 def readable(model: Model, tables: Tables) -> Iterator[Finding]:
     """Expressions that stayed text."""
-    for element, id, expression in _expressions(model):
-        for text in () if expression is None else unreadable(expression):
-            yield Finding(UNREADABLE, element, {"text": text, "element": id})
-
-
-def _expressions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
-    """Every expression of a model: element, id of what it belongs to, expression."""
     for graph in graphs(model):
-        for edge in graph.edges:
-            yield edge.element, edge.source, edge.guard
-        for node in graph.nodes:
-            yield from ((node.element, node.id, bound) for _, bound in node.bind)
-            if node.kind != "loop":
-                yield node.element, node.id, node.expression
+        yield from _unreadable_in(graph)
+    for element, id, expression in _conditions(model):
+        yield from _mere_texts(element, id, expression)
+
+
+@remembered
+def _unreadable_in(graph: FlowGraph) -> Iterator[Finding]:
+    for edge in graph.edges:
+        yield from _mere_texts(edge.element, edge.source, edge.guard)
+    for node in graph.nodes:
+        for _, bound in node.bind:
+            yield from _mere_texts(node.element, node.id, bound)
+        if node.kind != "loop":
+            yield from _mere_texts(node.element, node.id, node.expression)
+
+
+def _mere_texts(element: str, id: str, expression: Expr | None) -> Iterator[Finding]:
+    for text in () if expression is None else unreadable(expression):
+        yield Finding(UNREADABLE, element, {"text": text, "element": id})
+
+
+def _conditions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
+    """Conditions of tasks and services: element, id of what they belong to, expression."""
     conditioned: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
     for one in conditioned:
         yield one.element, one.id, one.pre

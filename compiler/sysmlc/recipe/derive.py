@@ -1,6 +1,6 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
 from functools import partial
 
@@ -105,7 +105,7 @@ def _alternatives(node: Node, allowed: set[str], tables: Tables) -> tuple[Mode, 
     )
 
 
-def _before(node: str, steps: set[str], edges: list[tuple[str, str]]) -> tuple[str, ...]:
+def _before(node: str, steps: set[str], edges: Iterable[tuple[str, str]]) -> tuple[str, ...]:
     """The nearest steps from which the edges lead here."""
     backwards = [(b, a) for a, b in edges if b == node or b not in steps]
     return tuple(sorted((reachable([node], backwards) & steps) - {node}))

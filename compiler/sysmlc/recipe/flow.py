@@ -6,6 +6,7 @@ from functools import lru_cache
 from sysmlc.ir.components import strong_components
 from sysmlc.ir.ordering import in_topological_order
 from sysmlc.recipe.model import FlowGraph, Node, Range
+from sysmlc.recipe.remembered import remembered
 from sysmlc.values import dataclass
 
 Cost = Callable[[Node], Range | None]
@@ -60,6 +61,7 @@ def _cycles(
     return tuple(sorted(found, key=lambda component: rank[component[0]]))
 
 
+@remembered
 def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
     """The edges without those that close a cycle: what is left is acyclic."""
     ordered = [node.id for node in graph.nodes]

@@ -1,0 +1,82 @@
+"""What refines a task or a service: its graph, what that calls, and what is to be said of it."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.reads import Reads
+from sysmlc.ir.seen import again
+from sysmlc.passes.recipe_context import Context, Whole
+from sysmlc.passes.recipe_graphs import flow_graph
+from sysmlc.passes.recipe_regions import is_inlined
+from sysmlc.passes.recipe_steps import by_position, step_kind
+from sysmlc.recipe.model import FlowGraph
+from sysmlc.values import dataclass
+
+_LEVELS = {"service": "service", "function": "machine function"}
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """A service, machine function or helper that a node calls, both by their ids."""
+
+    kind: str
+    node: str
+    definition: str
+
+
+@dataclass(frozen=True, slots=True)
+class Refined:
+    """An activity that refines a task or a service.
+
+    ``remarks`` are ids of nodes whose content is left out, with an empty text, and of what is
+    called by position, with the level that it is taken for.
+    """
+
+    graph: FlowGraph
+    calls: tuple[Called, ...]
+    remarks: tuple[tuple[str, str], ...]
+
+
+def refined(context: Context, activity: Element, inside: str) -> Refined:
+    """What an activity says of a task or a service, as of the last graph where it is the same."""
+    found = context.refinements.get((inside, activity.id))
+    if found is None:
+        whole, about = context.whole(), f"{inside} {activity.id}"
+        make = partial(_refined, whole=whole, id=activity.id, inside=inside)
+        (found,) = again(context.graph, about, whole, make)
+        context.refinements[inside, activity.id] = found
+    return found
+
+
+def _refined(graph: Graph, whole: Whole, id: str, inside: str) -> Iterator[Refined]:
+    context, activity = Context.part(graph, whole), graph[id]
+    made = flow_graph(context, activity, inside)
+    calls = tuple(_calls(context, activity, inside))
+    yield Refined(made, calls, tuple(_remarks(context, activity, inside)))
+
+
+def _calls(context: Context, activity: Element, inside: str) -> Iterator[Called]:
+    for node in context.nodes(activity):
+        kind = step_kind(context, node, inside)
+        if kind in ("call", "service", "function"):
+            called = context.definition(node) or node
+            yield Called(kind, node.id, called.id)
+
+
+def _remarks(context: Context, activity: Element, inside: str) -> Iterator[tuple[str, str]]:
+    for node in context.nodes(activity):
+        kind = step_kind(context, node, inside)
+        if node.kind is Kind.STRUCTURED and not is_inlined(context.graph, node):
+            yield node.id, ""
+        elif by_position(context, node, kind):
+            yield (context.definition(node) or node).id, _LEVELS[kind]
+
+
+def as_a_whole(reads: Reads) -> None:
+    """Who asked for a value in a part of the work asked in the whole: parts do not run alone."""
+    parts = f"{reads.reader} "
+    for readers in reads.readers.values():
+        for one in [one for one in readers if one.startswith(parts)]:
+            del readers[one]
+            readers[reads.reader] = None
