@@ -123,6 +123,10 @@ class Graph:
         """Whether any element has more than one edge of this kind."""
         return not {Element}.issuperset(map(type, self._out[edge].values()))
 
+    def ordinals(self, elements: Iterable[Element]) -> list[int]:
+        """Where elements stand, for who compares them with one another and asks no more."""
+        return [one.ordinal for one in elements]
+
     def edges(self, *kinds: Edge) -> Iterator[tuple[Edge, str, str]]:
         """All edges of these kinds (of every kind when none is given) as (kind, from, to)."""
         for kind in kinds or tuple(Edge):

@@ -6,10 +6,11 @@ A process that stays compiles nearly the same graph again and again.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar, cast
 
+from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge
 from sysmlc.ir.noting import Noting, Parts
-from sysmlc.ir.reads import Value, during
+from sysmlc.ir.reads import Reads, Value, during
 from sysmlc.ir.rows import Row, Rows
 from sysmlc.values import dataclass
 
@@ -28,6 +29,11 @@ class _Made:
     literals: tuple[Value, ...]
     value: object
 
+    def ask(self, reads: Reads) -> None:
+        """Note that who is at work has asked for the literals."""
+        for value in self.literals:
+            reads.readers[value][reads.reader] = None
+
 
 class Seen:
     """A graph as it is at one time, and what is made of its elements while it stays so.
@@ -45,6 +51,8 @@ class Seen:
             self._literals.setdefault(one.id, []).append((one.id, one.key))
         self._made: dict[str, _Made] = {}
         self._before = {} if before is None else before._made
+        self.indexes: dict[str, Mapping[str, list[Element]]] = {}
+        """Elements of the whole graph by some name (``ir.asking``)."""
         self.changed = Parts() if before is None else self._changed(before)
 
     def _changed(self, before: "Seen") -> Parts:
@@ -112,8 +120,7 @@ def again(
         found = seen.known(reads.reader, given)
         if found is None:
             return _made(graph, seen, reads.reader, given, make)
-        for value in found.literals:
-            reads.readers[value][reads.reader] = None
+        found.ask(reads)
         return cast("tuple[_T, ...]", found.value)
 
 

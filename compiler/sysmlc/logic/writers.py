@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.asking import Named, indexed, look_up
 from sysmlc.logic.expressions.context import VALUES, named_values
 from sysmlc.logic.written import last_of, mentioned, written_names
 
@@ -12,16 +13,25 @@ _NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
 """What has a value, and what others are in."""
 
 
+_INDEX = "what may write features of the name"
+
+
 class Writers:
     """The actions and effects of a graph by the features that they write.
 
     Nothing is looked for before somebody asks. The graph must stay as it is.
     """
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, writing: Named | None = None) -> None:
         self._graph = graph
-        self._writing: dict[str, list[Element]] | None = None
+        self._writing = writing
+        if writing is None and graph.seen is not None:
+            self._writing = indexed(graph, _INDEX, _writing)
         self._named: dict[str, dict[str, Element]] = {}
+
+    def through(self, graph: Graph) -> "Writers":
+        """The same for who asks the graph in a way of his own, which may be noted."""
+        return self if graph is self._graph else Writers(graph, self._writing)
 
     def beside(self, feature: Element, behaviour: Element) -> Element | None:
         """What writes the feature and does not stand inside of the behaviour; the first of all.
@@ -55,12 +65,8 @@ class Writers:
     def _candidates(self, name: str) -> list[Element]:
         """What may write a feature of the name: to read all texts would take ten times as long."""
         if self._writing is None:
-            self._writing = {}
-            graph = self._graph
-            for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
-                for written in dict.fromkeys(mentioned(graph, one)):
-                    self._writing.setdefault(written, []).append(one)
-        return self._writing.get(name, [])
+            self._writing = _writing(self._graph)
+        return look_up(self._graph, _INDEX, self._writing, name)
 
     def _written(self, writer: Element, last: str) -> Iterator[Element | None]:
         """The features that something writes by names that end with this one."""
@@ -101,6 +107,15 @@ class Writers:
                 known |= named_values(self._graph, scope)
             self._named[scope.id] = known
         return known.get(name)
+
+
+def _writing(graph: Graph) -> dict[str, list[Element]]:
+    """What may write features, by their names."""
+    found: dict[str, list[Element]] = {}
+    for one in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
+        for written in dict.fromkeys(mentioned(graph, one)):
+            found.setdefault(written, []).append(one)
+    return found
 
 
 def called(graph: Graph, one: Element) -> str:

@@ -6,11 +6,12 @@ stays as it is. An activity of a library is played by each operation that it is 
 """
 
 from collections.abc import Iterator
+from functools import partial
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.reads import during
+from sysmlc.ir.retold import retold
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.logic.writers import Writers
@@ -35,6 +36,10 @@ class _Others:
 
     raising: Raising
     writers: Writers
+
+    def through(self, graph: Graph) -> "_Others":
+        """The same for who asks the graph in a way of his own."""
+        return replace(self, writers=self.writers.through(graph))
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +67,8 @@ class Activities:
         others = _others(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
             for one in _played(graph, activity):
-                with during(graph, one.id):
-                    found = self._found(graph, one, others, sink)
+                make = partial(self._part, one.id, others)
+                found = retold(graph, sink, one.id, (self, others.raising), make)
                 if found is not None:
                     yield found
 
@@ -73,7 +78,10 @@ class Activities:
 
     def part(self, graph: Graph, about: Element, sink: Sink) -> object:
         """The token graph of an activity, or of an operation by one of a library; or None."""
-        return self._found(graph, about, _others(graph), sink)
+        return self._part(about.id, _others(graph), graph, sink)
+
+    def _part(self, id: str, others: _Others, graph: Graph, sink: Sink) -> TokenGraph | None:
+        return self._found(graph, graph[id], others.through(graph), sink)
 
     def _found(
         self, graph: Graph, activity: Element, others: _Others, sink: Sink

@@ -7,11 +7,12 @@ demand of a subject is a contract of its own, and so are the pre- and postcondit
 
 from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.reads import during
+from sysmlc.ir.retold import retold
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Contract
@@ -75,10 +76,13 @@ class Contracts:
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
         writers = Writers(graph)
         for element in graph.of_kind(Kind.STATE_MACHINE):
-            with during(graph, element.id):
-                contract = self._of_machine(graph, element, writers, sink)
+            make = partial(self._part, element.id, writers)
+            contract = retold(graph, sink, element.id, self, make)
             if contract is not None:
                 yield contract
+
+    def _part(self, id: str, writers: Writers, graph: Graph, sink: Sink) -> Contract | None:
+        return self._of_machine(graph, graph[id], writers.through(graph), sink)
 
     def is_apart(self, graph: Graph, about: Element) -> bool:
         """Whether no constraint adds to contracts, and no other behaviour has the name."""
@@ -98,7 +102,7 @@ class Contracts:
             found = (one for one in graph.derived(TokenGraph) if one.activity == about.id)
             tokens = next(found, None)
             return None if tokens is None else activity_contract.derive(tokens)
-        return self._of_machine(graph, about, Writers(graph), sink)
+        return self._part(about.id, Writers(graph), graph, sink)
 
     def _of_machine(
         self, graph: Graph, about: Element, writers: Writers, sink: Sink

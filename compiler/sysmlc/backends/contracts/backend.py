@@ -1,5 +1,8 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
+from collections.abc import Iterable
+from functools import partial
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.trace import trace as trace_of
@@ -7,6 +10,7 @@ from sysmlc.backends.templates import faults
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.ir.reads import during
+from sysmlc.ir.retold import retold
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.document_text import text
 from sysmlc.logic.formats.lower import unambiguous
@@ -60,10 +64,28 @@ class ContractsBackend:
         """Add three files a contract; their trace names every element that they tell of."""
         contracts = graph.derived(Contract)
         names = file_names(contract.component for contract in contracts)
-        for contract in map(unambiguous, contracts):
+        for contract in contracts:
             path = f"contracts/{names[contract.component]}"
-            with during(graph, f"contracts {contract.origin}"):
-                _add(graph, contract, output, path, sink, options)
+            for one in _files(graph, contract, path, sink, options):
+                output.add(one.path, one.text, one.trace, one.backend)
+
+
+def _files(
+    graph: Graph, contract: Contract, path: str, sink: Sink, options: EmitOptions
+) -> Iterable[Artefact]:
+    about, make = f"contracts {contract.origin}", partial(_made, contract, path, options)
+    if options.templates is None:
+        return retold(graph, sink, about, (contract, path), make)
+    with during(graph, about):
+        return make(graph, sink)
+
+
+def _made(
+    contract: Contract, path: str, options: EmitOptions, graph: Graph, sink: Sink
+) -> tuple[Artefact, ...]:
+    output = Output()
+    _add(graph, unambiguous(contract), output, path, sink, options)
+    return tuple(output.artefacts())
 
 
 def _add(

@@ -85,7 +85,7 @@ def variables_of(
     graph: Graph, classifier: Element | None, within: Element | None = None
 ) -> dict[str, str]:
     """The variables that names stand for in ``context_of``, without what values they have."""
-    return {} if classifier is None else variables(_known(graph, classifier, within))
+    return {} if classifier is None else variables(graph, _known(graph, classifier, within))
 
 
 def _known(graph: Graph, classifier: Element, within: Element | None) -> dict[str, Element]:

@@ -32,7 +32,7 @@ class Features(Mapping[str, Feature]):
         assumed: tuple[int, int],
         enumerations: Enumerations,
     ) -> None:
-        self.variables = variables(named)
+        self.variables = variables(graph, named)
         self._enumerations = enumerations
         self._graph = graph
         self._classifier = classifier
@@ -111,7 +111,8 @@ class Features(Mapping[str, Feature]):
         return EnumerationDomain(unique([*names, _OTHER], "text"), texts)
 
 
-def variables(named: Mapping[str, Element]) -> dict[str, str]:
-    """The variables that names stand for."""
-    names = sorted(named, key=lambda name: (named[name].ordinal, name))
+def variables(graph: Graph, named: Mapping[str, Element]) -> dict[str, str]:
+    """The variables that names stand for, in the order of the document."""
+    placed = sorted(zip(graph.ordinals(named.values()), named, strict=True))
+    names = [name for _, name in placed]
     return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
