@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Coverage, Rule, Verdict
 from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.places import Home
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
 from sysmlc.frontends.sysml.usage import ByKind
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Node
 
 _Found = tuple[Node, Verdict, bool]
 """A node, what became of it, and whether that is said of its owner and not of itself."""
@@ -20,10 +21,10 @@ _REASONS: dict[Verdict, tuple[Rule | None, str]] = {
 }
 
 
-def account(low: Lowering, document: Document, by_kind: ByKind, coverage: Coverage) -> None:
+def account(low: Lowering, home: Home, by_kind: ByKind, coverage: Coverage) -> None:
     """Count each node; what has no verdict of its own shares that of its owner."""
-    counts = coverage.file(document.path)
-    found = [one for one in _verdicts(low, document.root) if one[1] is not Verdict.MAPPED]
+    counts = coverage.file(home.path)
+    found = [one for one in _verdicts(low, home.document.root) if one[1] is not Verdict.MAPPED]
     numbers = Counter((node.kind, verdict) for node, verdict, _ in found)
     for (kind, verdict), number in numbers.items():
         counts.count(kind, verdict, number)
@@ -32,7 +33,7 @@ def account(low: Lowering, document: Document, by_kind: ByKind, coverage: Covera
         if len(ours) > lost[kind]:
             counts.count(kind, Verdict.MAPPED, len(ours) - lost[kind])
     if coverage.is_detailed:
-        counts.losses.extend(_losses(low, document, found))
+        counts.losses.extend(_losses(low, home, found))
 
 
 def _verdicts(low: Lowering, root: Node) -> Iterator[_Found]:
@@ -55,7 +56,7 @@ def _verdicts(low: Lowering, root: Node) -> Iterator[_Found]:
                 open_ones.append((one, own or shared, own is None))
 
 
-def _losses(low: Lowering, document: Document, found: list[_Found]) -> Iterator[Loss]:
+def _losses(low: Lowering, home: Home, found: list[_Found]) -> Iterator[Loss]:
     """What is not mapped; what it owns counts with it while it shares the verdict."""
     reasons = {
         id(node): (APPROXIMATED, f"{said} is read as {written}")
@@ -75,7 +76,7 @@ def _losses(low: Lowering, document: Document, found: list[_Found]) -> Iterator[
         yield Loss(
             node.kind,
             verdict,
-            low.ordinal(document, node),
+            home.ordinal(node),
             number,
             _around(low, node),
             "" if id(node) in low.elements else node.name or "",

@@ -4,11 +4,13 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from sysmlc.diagnostics import Place, Sink, Subject, Verdict
+from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.frontends.sysml import nodes, stubs
 from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
-from sysmlc.frontends.sysml.places import Places
+from sysmlc.frontends.sysml.naming import Names
+from sysmlc.frontends.sysml.places import Home
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
+from sysmlc.frontends.sysml.verdicts import Verdicts
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.branches import is_joined
@@ -18,36 +20,29 @@ from sysmlc.language.tree import Document, Node, Reference, Relation
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
 
-_NOTATION = "sysml"
-"""What ids are derived from, with the qualified name."""
 Handler = Callable[["Lowering", Node, "Element | None"], None]
 """Adds what a node is to what its owner became."""
+Work = Callable[[], None]
 
 
-class Lowering:
+class Lowering(Verdicts):
     """The graph as far as it is made, and which node became which element."""
 
     def __init__(
         self,
-        documents: Sequence[Document],
+        homes: Sequence[Home],
         model: "Model",
         graph: Graph,
         sink: Sink,
         handlers: dict[str, Handler],
     ) -> None:
+        super().__init__()
         self.model = model
         self.graph = graph
         self.sink = sink
         self.elements: dict[int, Element] = {}
-        self.verdicts: dict[int, Verdict] = {}
-        self.around: set[int] = set()
-        """Identities of nodes with a verdict, and of all that they stand in."""
-        self.lost: set[int] = set()
-        """Identities of approximated nodes that are nowhere in the graph, nor is what they own."""
         self.accepted: set[int] = set()
         """Identities of item definitions that are sent or accepted: signals."""
-        self.typing: set[int] = set()
-        """Identities of definitions that type a feature."""
         self.flowing: set[int] = set()
         """Identities of features between which objects flow in actions."""
         self.made_for: dict[int, Element] = {}
@@ -63,22 +58,18 @@ class Lowering:
         """Identities of members that are read with something else."""
         self.literals: Literals = UNWATCHED
         self._handlers = handlers
-        self._documents = documents
-        self._homes: dict[int, Document] = {}
-        self._later: list[Callable[[], None]] = []
+        self.homes = homes
+        self._homes: dict[int, Home] = {}
+        self._later: list[Work] = []
+        self._last: deque[Work] = deque()
         self._brought: dict[str, Node] = {}
         self._generals: list[tuple[Element, Element]] = []
         self._waits = False
-        self._last: deque[Callable[[], None]] = deque()
         self._scalars: dict[str, list[tuple[str, Kind]]] = {}
-        self._paths: dict[str, str] = {}
-        self._taken: dict[str, int] = {}
+        self._names = Names()
         self._stubs: dict[str, str] = {}
         self._outer: dict[int, tuple[str, Kind]] = {}
         """Names and kinds of elements of the library that edges lead to."""
-        self._places = Places()
-        self.told: dict[tuple[str, str], list[Node]] = {}
-        """What is not wholly in the graph, by what is said and how it is read."""
 
     # -- nodes ---------------------------------------------------------------------------------
 
@@ -104,17 +95,14 @@ class Lowering:
             if one.kind in nodes.TEXTS:
                 self.lower(one, owner)
 
-    def byte(self, document: Document, offset: int) -> int:
-        """The byte of a character of a document of the unit; -1 stays -1."""
-        return self._places.byte(document, offset)
-
-    def settle_in(self, document: Document, found: Iterable[Node]) -> None:
+    def settle_in(self, home: Home, found: Iterable[Node]) -> None:
         """Say of nodes that they stand in a document of the unit."""
-        self._homes.update(dict.fromkeys(map(id, found), document))
+        self._homes.update(dict.fromkeys(map(id, found), home))
 
     def document(self, node: Node) -> Document | None:
         """The document of the unit that the node stands in; None for one of the library."""
-        return self._homes.get(id(node))
+        home = self._homes.get(id(node))
+        return None if home is None else home.document
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """What a relation of a node leads to, in the unit or in the library."""
@@ -130,11 +118,11 @@ class Lowering:
             return self.element(nodes.target(node, "Redefinition"))
         return known
 
-    def later(self, work: Callable[[], None]) -> None:
+    def later(self, work: Work) -> None:
         """Do something when all elements are there."""
         self._later.append(work)
 
-    def last(self, work: Callable[[], None]) -> None:
+    def last(self, work: Work) -> None:
         """Do something when all edges are there."""
         self._last.append(work)
 
@@ -179,9 +167,8 @@ class Lowering:
         owner: Element | None,
         attrs: dict[str, AttrValue],
     ) -> Element:
-        document = self._homes.get(id(node))
-        source = "" if document is None else document.path
-        ordinal = -1 if document is None else self._places.ordinal(document, node)
+        home = self._homes.get(id(node))
+        source, ordinal = ("", -1) if home is None else (home.path, home.ordinal(node))
         made = self._new(kind, name, owner, ordinal, source, _said(attrs))
         self.seen.add(id(node))
         self._brought[made.id] = node
@@ -208,29 +195,12 @@ class Lowering:
         source: str,
         attrs: dict[str, AttrValue],
     ) -> Element:
-        path = self._path(kind, name, owner, source)
-        id_ = derived_id(_NOTATION, path)
-        self._paths[id_] = path
-        made = self.graph.new(
-            id_, kind, name, None if owner is None else owner.id, ordinal, source, attrs
-        )
+        id_ = self._names.give(kind, name, owner, source)
+        above = None if owner is None else owner.id
+        made = self.graph.new(id_, kind, name, above, ordinal, source, attrs)
         if made is None:
             raise ValueError(f"id {id_!r} is taken")
         return made
-
-    def _path(self, kind: Kind, name: str, owner: Element | None, source: str) -> str:
-        """A qualified name; what has none, or shares it, is told apart by kind and number."""
-        above = "" if owner is None else f"{self._paths[owner.id]}::"
-        path = f"{above}{name}" if name else f"{above}<{kind}>"
-        if path not in self._taken:
-            self._taken[path] = 1
-            return path
-        path = f"{path}<{kind}>" if name and owner is not None else f"{source}#{path}"
-        number = self._taken[path] = self._taken.get(path, 0) + 1
-        if number > 1:
-            path = f"{path}#{number}"
-            self._taken[path] = 1
-        return path
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Give attributes to an element; those that say nothing are left out."""
@@ -367,53 +337,18 @@ class Lowering:
     @property
     def roots(self) -> list[Node]:
         """What holds the members at the top of each document of the unit."""
-        return [one.root for one in self._documents]
+        return [one.document.root for one in self.homes]
 
     def id_of(self, name: str) -> str:
         """Id of the element with a qualified name, or the empty string."""
-        found = derived_id(_NOTATION, name)
-        return found if found in self._paths else ""
-
-    # -- coverage ------------------------------------------------------------------------------
-
-    def _judge(self, node: Node, verdict: Verdict) -> None:
-        self.verdicts[id(node)] = verdict
-        above: Node | None = node
-        while above is not None and id(above) not in self.around:
-            self.around.add(id(above))
-            above = above.owner
-
-    def unsupported(self, node: Node) -> None:
-        """The node, with what it owns, has no place in the graph."""
-        self._judge(node, Verdict.UNSUPPORTED)
-        self.told.setdefault(("unsupported", node.kind), []).append(node)
-
-    def external(self, node: Node) -> None:
-        """The node belongs to a library and not to the model."""
-        self._judge(node, Verdict.EXTERNAL)
-
-    def ignored(self, node: Node) -> None:
-        """The node means nothing beyond drawing or presentation."""
-        self._judge(node, Verdict.IGNORED_NOTATION)
-
-    def approximated(self, node: Node, said: str, written: str) -> None:
-        """Part of the node's meaning is lost: ``said`` is kept as ``written``."""
-        self._judge(node, Verdict.APPROXIMATED)
-        if written == "nothing":
-            self.lost.add(id(node))
-        self.told.setdefault((said, written), []).append(node)
-
-    def ordinal(self, document: Document, node: Node) -> int:
-        """The place of a node in a document of the unit, as elements have it."""
-        return self._places.ordinal(document, node)
+        return self._names.id_of(name)
 
     def subject(self, node: Node) -> Subject:
         """The node as the subject of a diagnostic."""
-        document = self.document(node)
-        if document is None:
+        home = self._homes.get(id(node))
+        if home is None:
             return Subject(nodes.path_of(node))
-        place = Place(document.path, self._places.ordinal(document, node))
-        return Subject(nodes.path_of(node), place=place)
+        return Subject(nodes.path_of(node), place=Place(home.path, home.ordinal(node)))
 
 
 def _said(attrs: dict[str, AttrValue]) -> dict[str, AttrValue]:

@@ -1,46 +1,50 @@
 """Places of nodes in their files: bytes of a text, ordinals of an interchange file."""
 
 import re
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 
 from sysmlc.language.places import mark
 from sysmlc.language.tree import Document, Node
 
 _WIDE = re.compile(r"[^\x00-\x7f]")
+_PIECE = 256
 
 
-class Places:
-    """Turns offsets of characters into bytes, for the documents of a unit."""
+class Home:
+    """A document of the unit, and where in the bytes of its file its nodes stand."""
 
-    def __init__(self) -> None:
-        self._wide: dict[int, tuple[list[int], list[int], int]] = {}
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.path = document.path
+        self._wide, self._extra = _wide(document.text)
+        self._mark = mark(document) if document.text else 0
 
-    def ordinal(self, document: Document, node: Node) -> int:
+    def ordinal(self, node: Node) -> int:
         """The byte at which the name of a node starts; the element's ordinal in an XMI file."""
         offset = node.name_start if node.name_start >= 0 else node.start
-        return self.byte(document, offset)
+        return self.byte(offset) if self._wide or offset < 0 else offset + self._mark
 
-    def byte(self, document: Document, offset: int) -> int:
+    def byte(self, offset: int) -> int:
         """The byte of a character of the document; -1 stays -1."""
-        if offset < 0 or not document.text:
+        if offset < 0:
             return offset
-        positions, extra, mark = self._wide.get(id(document)) or self._table(document)
-        if not positions:
-            return offset + mark
-        number = bisect_left(positions, offset)
-        return offset + (extra[number - 1] if number else 0) + mark
+        number = bisect_left(self._wide, offset)
+        return offset + (self._extra[number - 1] if number else 0) + self._mark
 
-    def _table(self, document: Document) -> tuple[list[int], list[int], int]:
-        found = self._wide[id(document)] = _table(document)
-        return found
+    def character(self, byte: int) -> int:
+        """The character of the document that a byte belongs to; -1 before the first."""
+        return bisect_right(range(byte + 1), byte, key=self.byte) - 1
 
 
-def _table(document: Document) -> tuple[list[int], list[int], int]:
-    """Characters that take several bytes, the bytes more up to each, and those of a mark."""
+def _wide(text: str) -> tuple[list[int], list[int]]:
+    """Characters that take several bytes, and the bytes more up to each."""
     positions, extra, sum_ = [], [], 0
-    if not document.text.isascii():
-        for found in _WIDE.finditer(document.text):
+    for start in range(0, 0 if text.isascii() else len(text), _PIECE):
+        # Most pieces of a text have none; to ask a piece costs a tenth of looking through it.
+        if text[start : start + _PIECE].isascii():
+            continue
+        for found in _WIDE.finditer(text, start, start + _PIECE):
             sum_ += len(found[0].encode("utf-8", "replace")) - 1
             positions.append(found.start())
             extra.append(sum_)
-    return positions, extra, mark(document)
+    return positions, extra

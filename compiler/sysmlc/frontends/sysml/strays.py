@@ -1,6 +1,6 @@
 """Members of a model that nothing has become or read: each is told, none vanishes in silence."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Verdict
@@ -8,7 +8,7 @@ from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.definitions import variant
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
 from sysmlc.ir import Kind
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -44,12 +44,13 @@ _COUNTED = frozenset(
 )
 """Elements that have a multiplicity."""
 _MORE = frozenset({"isVariation", "portionKind"})
+_VARIANT = "VariantMembership"
 _ENDS = frozenset({"EndFeatureMembership"})
 
 
-def tell(low: "Lowering", documents: Sequence[Document]) -> None:
+def tell(low: "Lowering") -> None:
     """Report what is not wholly in the graph, each sort with its number and its first place."""
-    _find(low, documents)
+    _find(low)
     for (said, written), found in low.told.items():
         count, subject = len(found), low.subject(found[0])
         if said == "unsupported":
@@ -58,12 +59,12 @@ def tell(low: "Lowering", documents: Sequence[Document]) -> None:
             low.sink.report(APPROXIMATED, subject, count=count, said=said, written=written)
 
 
-def _find(low: "Lowering", documents: Sequence[Document]) -> None:
+def _find(low: "Lowering") -> None:
     """Members that were not lowered and are no part of what their owner says."""
-    known = low.seen | low.verdicts.keys() | low.skipped | low.repeated | low.elements.keys()
+    known = low.seen.union(low.verdicts, low.skipped, low.repeated, low.elements)
     dead = {one for one, verdict in low.verdicts.items() if verdict in _DEAD}
-    for document in documents:
-        for node in _unread(low, document.root, known, dead):
+    for root in low.roots:
+        for node in _unread(low, root, known, dead):
             owner = node.owner
             assert owner is not None
             if node.kind == "MultiplicityRange":
@@ -76,8 +77,8 @@ def _find(low: "Lowering", documents: Sequence[Document]) -> None:
 
 def _more(low: "Lowering", node: Node) -> str:
     """What a usage is beyond its kind, and what it became does not say; empty for most."""
-    is_plain = not node.facts or _MORE.isdisjoint(node.facts)
-    if (is_plain and node.membership != "VariantMembership") or node.kind == "EnumerationUsage":
+    is_plain = _MORE.isdisjoint(node.facts) and node.membership != _VARIANT
+    if is_plain or node.kind == "EnumerationUsage":
         return ""
     made = (low.elements.get(id(node)), low.made_for.get(id(node)))
     said = [key for key, value in variant(node).items() if value]
@@ -94,15 +95,15 @@ def _unread(low: "Lowering", root: Node, known: set[int], dead: set[int]) -> Ite
     while found:
         node = found.pop()
         for one in reversed(node.members):
-            if one.kind in nodes.EXPRESSIONS or id(one) in dead:
+            if one.kind in nodes.EXPRESSIONS:
                 continue
-            if id(one) in known or _is_read(low, one, node):
+            if id(one) not in known and not _is_read(low, one, node):
+                yield one
+            elif id(one) not in dead:
                 if one.members:
                     found.append(one)
-                if more := _more(low, one):
+                if (one.facts or one.membership == _VARIANT) and (more := _more(low, one)):
                     low.approximated(one, _a(more), "a plain usage")
-            else:
-                yield one
 
 
 def _is_read(low: "Lowering", node: Node, owner: Node) -> bool:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from itertools import chain, pairwise
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from sysmlc.depth import room_for
@@ -15,6 +14,7 @@ from sysmlc.frontends.sysml.libraries import SHIPPED
 from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
+from sysmlc.frontends.sysml.places import Home
 from sysmlc.frontends.sysml.strays import tell
 from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing, together
 from sysmlc.ir import Element, Graph, Kind
@@ -34,47 +34,49 @@ def lower(
     literals: Literals = UNWATCHED,
 ) -> None:
     """Add the elements of all documents to the graph and account for every node of them."""
-    low = Lowering(documents, model, graph, sink, HANDLERS)
+    homes = [Home(one) for one in documents]
+    low = Lowering(homes, model, graph, sink, HANDLERS)
     low.literals = literals
-    each = [by_kind(one.root) for one in documents]
-    for document, ours in zip(documents, each, strict=True):
-        low.settle_in(document, chain.from_iterable(ours.values()))
+    each, depth = [], 0
+    for home in homes:
+        ours, levels = by_kind(home.document.root)
+        low.settle_in(home, chain.from_iterable(ours.values()))
+        each.append(ours)
+        depth = max(depth, levels)
     found = together(each)
     low.accepted = accepted(found)
     low.flowing = flowing(found)
     # What waits until all else is there, such as ends of connections, may be as deep.
-    with room_for(max(_depth(document.root) for document in documents)):
-        for document in documents:
-            low.lower_all(document.root.members, None)
+    with room_for(depth):
+        for root in low.roots:
+            low.lower_all(root.members, None)
         low.last(lambda: _give_pins(low, found))
         low.finish()
     low.end_branches()
     _say_pins(graph)
     literals.finish(graph)
-    tell(low, documents)
-    blame(low, documents)
-    for document, ours in zip(documents, each, strict=True):
-        if not document.path.startswith(SHIPPED):
-            account(low, document, ours, coverage)
-
-
-_members = attrgetter("members")
-
-
-def _depth(root: Node) -> int:
-    """How many members are within one another."""
-    depth, level = 0, [root]
-    while level:
-        depth, level = depth + 1, list(chain.from_iterable(map(_members, level)))
-    return depth
+    tell(low)
+    blame(low)
+    for home, ours in zip(homes, each, strict=True):
+        if not home.path.startswith(SHIPPED):
+            account(low, home, ours, coverage)
 
 
 def _give_pins(low: Lowering, found: ByKind) -> None:
     """Give steps the output pins whose values other steps and guards speak of (``pick.ok``)."""
-    for node in found.get("FeatureChainExpression", ()):
+    for node in sorted(found.get("FeatureChainExpression", ()), key=_position):
         for step, feature in pairwise(low.element(one) for one in steps_of_value(node)):
             if step is not None and feature is not None and step.kind is Kind.ACTION:
                 _give_pin(low, step, feature)
+
+
+def _position(node: Node) -> list[int]:
+    """Where a node is below the root: nodes in this order are in the order of the text."""
+    found: list[int] = []
+    while node.owner is not None:
+        found.append(node.owner.members.index(node))
+        node = node.owner
+    return found[::-1]
 
 
 def _give_pin(low: Lowering, step: Element, feature: Element) -> None:

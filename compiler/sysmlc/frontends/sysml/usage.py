@@ -1,6 +1,9 @@
 """How definitions and features are used in the unit, found out before anything is lowered."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from operator import attrgetter
 
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.connections import steps_of
@@ -10,19 +13,18 @@ _FLOWS = ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow")
 ByKind = Mapping[str, Sequence[Node]]
 
 
-def by_kind(root: Node) -> dict[str, list[Node]]:
-    """All nodes of a document by metaclass, those of one in the order of the text."""
-    found: dict[str, list[Node]] = {}
-    left = [root]
-    while left:
-        node = left.pop()
-        if node.kind in found:
+def by_kind(root: Node) -> tuple[ByKind, int]:
+    """All nodes of a document by metaclass, owners first, and how many are within one another."""
+    found: dict[str, list[Node]] = defaultdict(list)
+    depth, level = 0, [root]
+    while level:
+        for node in level:
             found[node.kind].append(node)
-        else:
-            found[node.kind] = [node]
-        if node.members:
-            left += node.members[::-1]
-    return found
+        depth, level = depth + 1, list(chain.from_iterable(map(_members, level)))
+    return found, depth
+
+
+_members = attrgetter("members")
 
 
 def together(found: Iterable[ByKind]) -> ByKind:
