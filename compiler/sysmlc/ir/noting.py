@@ -20,8 +20,10 @@ class Parts:
     """Some of a graph: elements for themselves, and neighbours by edges of one kind.
 
     ``ids`` are those of elements, or of what is not there; ``forwards`` and ``backwards`` those of
-    elements whose neighbours are meant.
+    elements whose neighbours are meant, too.
     """
+
+    __slots__ = ("backwards", "forwards", "ids")
 
     def __init__(self) -> None:
         self.ids: set[str] = set()
@@ -35,6 +37,10 @@ class Parts:
             or _meet(self.forwards, others.forwards)
             or _meet(self.backwards, others.backwards)
         )
+
+    def every_id(self) -> set[str]:
+        """Elements that are in it for themselves or for their neighbours."""
+        return self.ids.union(*self.forwards.values(), *self.backwards.values())
 
 
 def _meet(one: Mapping[Edge, set[str]], other: Mapping[Edge, set[str]]) -> bool:
@@ -73,35 +79,37 @@ class Noting(Graph):
         return [self.get(end if isinstance(end, str) else end.id) for end in ends]
 
     def owned(self, element: Element) -> list[Element]:
-        self.asked.forwards[Edge.OWNS].add(element.id)
-        return self._noted(super().owned(element))
+        return self._noted(self.asked.forwards[Edge.OWNS], element, super().owned(element))
 
     def targets(self, element: Element, edge: Edge) -> list[Element]:
-        self.asked.forwards[edge].add(element.id)
-        return self._noted(super().targets(element, edge))
+        return self._noted(self.asked.forwards[edge], element, super().targets(element, edge))
 
     def sources(self, element: Element, edge: Edge) -> list[Element]:
-        self.asked.backwards[edge].add(element.id)
-        return self._noted(super().sources(element, edge))
+        return self._noted(self.asked.backwards[edge], element, super().sources(element, edge))
 
     def target(self, element: Element, edge: Edge) -> Element | None:
-        self.asked.forwards[edge].add(element.id)
-        return self._noted_one(super().target(element, edge))
+        return self._noted_one(self.asked.forwards[edge], element, super().target(element, edge))
 
     def source(self, element: Element, edge: Edge) -> Element | None:
-        self.asked.backwards[edge].add(element.id)
-        return self._noted_one(super().source(element, edge))
+        return self._noted_one(self.asked.backwards[edge], element, super().source(element, edge))
 
     def subtree(self, element: Element) -> Iterator[Element]:
-        found = self._noted(list(super().subtree(element)))
+        found = list(super().subtree(element))
         self.asked.forwards[Edge.OWNS].update(map(_ID, found))
+        self.asked.ids.update(map(_ID, found))
         return iter(found)
 
-    def _noted(self, found: list[Element]) -> list[Element]:
+    def _noted(self, joined: set[str], element: Element, found: list[Element]) -> list[Element]:
+        joined.add(element.id)
+        self.asked.ids.add(element.id)
         self.asked.ids.update(map(_ID, found))
         return found
 
-    def _noted_one(self, found: Element | None) -> Element | None:
+    def _noted_one(
+        self, joined: set[str], element: Element, found: Element | None
+    ) -> Element | None:
+        joined.add(element.id)
+        self.asked.ids.add(element.id)
         if found is not None:
             self.asked.ids.add(found.id)
         return found

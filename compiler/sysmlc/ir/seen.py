@@ -3,6 +3,7 @@
 A process that stays compiles nearly the same graph again and again.
 """
 
+import marshal
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar, cast
 
@@ -15,6 +16,8 @@ from sysmlc.ir.rows import Row, Rows
 from sysmlc.values import dataclass
 
 _T = TypeVar("_T")
+_PLAIN = 2
+"""The last format of ``marshal`` in which equal values are equal bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +48,8 @@ class Seen:
 
     def __init__(self, graph: Graph, rows: Rows, before: "Seen | None") -> None:
         self._state = _state(graph)
-        self._rows = rows
+        self._elements = _elements(rows[0])
+        self._edges = rows[1]
         self._literals: dict[str, list[Value]] = {}
         for one in () if graph.reads is None else graph.reads.literals:
             self._literals.setdefault(one.id, []).append((one.id, one.key))
@@ -54,17 +58,18 @@ class Seen:
         self.indexes: dict[str, Mapping[str, list[Element]]] = {}
         """Elements of the whole graph by some name (``ir.asking``)."""
         self.changed = Parts() if before is None else self._changed(before)
+        self._near = self.changed.every_id()
 
     def _changed(self, before: "Seen") -> Parts:
         changed = Parts()
-        changed.ids.update(_other_elements(before._rows[0], self._rows[0]))
-        changed.ids.update(_other_values(before._literals, self._literals))
+        changed.ids.update(_others(before._elements, self._elements.items()))
+        changed.ids.update(_others(before._literals, self._literals.items()))
         for edge in Edge:
-            old, new = (rows[1].get(edge, ([], [])) for rows in (before._rows, self._rows))
+            old, new = (one._edges.get(edge, ([], [])) for one in (before, self))
             if old[0] != new[0]:
-                changed.forwards[edge].update(_other_values(dict(old[0]), dict(new[0])))
+                changed.forwards[edge].update(_others(old[0], new[0]))
             if old[1] != new[1]:
-                changed.backwards[edge].update(_other_values(dict(old[1]), dict(new[1])))
+                changed.backwards[edge].update(_others(old[1], new[1]))
         return changed
 
     def is_of(self, graph: Graph) -> bool:
@@ -74,10 +79,14 @@ class Seen:
     def known(self, reader: str, given: object) -> _Made | None:
         """What was made of the graph before, if all that it was made of is as it was."""
         found = self._before.get(reader)
-        if found is None or found.given != given or self.changed.meet(found.asked):
+        if found is None or found.given != given or self._is_changed(found.asked):
             return None
         self._made[reader] = found
         return found
+
+    def _is_changed(self, asked: Parts) -> bool:
+        is_near = not self._near.isdisjoint(asked.ids)
+        return is_near and self.changed.meet(asked)
 
     def keep(self, reader: str, given: object, noting: Noting, value: object) -> None:
         """Remember what the reader made of the elements that were noted."""
@@ -97,10 +106,16 @@ _UNITS = 8
 
 
 def see(graph: Graph, rows: Rows) -> None:
-    """Begin to remember what is made of a graph, of which these are the rows."""
+    """Begin to remember what is made of a graph, of which these are the rows.
+
+    Nothing is remembered if a plug-in gave an element an attribute that is no plain value.
+    """
     unit = next(iter(graph)).id
-    graph.seen = Seen(graph, rows, _LAST.pop(unit, None))
-    _LAST[unit] = graph.seen
+    before = _LAST.pop(unit, None)
+    try:
+        graph.seen = _LAST[unit] = Seen(graph, rows, before)
+    except ValueError:
+        return
     while len(_LAST) > _UNITS:
         del _LAST[next(iter(_LAST))]
 
@@ -138,22 +153,18 @@ def _state(graph: Graph) -> tuple[int, int]:
     return len(graph), graph.changes
 
 
-def _other_elements(old: Iterable[Row], new: Iterable[Row]) -> Iterator[str]:
-    known = {row[0]: row for row in old}
-    for row in new:
-        before = known.pop(row[0], None)
-        if before is None or not _is_alike(before, row):
-            yield row[0]
-    yield from known
+def _elements(rows: Iterable[Row]) -> dict[str, bytes]:
+    """All that an element says but its ordinal; as bytes 1, 1.0 and True are not the same."""
+    written = marshal.dumps
+    return {
+        id: written((kind, name, owner, source, attrs), _PLAIN)
+        for id, kind, name, owner, _, source, attrs in rows
+    }
 
 
-def _is_alike(one: Row, other: Row) -> bool:
-    """Whether both are the same but for their ordinals."""
-    if one != other and (one[:4] != other[:4] or one[5:] != other[5:]):
-        return False
-    # 1, 1.0 and True are equal, but not the same.
-    return not one[6] or repr(one[6]) == repr(other[6])
-
-
-def _other_values(old: Mapping[str, object], new: Mapping[str, object]) -> Iterator[str]:
-    return (id for id in {**old, **new} if old.get(id) != new.get(id))
+def _others(
+    old: Mapping[str, object] | Iterable[tuple[str, object]], new: Iterable[tuple[str, object]]
+) -> list[str]:
+    """The keys that have another value, or are in one of both only."""
+    known = dict(old)
+    return [*(key for key, value in new if known.pop(key, None) != value), *known]

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
@@ -73,20 +74,25 @@ class PlantUml:
         renderer = Renderer(options.templates)
         with room_for(stm.depth(graph)):
             for one in _PARTS[kind](graph, id):
-                text = renderer.text(one, _header(graph, one))
-                yield Artefact(f"diagrams/{one.name}.{kind}.puml", text, one.trace(), self.name)
+                text = _text(graph, one, renderer)
+                yield Artefact(f"diagrams/{one.name}.{kind}.puml", text, _trace(one), self.name)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
-            found = [_Traced(one, one.trace()) for kind in KINDS for one in kind(graph)]
+            found = [_Traced(one, _trace(one)) for kind in KINDS for one in kind(graph)]
             missing.report(graph, {id for one in found for id in one.trace}, sink)
             sd_remarks.report(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
             from sysmlc.backends.plantuml import author
 
-            drawn = [_Traced(one, one.trace()) for one in author.diagrams(graph, sink)]
+            drawn = [_Traced(one, _trace(one)) for one in author.diagrams(graph, sink)]
             _write(graph, drawn, author.FOLDER, output, sink, options)
+
+
+_TRACES: WeakKeyDictionary[Diagram, tuple[str, ...]] = WeakKeyDictionary()
+_TEXTS: WeakKeyDictionary[Diagram, tuple[str, str]] = WeakKeyDictionary()
+"""Source and text of each diagram that is still there, as our own templates write it."""
 
 
 class _Traced(NamedTuple):
@@ -111,7 +117,7 @@ def _write(
     for kind, group in groupby(found, lambda one: one.diagram.kind):
         try:
             for (diagram, trace), file in _named(list(group)):
-                text = renderer.text(diagram, _header(graph, diagram))
+                text = _text(graph, diagram, renderer)
                 output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
         except faults() as error:
             fault = f"{type(error).__name__}: {error}"
@@ -135,9 +141,25 @@ def _free(name: str, taken: Collection[str]) -> str:
     return key
 
 
-def _header(graph: Graph, diagram: Diagram) -> tuple[str, ...]:
-    kind, name = diagram.heading
+def _trace(diagram: Diagram) -> tuple[str, ...]:
+    if diagram not in _TRACES:
+        _TRACES[diagram] = diagram.trace()
+    return _TRACES[diagram]
+
+
+def _text(graph: Graph, diagram: Diagram, renderer: Renderer) -> str:
     about = graph.get(diagram.about)
-    parts = [f"{kind} of {name}", f"from {about.source}" if about and about.source else ""]
+    source = "" if about is None else about.source
+    if renderer.has_templates:
+        return renderer.text(diagram, _header(diagram, source))
+    known = _TEXTS.get(diagram)
+    if known is None or known[0] != source:
+        known = _TEXTS[diagram] = source, renderer.text(diagram, _header(diagram, source))
+    return known[1]
+
+
+def _header(diagram: Diagram, source: str) -> tuple[str, ...]:
+    kind, name = diagram.heading
+    parts = [f"{kind} of {name}", f"from {source}" if source else ""]
     parts.append("made by sysmlc; change the model, not this file")
     return tuple(comment(part) for part in parts if part)

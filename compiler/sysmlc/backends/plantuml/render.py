@@ -15,6 +15,8 @@ class Renderer:
 
     def __init__(self, templates: Path | None = None) -> None:
         self._templates = templates
+        self.has_templates = templates is not None
+        """Whether files of the user's may say how diagrams are written."""
 
     def text(self, diagram: Diagram, header: tuple[str, ...]) -> str:
         """PlantUML text of the diagram.

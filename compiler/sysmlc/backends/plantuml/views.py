@@ -192,9 +192,11 @@ class UseCaseView:
 View = BoxView | GraphView | InternalView | SequenceView | UseCaseView
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Diagram:
     """One diagram: what it is called, what it shows, and the element that it is about.
+
+    It is known by identity: one of the last graph that is used again need not be written again.
 
     ``kind`` is the word of its file name and template (bdd, ibd, act, stm, req, sd, uc),
     ``name`` the qualified name that makes its file name, ``about`` the id of the element,
