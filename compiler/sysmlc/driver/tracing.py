@@ -1,19 +1,17 @@
 """``coverage.json`` and ``trace.json``: what became of the inputs, where outputs come from."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from json.encoder import encode_basestring
 
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import positions
 from sysmlc.driver.compilation import Compilation
+from sysmlc.driver.traced import Start, told
 from sysmlc.ir import Element, Graph
 from sysmlc.output import json_text
 
 COVERAGE = "coverage.json"
 TRACE = "trace.json"
-
-_NOWHERE: Mapping[int, tuple[int, int]] = {}
 
 
 def coverage_text(compilation: Compilation) -> str:
@@ -30,17 +28,23 @@ def trace_text(compilation: Compilation) -> str:
     traces = dict.fromkeys(artefact.trace for artefact in written)
     ids = dict.fromkeys(chain.from_iterable(traces))
     # Several files of one element often have one trace, and it can be long.
-    listed = {trace: _rows(map(encode_basestring, trace), "   ") for trace in traces}
+    listed = {trace: "".join(_rows(map(encode_basestring, trace), "   ")) for trace in traces}
     outputs = (_output(one.path, listed[one.trace]) for one in written)
-    return (
-        f'{{\n "schema": "sysmlc-trace/1",\n "outputs": {_rows(outputs, " ")},\n'
-        f' "elements": {_rows(_elements(compilation, ids), " ")}\n}}\n'
+    return "".join(
+        (
+            '{\n "schema": "sysmlc-trace/1",\n "outputs": ',
+            *_rows(outputs, " "),
+            ',\n "elements": ',
+            *_rows(_elements(compilation, ids), " "),
+            "\n}\n",
+        )
     )
 
 
-def _rows(items: Iterable[str], indent: str) -> str:
+def _rows(items: Iterable[str], indent: str) -> tuple[str, ...]:
+    """A list, as pieces: what is large is put together once."""
     joined = f",\n{indent} ".join(items)
-    return f"[\n{indent} {joined}\n{indent}]" if joined else "[]"
+    return (f"[\n{indent} ", joined, f"\n{indent}]") if joined else ("[]",)
 
 
 def _output(path: str, elements: str) -> str:
@@ -49,51 +53,25 @@ def _output(path: str, elements: str) -> str:
 
 def _elements(compilation: Compilation, ids: Iterable[str]) -> list[str]:
     graph = compilation.graph
-    names: dict[str, str] = {}
-    there = (element for element in map(graph.get, ids) if element is not None)
-    known = sorted(_start(graph, element, names) for element in there)
-    ordinals: dict[str, list[int]] = {}
-    for _, _, file, ordinal in known:
-        ordinals.setdefault(file, []).append(ordinal)
-    found = positions(compilation.sources, ordinals)
-    return [
-        _element(id, name, file, *found.get(file, _NOWHERE).get(ordinal, (0, 0)))
-        for name, id, file, ordinal in known
-    ]
+    return told(compilation.sources, _starts(graph, filter(None, map(graph.get, ids))))
 
 
-def _element(id: str, name: str, file: str, line: int, column: int) -> str:
-    """One element as ``json_text`` would write it: there are thousands of the same shape."""
-    source = (
-        f'{{\n    "file": {encode_basestring(file)},\n    "line": {line or "null"},\n'
-        f'    "column": {column or "null"}\n   }}'
-        if file
-        else "null"
-    )
-    return (
-        f'{{\n   "id": {encode_basestring(id)},\n'
-        f'   "qualified_name": {encode_basestring(name)},\n   "source": {source}\n  }}'
-    )
-
-
-def _start(graph: Graph, element: Element, names: dict[str, str]) -> tuple[str, str, str, int]:
+def _starts(graph: Graph, elements: Iterable[Element]) -> Iterator[Start]:
     """Name, id, file and ordinal of ``graph.subject``; most have a source of their own."""
-    if element.source:
-        name = _qualified_name(graph, element, names)
-        return name, element.id, element.source, element.ordinal
-    subject = graph.subject(element)
-    place = subject.place or Place("")
-    return subject.name, subject.id, place.file, place.ordinal
-
-
-def _qualified_name(graph: Graph, element: Element, names: dict[str, str]) -> str:
-    own = element.name or f"<{element.kind}>"
-    if element.owner is None:
-        return own
-    above = names.get(element.owner)
-    if above is None:
-        names[element.owner] = above = graph.qualified_name(graph[element.owner])
-    return f"{above}::{own}"
+    names: dict[str, str] = {}
+    for one in elements:
+        if not one.source:
+            subject = graph.subject(one)
+            place = subject.place or Place("")
+            yield subject.name, one.id, place.file, place.ordinal
+            continue
+        name = one.name or f"<{one.kind}>"
+        if one.owner is not None:
+            above = names.get(one.owner)
+            if above is None:
+                above = names[one.owner] = graph.qualified_name(graph[one.owner])
+            name = f"{above}::{name}"
+        yield name, one.id, one.source, one.ordinal
 
 
 def as_text(value: object) -> str:
