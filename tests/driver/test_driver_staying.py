@@ -1,4 +1,4 @@
-"""A process that stays remembers; what it makes of many edits is what a new process makes."""
+"""A process that stays uses again what it made: it comes to what a process that starts comes to."""
 
 import random
 import re
@@ -8,94 +8,192 @@ import sys
 from pathlib import Path
 
 import pytest
-from edited_units import compiled_units, files, sysmlc
-from test_driver_literals import EDITS, ICE, LINE, PARTS
+from edited_units import assert_is_as_from_a_clean_build, compiled_units, files, sysmlc
 
-SOUND = LINE.replace("Nowhere", "Arm")
-"""What has errors is withheld, and not traced."""
-WORD = re.compile(r"\b[a-z]\w*[a-z]\b")
-STATEMENT = re.compile(r"\n[^\n{}]*;(?=\n)")
+from sysmlc.ir import seen
+
+CELL = """\
+package Cell {
+    private import ScalarValues::*;
+    private import Drives::*;
+    enum def Mode { enum idle; enum busy; enum failed; }
+    part def Station {
+        attribute speed : Integer = 3;
+        attribute count : Integer := 0;
+        attribute full : Boolean := false;
+        attribute mode : Mode;
+        part drive : Drive;
+        assert constraint { 0 <= count and count <= 9 }
+        action serve {
+            in tray : Integer = 5;
+            out result : Boolean;
+            first start;
+            then decide;
+                if speed > 2 then done;
+                else pick;
+            action pick { in place : Integer = 6; }
+            then assign count := count + 1;
+            then assign full := true;
+            then done;
+        }
+        action unload {
+            in other : Drive;
+            first start;
+            then action grip;
+            then decide;
+                if other.load > 3 then release;
+                else done;
+            action release;
+            then assign full := false;
+            then done;
+        }
+        exhibit state modes {
+            attribute limit : Integer = 7;
+            entry; then idle;
+            state idle;
+            state busy;
+            transition first idle accept Start if count > 1 then busy;
+            transition first busy accept Start do assign count := 0 then idle;
+        }
+    }
+    attribute def Start;
+    action def Wait { first start; then action hold : Turn; then done; }
+}
+"""
+DRIVES = """\
+package Drives {
+    private import ScalarValues::*;
+    part def Drive {
+        attribute load : Integer = 1;
+        attribute on : Boolean = true;
+        action turn : Turn;
+    }
+    action def Turn {
+        in angle : Integer = 90;
+        attribute left : Integer := 3;
+        first start;
+        then merge again;
+        then action step;
+        then assign left := left - 1;
+        then decide;
+            if left > 0 then again;
+            else done;
+    }
+}
+"""
+WORD = re.compile(r"\b[a-zA-Z]\w+\b")
+LINES = re.compile(r"[^\n]*\n")
+VALUE = re.compile(r"\b(?:\d+|true|false|idle|busy)\b|==|<=|[<>](?= \d)")
+TYPE = re.compile(r"\b(?:Integer|Boolean|Drive|Mode)\b(?=[ ;])")
+VALUES = ("0", "1", "4", "true", "false", "idle", "==", "<=", ">")
+TYPES = ("Integer", "Boolean", "Drive", "Mode", "Real")
+
+
+def replaced(text: str, found: re.Match[str], new: str) -> str:
+    return text[: found.start()] + new + text[found.end() :]
+
+
+def with_an_edit(text: str, chosen: random.Random) -> str:
+    """A line more, fewer or elsewhere, another name here or everywhere, another value or type."""
+
+    def one(pattern: re.Pattern[str]) -> re.Match[str]:
+        return chosen.choice(list(pattern.finditer(text)))
+
+    kind = chosen.randrange(8)
+    line, word = one(LINES), one(WORD)
+    if kind == 0:
+        return replaced(text, line, "")
+    if kind == 1:
+        return replaced(text, line, line[0] * 2)
+    if kind == 2:
+        other = replaced(text, line, "")
+        at = chosen.choice(list(LINES.finditer(other))).start()
+        return other[:at] + line[0] + other[at:]
+    if kind == 3:
+        return replaced(text, word, f"{word[0]}{chosen.randrange(3)}")
+    if kind == 4:
+        return re.sub(rf"\b{word[0]}\b", f"{word[0]}{chosen.randrange(3)}", text)
+    if kind == 5:
+        return replaced(text, line, line[0] + "\n" * chosen.randrange(1, 4))
+    pattern, others = chosen.choice([(VALUE, VALUES), (TYPE, TYPES)])
+    return replaced(text, one(pattern), chosen.choice(others)) if pattern.search(text) else text
 
 
 @pytest.fixture
-def unit(monkeypatch, tmp_path):
-    compiled_units(monkeypatch, tmp_path, {"line.sysml": SOUND, "parts.sysml": PARTS})
-    sysmlc("unit", "-o", "out")
-    return Path("unit")
+def used_again(monkeypatch, tmp_path):
+    """A unit of its own; the readers whose work was used again."""
+    compiled_units(monkeypatch, tmp_path, {"cell.sysml": CELL, "drives.sysml": DRIVES})
+    monkeypatch.setattr(seen, "_LAST", {})
+    readers: list[str] = []
+    real = seen.Seen.known
+
+    def known(self: seen.Seen, reader: str, given: object) -> object:
+        found = real(self, reader, given)
+        readers.extend([reader] if found else [])
+        return found
+
+    monkeypatch.setattr(seen.Seen, "known", known)
+    return readers
 
 
-def assert_is_as_from_a_new_process():
-    told = sysmlc("unit", "-o", "out", "--format", "json")
-    shutil.rmtree("clean", ignore_errors=True)
-    command = [sys.executable, "-m", "sysmlc", "unit", "-o", "clean", "--no-cache"]
-    new = subprocess.run(
-        [*command, "--format", "json"], capture_output=True, text=True, check=False
-    )
-    assert told == (new.returncode, new.stdout, new.stderr)
-    assert files("out") == files("clean")
+def assert_it_comes_to_the_same() -> None:
+    """Compiled into an empty folder: what has faults of syntax leaves old files where they are."""
+    shutil.rmtree("out", ignore_errors=True)
+    assert_is_as_from_a_clean_build()
 
 
-def edited(text: str, edits: list[tuple[str, str]], chosen: random.Random) -> str:
-    """One of the edits somewhere, a statement less or twice, a name or a line that is new."""
-    number = str(chosen.randrange(3, 9))
-    way = chosen.randrange(8)
-    if way == 0:
-        return put(text, STATEMENT, lambda _: "", chosen)
-    if way == 1:
-        return put(text, STATEMENT, lambda one: one * 2, chosen)
-    if way == 2:
-        return put(text, WORD, lambda one: one + number, chosen)
-    if way == 3:
-        return put(text, re.compile("\n"), lambda _: "\n\n // größer\n", chosen)
-    old, new = chosen.choice(edits)
-    return put(text, re.compile(old, re.DOTALL), None, chosen, new.replace("#", number))
+def assert_a_new_process_comes_to_the_same() -> None:
+    command = [sys.executable, "-m", "sysmlc", "unit", "-o", "new", "--no-cache"]
+    subprocess.run([*command, "--format", "json"], check=False, capture_output=True)
+    assert files("new") == files("out")
 
 
-def put(text, pattern, change, chosen, new=""):
-    """The text with one match changed, or replaced by what ``new`` makes of it."""
-    found = list(pattern.finditer(text))
-    if not found:
-        return text
-    one = chosen.choice(found)
-    said = change(one[0]) if change else one.expand(new)
-    return text[: one.start()] + said + text[one.end() :]
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_many_edits_in_turn(unit, seed):
+@pytest.mark.parametrize("seed", range(8))
+def test_any_edits_in_turn(used_again, seed):
     chosen = random.Random(seed)
-    for _ in range(5):
-        for _ in range(chosen.randrange(1, 3)):
-            path = unit / chosen.choice(["line.sysml", "parts.sysml"])
-            path.write_text(edited(path.read_text(), EDITS, chosen))
-        assert_is_as_from_a_new_process()
+    sysmlc("unit", "-o", "out")
+    for _ in range(6):
+        name, text = chosen.choice([("cell.sysml", CELL), ("drives.sysml", DRIVES)])
+        path = Path("unit", name)
+        before = path.read_text() if chosen.random() < 0.5 else text
+        path.write_text(with_an_edit(before, chosen))
+        assert_it_comes_to_the_same()
+    assert_a_new_process_comes_to_the_same()
+    assert used_again
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("seed", range(2))
-def test_many_edits_of_the_laboratory_in_turn(unit, corpus, seed):
+def test_any_edits_of_the_laboratory(used_again, corpus, seed):
     chosen = random.Random(seed)
     shutil.rmtree("unit")
     shutil.copytree(corpus / "sysml2" / "ice-lab", "unit")
+    texts = {path: path.read_text() for path in sorted(Path("unit").rglob("*.sysml"))}
     sysmlc("unit", "-o", "out")
-    for _ in range(6):
-        path = chosen.choice(sorted(unit.rglob("*.sysml")))
-        path.chmod(0o644)
-        path.write_text(edited(path.read_text(), ICE, chosen))
-        assert_is_as_from_a_new_process()
+    for _ in range(5):
+        path = chosen.choice(list(texts))
+        before = path.read_text() if chosen.random() < 0.5 else texts[path]
+        path.write_text(with_an_edit(before, chosen))
+        assert_it_comes_to_the_same()
+    assert_a_new_process_comes_to_the_same()
+    assert {reader.split()[1] for reader in used_again} >= {"activities", "contracts"}
 
 
-def test_what_was_undone_is_as_before(unit):
-    path, seen = unit / "line.sysml", []
-    for name in ("Cell", "Cell2", "Cell", "Cell3", "Cell2"):
-        path.write_text(SOUND.replace("part def Cell", f"part def {name}"))
-        sysmlc("unit", "-o", "out")
-        seen.append(files("out"))
-    assert seen[0] == seen[2] != seen[1] == seen[4]
+def test_what_was_not_edited_is_used_again_where_it_stands_now(used_again):
+    for number in range(4):
+        path = Path("unit/cell.sysml")
+        path.write_text(
+            CELL.replace("    enum def", f"\n    action def More{number};\n    enum def")
+        )
+        assert_is_as_from_a_clean_build()
+    kinds = {reader.rpartition(" ")[0] for reader in used_again}
+    assert {"pass activities", "pass contracts", "emit contracts contracts"} <= kinds
 
 
-def test_lines_are_others_though_every_element_starts_where_it_did(unit):
-    text = SOUND.replace("[1..2]", "[1..3]").replace("    private", "\n   private")
-    assert len(text) == len(SOUND)
-    (unit / "line.sysml").write_text(text)
-    assert_is_as_from_a_new_process()
+def test_templates_of_the_users_are_read_again(used_again):
+    Path("mine/contracts").mkdir(parents=True)
+    for number in range(4):
+        Path("mine/contracts/contract.md.j2").write_text(f"Version {number}")
+        Path("unit/cell.sysml").write_text(CELL.replace("grip", f"grip{number}"))
+        assert_is_as_from_a_clean_build("--templates", "mine")
+        assert Path("out/contracts/Cell.Wait.md").read_text() == f"Version {number}"
