@@ -136,6 +136,10 @@ class Noting(Graph):
         self.is_partial = False
         return super().edges(*kinds)
 
+    def ordinals(self, elements: Iterable[Element]) -> list[int]:
+        self.is_partial = False
+        return super().ordinals(elements)
+
     def subject(self, element: Element) -> Subject:
         self.is_partial = False
         return super().subject(element)
