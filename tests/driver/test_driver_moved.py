@@ -208,14 +208,16 @@ def test_it_is_the_same_whatever_the_seed_of_hashes(runs):
     assert files("out") == files("clean")
 
 
-def test_texts_that_stay_are_kept_as_they_were(runs, monkeypatch):
+@pytest.mark.parametrize("is_new", [False, True])
+def test_texts_that_stay_are_kept_as_they_were(runs, monkeypatch, is_new):
+    """Also by a new process, which has them from the cache."""
     sysmlc("unit", "-o", "out")
     before = files("out")
     edited("line.sysml", "part arm", "part hand")
-    packed, real = [], recall._compressed
-    monkeypatch.setattr(
-        recall, "_compressed", lambda text, level: packed.append(text) or real(text, level)
-    )
+    if is_new:
+        recall._last.clear()
+    packed, real = [], recall._new
+    monkeypatch.setattr(recall, "_new", lambda text, *how: packed.append(text) or real(text, *how))
     sysmlc("unit", "-o", "out")
     after = files("out")
     same = {path for path, text in after.items() if before.get(path) == text}

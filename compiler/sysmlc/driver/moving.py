@@ -118,7 +118,7 @@ class Texts(Packed):
         return self.new[path] if path in self.new else self._old[path]
 
     def packed(self, path: str) -> memoryview | None:
-        """The text at the path compressed, if it is an old one that was kept so."""
+        """The text at the path as it was kept, if it is an old one."""
         if path in self.new or not isinstance(self._old, Packed):
             return None
         return self._old.packed(path)

@@ -36,7 +36,7 @@ class Packed(Mapping[str, str]):
 
     @abstractmethod
     def packed(self, path: str) -> memoryview | None:
-        """The text at the path compressed; None where it is not there so."""
+        """The text at the path as the cache keeps it; None where it is not there so."""
 
 
 @dataclass(frozen=True, slots=True)

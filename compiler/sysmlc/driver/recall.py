@@ -21,6 +21,12 @@ _LENGTH = 8
 """Bytes that say how long a part of an entry is: the outcome, its texts' lengths; then texts."""
 _LONG = 2**21
 """Characters from which a text is always worth the time to compress it."""
+_PLAIN = "\0"
+"""What a text begins with that is kept as it is; compressed ones begin otherwise."""
+_Kept = dict[str, bytes | memoryview]
+"""Texts as they are kept, by their digests."""
+_last: dict[str, _Kept] = {}
+"""Those of the outcome that this process kept last, by its unit."""
 
 
 def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
@@ -31,6 +37,8 @@ def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
     if outcome.exit_code() == 2:
         return
     texts = dict(_packed_texts(outcome, cache, unit))
+    _last.clear()
+    _last[unit] = {file.sha256: texts[file.path] for file in outcome.files}
     parts = [_packed(_form(outcome)), _packed({path: len(data) for path, data in texts.items()})]
     lengths = [len(part).to_bytes(_LENGTH, "big") for part in parts]
     cache.put(key, *lengths, *parts, *texts.values())
@@ -41,12 +49,12 @@ def remember(cache: Cache, key: str, outcome: Outcome, unit: str = "") -> None:
 def _packed_texts(
     outcome: Outcome, cache: Cache, unit: str
 ) -> Iterator[tuple[str, bytes | memoryview]]:
-    """Each text as it is kept: as in the outcome before, if it has the text.
+    """Each text as it is kept: as in an outcome before, if that has the text.
 
     What is new there is about to be edited again: to compress it takes longer than it is worth.
     """
     before = outcome.texts if isinstance(outcome.texts, Packed) else None
-    known = {} if before is not None else _last_texts(cache, unit)
+    known = {} if before is not None else _last.get(unit) or _last_texts(cache, unit)
     is_edited = before is not None or bool(known)
     for file in outcome.files:
         kept = known.get(file.sha256) if before is None else before.packed(file.path)
@@ -54,10 +62,12 @@ def _packed_texts(
 
 
 def _new(text: str, is_edited: bool) -> bytes:
-    return _compressed(text, 0 if is_edited and len(text) < _LONG else 1)
+    if is_edited and len(text) < _LONG:
+        return f"{_PLAIN}{text}".encode("utf-8", "surrogatepass")
+    return zlib.compress(text.encode("utf-8", "surrogatepass"), 1)
 
 
-def _last_texts(cache: Cache, unit: str) -> dict[str, memoryview]:
+def _last_texts(cache: Cache, unit: str) -> _Kept:
     """Texts of the last outcome of a unit, as they are kept, by their digests."""
     key = cache.get(unit) if unit else None
     entry = cache.get(key.decode()) if key else None
@@ -88,11 +98,9 @@ def _packed(value: object) -> bytes:
     return json.dumps(value, separators=(",", ":")).encode()
 
 
-def _compressed(text: str, level: int) -> bytes:
-    return zlib.compress(text.encode("utf-8", "surrogatepass"), level)
-
-
-def _decompressed(data: memoryview) -> str:
+def _unpacked(data: memoryview) -> str:
+    if data[:1] == _PLAIN.encode():
+        return str(data[1:], "utf-8", "surrogatepass")
     return zlib.decompress(data).decode("utf-8", "surrogatepass")
 
 
@@ -149,12 +157,12 @@ class _Texts(Packed):
         return dict(zip(self.lengths, accumulate(self.lengths.values(), initial=0), strict=False))
 
     def packed(self, path: str) -> memoryview:
-        """The text at the path, compressed."""
+        """The text at the path, as it is kept."""
         start = self._starts[path]
         return self.all[start : start + self.lengths[path]]
 
     def __getitem__(self, path: str) -> str:
-        return _decompressed(self.packed(path))
+        return _unpacked(self.packed(path))
 
     def __contains__(self, path: object) -> bool:
         return path in self.lengths
