@@ -1,10 +1,11 @@
 """What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.seen import again
 from sysmlc.passes.recipe_levels import followers, said, stereotypes, subjects
 from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
@@ -12,6 +13,8 @@ from sysmlc.values import dataclass, replace
 if TYPE_CHECKING:
     from sysmlc.passes.recipe_refined import Refined
     from sysmlc.recipe.model import Parameter, Range, ValueType
+
+_T = TypeVar("_T")
 
 SERVICES = ("machine service", "infrastructure service")
 NODES = frozenset(
@@ -38,6 +41,8 @@ class Whole:
     """Of what nothing owns: the part in qualified names, by id."""
     literals: Mapping[str, str]
     """Ids of enumeration literals by ``Enumeration::literal``; empty where two are called so."""
+    machines: tuple[str, ...]
+    """Ids of what is a machine or stands for one, in the order of the graph."""
     has_functions: bool
     """Whether anything is a machine function."""
 
@@ -95,9 +100,23 @@ class Context:
         """What no part of the graph can tell."""
         if not self._whole:
             roots = {one.id: self._segment(one) for one in self.graph.roots()}
+            machines = tuple(one.id for one in self.of_level("machine"))
             has_functions = bool(self.of_level("machine function"))
-            self._whole.append(Whole(self.said, roots, _literals(self.graph), has_functions))
+            found = Whole(self.said, roots, _literals(self.graph), machines, has_functions)
+            self._whole.append(found)
         return self._whole[0]
+
+    def in_part(
+        self, about: str, given: object, make: Callable[["Context"], Iterable[_T]]
+    ) -> tuple[_T, ...]:
+        """What is made of a part of the graph, as of the last graph where it is the same.
+
+        It depends on the context that ``make`` is handed, and on what is ``given``, alone.
+        """
+        whole = self.whole()
+        return again(
+            self.graph, about, (whole, given), lambda graph: make(Context.part(graph, whole))
+        )
 
     # -- levels --------------------------------------------------------------------------------
 
@@ -314,6 +333,11 @@ def _last_two(name: str) -> str:
 def _numbered(siblings: list[Element]) -> Iterator[tuple[str, str]]:
     seen: dict[str, int] = {}
     for element in siblings:
-        word = element.name or element.subkind or element.kind.lower()
-        seen[word] = seen.get(word, 0) + 1
-        yield element.id, word if seen[word] == 1 else f"{word}#{seen[word]}"
+        called = word(element)
+        number = seen[called] = seen.get(called, 0) + 1
+        yield element.id, called if number == 1 else f"{called}#{number}"
+
+
+def word(element: Element) -> str:
+    """By what an element is called in qualified names: its name or what it is."""
+    return element.name or element.subkind or element.kind.lower()

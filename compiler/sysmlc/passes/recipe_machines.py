@@ -112,7 +112,7 @@ def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
 
 
 def _machines_like(context: Context, owner: Element) -> Iterator[Element]:
-    for one in context.of_level("machine"):
+    for one in map(context.graph.__getitem__, context.whole().machines):
         is_class = one.kind in (Kind.CLASS, Kind.COMPONENT) and not one.attrs.get("abstract")
         if is_class and query.conforms(context.graph, one, owner):
             yield one
@@ -180,9 +180,10 @@ _OF_SPACE = ("parentNodeId", "nodeId")
 
 
 def _call(context: Context, element: Element) -> Element | None:
+    if not context.may_have_stereotype(element):
+        return None
     found = context.applied(element, "OpcUaCall")
-    has_levels = context.levels or context.derived
-    for one in query.applications(context.graph, element) if has_levels else ():
+    for one in query.applications(context.graph, element):
         stereotype = context.graph.target(one, Edge.INSTANCE_OF)
         if stereotype is not None and context.own_level(stereotype) in _OPC_UA:
             found = found or one

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from functools import partial
 
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Element, Kind
 from sysmlc.ir.reads import Reads
-from sysmlc.ir.seen import again
-from sysmlc.passes.recipe_context import Context, Whole
+from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.passes.recipe_steps import by_position, step_kind
@@ -42,15 +41,14 @@ def refined(context: Context, activity: Element, inside: str) -> Refined:
     """What an activity says of a task or a service, as of the last graph where it is the same."""
     found = context.refinements.get((inside, activity.id))
     if found is None:
-        whole, about = context.whole(), f"{inside} {activity.id}"
-        make = partial(_refined, whole=whole, id=activity.id, inside=inside)
-        (found,) = again(context.graph, about, whole, make)
+        make = partial(_refined, id=activity.id, inside=inside)
+        (found,) = context.in_part(f"graph of {inside} {activity.id}", (), make)
         context.refinements[inside, activity.id] = found
     return found
 
 
-def _refined(graph: Graph, whole: Whole, id: str, inside: str) -> Iterator[Refined]:
-    context, activity = Context.part(graph, whole), graph[id]
+def _refined(context: Context, id: str, inside: str) -> Iterator[Refined]:
+    activity = context.graph[id]
     made = flow_graph(context, activity, inside)
     calls = tuple(_calls(context, activity, inside))
     yield Refined(made, calls, tuple(_remarks(context, activity, inside)))

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import partial
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
@@ -33,10 +34,15 @@ def with_variables(context: Context, model: Model) -> Model:
             if rest and head in machines:
                 spoken.setdefault(machines[head], set()).add(rest)
     found = [
-        replace(one, variables=_variables(context, one.element, spoken.get(one.id, set())))
+        replace(one, variables=_found(context, one.element, tuple(sorted(spoken.get(one.id, ())))))
         for one in model.machines
     ]
     return replace(model, machines=tuple(found))
+
+
+def _found(context: Context, machine: str, names: tuple[str, ...]) -> tuple[MachineVariable, ...]:
+    make = partial(_variables, machine=machine, names=names)
+    return context.in_part(f"variables {machine}", names, make) if names else ()
 
 
 def _machines(parameters: Iterable[Parameter]) -> Iterator[tuple[str, str]]:
@@ -63,7 +69,7 @@ def _variables(context: Context, machine: str, names: Iterable[str]) -> tuple[Ma
     found: dict[str, MachineVariable] = {}
     if element is not None:
         type_ = query.type_of(context.graph, element) or element
-        for name in sorted(names):
+        for name in names:
             _add(context, type_, name, found)
     return tuple(found[name] for name in sorted(found, key=_in_order))
 
