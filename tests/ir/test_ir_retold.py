@@ -241,6 +241,13 @@ def test_nothing_is_remembered_when_the_graph_was_changed():
         assert done == expected
 
 
+def test_nothing_is_noted_of_the_first_graph_of_a_process():
+    graphs = [clean_graph_of(PLANT) for _ in range(3)]
+    for graph in graphs:
+        seen.see_again(graph, rows(graph))
+    assert [graph.seen is None for graph in graphs] == [True, False, False]
+
+
 def test_work_that_nobody_asked_for_is_forgotten():
     assert times(parts, PLANT) == 1
     graph_of(PLANT)

@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.reads import Literal, Reads, Value
 from sysmlc.ir.rows import Rows, rows
-from sysmlc.ir.seen import see
+from sysmlc.ir.seen import see_again
 from sysmlc.output import Artefact
 from sysmlc.values import dataclass
 
@@ -60,7 +60,7 @@ class Recording:
         if is_repeatable and self._seen is None and self._reads.literals:
             self._seen = rows(self._graph)
             self._at = self._state()
-            see(self._graph, self._seen)
+            see_again(self._graph, self._seen)
         if self._seen is not None:
             self._sink.listen(self._heard.setdefault(reader, []))
 
