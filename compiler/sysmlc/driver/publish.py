@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 
 from sysmlc.driver.manifest import MANIFEST, manifest_text
-from sysmlc.driver.outcome import Outcome, digest_of
+from sysmlc.driver.outcome import Outcome, Packed, digest_of
 from sysmlc.output import write
 from sysmlc.values import dataclass
 
@@ -37,7 +37,7 @@ class Plan:
         return [
             path
             for path, digest in self.digests.items()
-            if path.rpartition("/")[2] not in listed[_parent(path)] or self._digest(path) != digest
+            if path.rpartition("/")[2] not in listed[_parent(path)] or not self._holds(path, digest)
         ]
 
     def differences(self) -> list[str]:
@@ -55,12 +55,31 @@ class Plan:
         except (FileNotFoundError, NotADirectoryError):
             return frozenset()
 
-    def _digest(self, path: str) -> str:
-        try:
-            with open(self.place(path), "rb", buffering=0) as stream:  # noqa: PTH123
-                return hashlib.sha256(stream.read()).hexdigest()
-        except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
-            return ""
+    def _holds(self, path: str, digest: str) -> bool:
+        """Whether the file at the path is as it should be; a text that is packed stays packed."""
+        if path in self.texts and not isinstance(self.texts, Packed):
+            wanted = self.texts[path].encode("utf-8")
+            return _content(self.place(path), len(wanted)) == wanted
+        found = _content(self.place(path))
+        return found is not None and hashlib.sha256(found).hexdigest() == digest
+
+
+def _content(path: str, size: int | None = None) -> bytes | None:
+    """The bytes of a file; None where there is none, or none of that size.
+
+    It is read at once: of a file for which that fails, it is told that it holds something else.
+    """
+    try:
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
+    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
+        return None
+    try:
+        there = os.fstat(handle).st_size
+        return os.read(handle, there) if size is None or size == there else None
+    except IsADirectoryError:
+        return None
+    finally:
+        os.close(handle)
 
 
 def _parent(path: str) -> str:
