@@ -22,12 +22,19 @@ def is_joined(graph: Graph, end: Element) -> bool:
     """
     owner = graph.owner(end)
     steps = [] if owner is None else [one for one in graph.owned(owner) if one.kind in _STEPS]
+    if not any(_may_fork(graph, one) for one in steps):
+        return True
     ways = {one.id: _next(graph, one) for one in steps}
     forks = [one.id for one in steps if len(ways[one.id]) > 1 and one.subkind not in _CHOICES]
     if not forks:
         return True
     joins = {one.id for one in steps if _waits(graph, one)}
     return _are_closed(ways, end.id, forks, joins)
+
+
+def _may_fork(graph: Graph, step: Element) -> bool:
+    """Whether several flows leave a step, whatever flows they are and wherever they lead."""
+    return len(graph.sources(step, Edge.FLOW_SOURCE)) > 1 and step.subkind not in _CHOICES
 
 
 def _next(graph: Graph, step: Element) -> list[str]:

@@ -235,7 +235,9 @@ class Graph:
         """Add an edge unless it is there. Use ``move`` for ownership."""
         if edge is Edge.OWNS:
             raise ValueError("ownership is changed by move()")
-        self._link(edge, self._known(source), self._known(target))
+        known = self._elements
+        start = known[source if isinstance(source, str) else source.id]
+        self._link(edge, start, known[target if isinstance(target, str) else target.id])
 
     def connect_new(self, edge: Edge, source: Element, target: Element) -> None:
         """Add an edge that cannot be there, for one end was made just now. Not for ownership."""

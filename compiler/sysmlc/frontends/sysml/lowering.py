@@ -14,7 +14,6 @@ from sysmlc.frontends.sysml.verdicts import Verdicts
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.branches import is_joined
-from sysmlc.ir.identity import derived_id
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
 if TYPE_CHECKING:
@@ -169,7 +168,11 @@ class Lowering(Verdicts):
     ) -> Element:
         home = self._homes.get(id(node))
         source, ordinal = ("", -1) if home is None else (home.path, home.ordinal(node))
-        made = self._new(kind, name, owner, ordinal, source, _said(attrs))
+        id_ = self._names.give(kind, name, owner, source)
+        above = None if owner is None else owner.id
+        made = self.graph.new(id_, kind, name, above, ordinal, source, _said(attrs))
+        if made is None:
+            raise ValueError(f"id {id_!r} is taken")
         self.seen.add(id(node))
         self._brought[made.id] = node
         return made
@@ -180,24 +183,16 @@ class Lowering(Verdicts):
 
     def below(self, owner: Element, kind: Kind, name: str) -> Element:
         """An element that nothing in the text stands for, at the place of its owner."""
-        return self._new(kind, name, owner, owner.ordinal, owner.source, {})
+        return self._new(owner, kind, name, owner)
 
     def beside(self, other: Element, kind: Kind, name: str) -> Element:
         """The same beside an element, with which it shares the owner."""
-        return self._new(kind, name, self.graph.owner(other), other.ordinal, other.source, {})
+        return self._new(other, kind, name, self.graph.owner(other))
 
-    def _new(
-        self,
-        kind: Kind,
-        name: str,
-        owner: Element | None,
-        ordinal: int,
-        source: str,
-        attrs: dict[str, AttrValue],
-    ) -> Element:
-        id_ = self._names.give(kind, name, owner, source)
+    def _new(self, at: Element, kind: Kind, name: str, owner: Element | None) -> Element:
+        id_ = self._names.give(kind, name, owner, at.source)
         above = None if owner is None else owner.id
-        made = self.graph.new(id_, kind, name, above, ordinal, source, attrs)
+        made = self.graph.new(id_, kind, name, above, at.ordinal, at.source, {})
         if made is None:
             raise ValueError(f"id {id_!r} is taken")
         return made
@@ -220,7 +215,9 @@ class Lowering(Verdicts):
         if target is None:
             self._unresolved(source, edge)
             return
-        known = self.elements.get(id(target)) or self.element(target)
+        known = self.elements.get(id(target))
+        if known is None and id(target) in self.repeated:
+            known = self.element(target)
         if known is not None:
             if edge is Edge.SPECIALIZES:
                 self._generals.append((source, known))
@@ -261,12 +258,7 @@ class Lowering(Verdicts):
 
     def _stub(self, kind: Kind, name: str) -> str:
         """Id of the element that stands for one of the standard library; href of a scalar."""
-        href = stubs.href_of(name)
-        found = self._stubs[name] = href if name in stubs.SCALARS else derived_id(href, "stub")
-        if found != href and found not in self.graph:
-            attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": href}
-            attrs["qualified_name"] = name
-            self.graph.add(Element(found, kind, name.rpartition("::")[2], attrs=attrs))
+        found = self._stubs[name] = stubs.stand_in(self.graph, kind, name)
         return found
 
     def _outside(self, edge: Edge, source: Element, target: Node) -> None:
@@ -299,11 +291,7 @@ class Lowering(Verdicts):
         return entry_and_exit[0] if is_target else entry_and_exit[1]
 
     def control(self, owner: Element, name: str, node: Node | None = None) -> Element:
-        """The start or the end of a behaviour; made when a succession needs it.
-
-        Beside branches that are not joined the end of one is not the end of all: ``done`` is a
-        flow final then.
-        """
+        """The start or the end of a behaviour; made when a succession needs it."""
         known = self._controls.get((owner.id, name))
         if known is None:
             known = self._made(node, Kind.CONTROL, name, owner)
@@ -312,7 +300,7 @@ class Lowering(Verdicts):
         return known
 
     def end_branches(self) -> None:
-        """Say of each ``done`` whether it ends the behaviour or one branch; all flows are there."""
+        """Say of each ``done`` whether it ends the behaviour or, as a flow final, one branch."""
         for (_, name), end in self._controls.items():
             if name == "done" and end.kind is Kind.CONTROL and not is_joined(self.graph, end):
                 self.set(end, subkind="flow-final")

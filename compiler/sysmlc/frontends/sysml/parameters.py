@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import nodes, values
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.features import describe, give_types
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -43,14 +43,15 @@ def direction_of(node: Node) -> str:
 
 def pin(low: "Lowering", node: Node, action: Element) -> Element:
     """A pin: a parameter of an action, with the value that it is given."""
-    direction = "out" if direction_of(node) in ("out", "return") else direction_of(node)
-    made = low.add(node, Kind.PIN, nodes.name_of(node), action, direction=direction)
-    low.set(
-        made,
-        subkind=_subkind(action, direction),
-        multiplicity=values.multiplicity(low, node),
-        ordered=bool(node.facts.get("isOrdered")),
-    )
+    said = direction_of(node)
+    direction = "out" if said == "return" else said
+    given: dict[str, AttrValue] = {
+        "direction": direction,
+        "subkind": _subkind(action, direction),
+        "multiplicity": values.multiplicity(low, node),
+        "ordered": bool(node.facts.get("isOrdered")),
+    }
+    made = low.add(node, Kind.PIN, nodes.name_of(node), action, **given)
     if node.facts.get("isUnique") is False:
         low.graph.set(made, unique=False)
     low.later(lambda: give_types(low, node, made))
@@ -132,9 +133,8 @@ def pin_of(low: "Lowering", action: Element, parameter_: Element) -> Element:
         if one.kind is Kind.PIN and one.name == parameter_.name:
             return one
     made = low.below(action, Kind.PIN, parameter_.name)
-    is_out = parameter_.attrs.get("direction") in ("out", "return")
-    low.set(made, direction="out" if is_out else "in")
-    low.set(made, subkind=_subkind(action, "out" if is_out else "in"))
-    low.set(made, multiplicity=parameter_.attrs.get("multiplicity"))
+    direction = "out" if parameter_.attrs.get("direction") in ("out", "return") else "in"
+    count = parameter_.attrs.get("multiplicity")
+    low.set(made, direction=direction, subkind=_subkind(action, direction), multiplicity=count)
     low.share_types(parameter_, made)
     return made

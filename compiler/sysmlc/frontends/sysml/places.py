@@ -16,35 +16,34 @@ class Home:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.path = document.path
-        self._wide, self._extra = _wide(document.text)
-        self._mark = mark(document) if document.text else 0
+        self._wide, self._behind = _wide(document.text, mark(document) if document.text else 0)
 
     def ordinal(self, node: Node) -> int:
         """The byte at which the name of a node starts; the element's ordinal in an XMI file."""
         offset = node.name_start if node.name_start >= 0 else node.start
-        return self.byte(offset) if self._wide or offset < 0 else offset + self._mark
+        return offset if offset < 0 else offset + self._behind[bisect_left(self._wide, offset)]
 
     def byte(self, offset: int) -> int:
         """The byte of a character of the document; -1 stays -1."""
-        if offset < 0:
-            return offset
-        number = bisect_left(self._wide, offset)
-        return offset + (self._extra[number - 1] if number else 0) + self._mark
+        return offset if offset < 0 else offset + self._behind[bisect_left(self._wide, offset)]
 
     def character(self, byte: int) -> int:
         """The character of the document that a byte belongs to; -1 before the first."""
         return bisect_right(range(byte + 1), byte, key=self.byte) - 1
 
 
-def _wide(text: str) -> tuple[list[int], list[int]]:
-    """Characters that take several bytes, and the bytes more up to each."""
-    positions, extra, sum_ = [], [], 0
+def _wide(text: str, more: int) -> tuple[list[int], list[int]]:
+    """Characters that take several bytes, and how many bytes more there are before and behind each.
+
+    ``more`` are those before the text.
+    """
+    positions, behind = [], [more]
     for start in range(0, 0 if text.isascii() else len(text), _PIECE):
         # Most pieces of a text have none; to ask a piece costs a tenth of looking through it.
         if text[start : start + _PIECE].isascii():
             continue
         for found in _WIDE.finditer(text, start, start + _PIECE):
-            sum_ += len(found[0].encode("utf-8", "replace")) - 1
+            more += len(found[0].encode("utf-8", "replace")) - 1
             positions.append(found.start())
-            extra.append(sum_)
-    return positions, extra
+            behind.append(more)
+    return positions, behind

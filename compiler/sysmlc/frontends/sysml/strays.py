@@ -91,11 +91,11 @@ def _a(noun: str) -> str:
 
 
 def _unread(low: "Lowering", root: Node, known: set[int], dead: set[int]) -> Iterator[Node]:
-    found = [root]
+    found, expressions = [root], nodes.EXPRESSIONS
     while found:
         node = found.pop()
         for one in reversed(node.members):
-            if one.kind in nodes.EXPRESSIONS:
+            if one.kind in expressions:
                 continue
             if id(one) not in known and not _is_read(low, one, node):
                 yield one

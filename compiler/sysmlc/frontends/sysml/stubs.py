@@ -1,6 +1,7 @@
 """What of the standard library the graph refers to: stubs by qualified name."""
 
-from sysmlc.ir import Kind
+from sysmlc.ir import AttrValue, Element, Graph, Kind
+from sysmlc.ir.identity import derived_id
 from sysmlc.language.tree import Node
 
 _PRIMITIVES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
@@ -45,6 +46,19 @@ def href_of(name: str) -> str:
     """Where the pass ``resolve`` shall look for an element of the library."""
     scalar = SCALARS.get(name)
     return f"{_PRIMITIVES}{scalar}" if scalar else f"sysml2:{name.partition('::')[0]}#{name}"
+
+
+def stand_in(graph: Graph, kind: Kind, name: str) -> str:
+    """Id of an element that stands for one of the library, made when needed; href of a scalar."""
+    href = href_of(name)
+    if name in SCALARS:
+        return href
+    found = derived_id(href, "stub")
+    if found not in graph:
+        attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": href}
+        attrs["qualified_name"] = name
+        graph.add(Element(found, kind, name.rpartition("::")[2], attrs=attrs))
+    return found
 
 
 def kind_of(node: Node) -> Kind:

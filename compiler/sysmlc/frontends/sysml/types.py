@@ -20,9 +20,10 @@ def _types(low: "Lowering", node: Node, seen: set[int]) -> list[Node]:
     if id(node) in seen:
         return []
     seen.add(id(node))
-    stated = [low.target(node, one) for one in node.relations if one.kind in _TYPES]
-    if stated:
-        return [one for one in stated if one is not None]
+    for relation in node.relations:
+        if relation.kind in _TYPES:
+            stated = [low.target(node, one) for one in node.relations if one.kind in _TYPES]
+            return [one for one in stated if one is not None]
     inherited: dict[int, Node] = {}
     for relation in node.relations:
         general = low.target(node, relation) if relation.kind in _FEATURES else None
