@@ -28,14 +28,15 @@ _CONTROLS = {
 def action(low: "Lowering", node: Node, owner: Element) -> Element:
     """A step: the call of a behaviour, a group of steps, or an action without a model."""
     subkind = str(annotations.said(node, "Kind", "name") or "")
-    inside = [one for one in nodes.body_of(node) if _is_step(one)]
-    found = statements.sequence(node) if inside else None
+    body = nodes.body_of(node)
+    has_steps = any(map(_is_step, body))
+    found = statements.sequence(body) if has_steps else None
     written = None if found is None else statements.effect(found)
     if written is not None:
         return _opaque(low, node, owner, written, found or [])
-    if _called(node) is None and (subkind in _STRUCTURED or (inside and not subkind)):
+    if _called(node) is None and (subkind in _STRUCTURED or (has_steps and not subkind)):
         return _structured(low, node, owner, subkind)
-    return _action(low, node, owner, subkind)
+    return _action(low, node, owner, subkind, body)
 
 
 def _is_step(node: Node) -> bool:
@@ -76,10 +77,10 @@ def _called(node: Node) -> Node | None:
     return nodes.target(node, *kinds)
 
 
-def _action(low: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+def _action(low: "Lowering", node: Node, owner: Element, subkind: str, body: list[Node]) -> Element:
     called = _called(node)
     made = _start(low, node, owner, subkind or ("opaque" if called is None else "call-behavior"))
-    for one in nodes.body_of(node):
+    for one in body:
         if one.kind == "ReferenceUsage" and not one.name and "direction" not in one.facts:
             for found in nodes.references(one, "FeatureTyping", "Subsetting"):
                 low.refer(Edge.CALLS, made, found)

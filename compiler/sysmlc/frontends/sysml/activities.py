@@ -35,12 +35,13 @@ def activity(low: "Lowering", node: Node, owner: Element | None, role: str = "")
 
 def fill(low: "Lowering", node: Node, made: Element) -> None:
     """The members of a behaviour: a text, an expression, or nodes with flows between them."""
-    found = statements.sequence(node)
+    body = nodes.body_of(node)
+    found = statements.sequence(body)
     written = None if found is None else statements.effect(found)
     if found is not None and written is not None:
         low.set(made, subkind="opaque", body=written)
         inside = {id(one) for one in found}
-        rest = (one for one in nodes.body_of(node) if one.kind != "SuccessionAsUsage")
+        rest = (one for one in body if one.kind != "SuccessionAsUsage")
         low.lower_all((one for one in rest if id(one) not in inside), made)
         return
     result = nodes.result_of(node)
@@ -48,7 +49,7 @@ def fill(low: "Lowering", node: Node, made: Element) -> None:
         low.set(made, subkind="function")
     if result is not None:
         low.later(lambda: low.set(made, body=texts(result, low)))
-    steps(low, (one for one in nodes.body_of(node) if one is not result), made)
+    steps(low, (one for one in body if one is not result), made)
 
 
 def perform(low: "Lowering", node: Node, owner: Element) -> None:

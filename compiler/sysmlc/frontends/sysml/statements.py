@@ -99,10 +99,10 @@ _READERS = {
 }
 
 
-def sequence(node: Node) -> list[Node] | None:
+def sequence(body: Sequence[Node]) -> list[Node] | None:
     """Steps of a body that are done one after the other and have no names; None for any other."""
     found = []
-    for one in nodes.body_of(node):
+    for one in body:
         if one.kind in _READERS and not one.name:
             found.append(one)
         elif one.kind == "SuccessionAsUsage" and len(_named_ends(one)) == 0:
