@@ -11,15 +11,14 @@ from sysmlc.logic.written import last_of, mentioned, written_names
 _STEP = re.compile(r"::|\.")
 _NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
 """What has a value, and what others are in."""
-
-
 _INDEX = "what may write features of the name"
 
 
 class Writers:
     """The actions and effects of a graph by the features that they write.
 
-    Nothing is looked for before somebody asks. The graph must stay as it is.
+    Nothing is looked for before somebody asks, unless answers of the graph before are compared
+    with those of this one (``ir.asking``). The graph must stay as it is.
     """
 
     def __init__(self, graph: Graph, writing: Named | None = None) -> None:
