@@ -1,30 +1,27 @@
-"""What was found of a graph of a recipe: a process that stays has the same graphs again."""
+"""What was found of a part of a recipe: a process that stays has the same parts again."""
 
 from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import TypeVar
 
-from sysmlc.recipe.model import FlowGraph
-
 _T = TypeVar("_T")
-_MOST = 256
-"""Graphs of which something is remembered; the first of more is forgotten."""
+_V = TypeVar("_V")
+_MOST = 1024
+"""Values of which something is remembered; the first of more is forgotten."""
 
 
-def remembered(
-    find: Callable[[FlowGraph], Iterable[_T]],
-) -> Callable[[FlowGraph], tuple[_T, ...]]:
-    """A search in a graph that is done once while the graph is the very same value.
+def remembered(find: Callable[[_V], Iterable[_T]]) -> Callable[[_V], tuple[_T, ...]]:
+    """A search in a graph, service ... that is done once while it is the very same value.
 
     An equal one is not enough: 1, 1.0 and True are equal, too.
     """
-    known: dict[int, tuple[FlowGraph, tuple[_T, ...]]] = {}
+    known: dict[int, tuple[_V, tuple[_T, ...]]] = {}
 
     @wraps(find)
-    def found(graph: FlowGraph) -> tuple[_T, ...]:
-        # Who is remembered is alive, so that no other graph has its id.
-        before = known.pop(id(graph), None) or (graph, tuple(find(graph)))
-        known[id(graph)] = before
+    def found(value: _V) -> tuple[_T, ...]:
+        # What is remembered is alive, so that nothing else has its id.
+        before = known.pop(id(value), None) or (value, tuple(find(value)))
+        known[id(value)] = before
         if len(known) > _MOST:
             del known[next(iter(known))]
         return before[1]

@@ -7,7 +7,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
-from sysmlc.output import Output, json_text
+from sysmlc.output import Output
 from sysmlc.recipe import samples
 from sysmlc.values import dataclass
 
@@ -48,9 +48,9 @@ class RecipeBackend:
                 subject = graph.subject(graph[model.recipe.element])
                 sink.report(EMPTY_RECIPE, subject, recipe=model.recipe.id)
                 continue
-            text = json_text(document(model, options.inputs), 2)
+            text = document(model, options.inputs)
             path = f"recipes/{names[model.recipe.id]}.json"
-            output.add(path, f"{text}\n", _trace(model), self.name)
+            output.add(path, text, _trace(model), self.name)
 
 
 class _Traced(Protocol):
