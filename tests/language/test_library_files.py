@@ -7,11 +7,11 @@ import pytest
 
 from sysmlc.cache import Cache
 from sysmlc.diagnostics import Sink
-from sysmlc.language.library import core, find
+from sysmlc.language.library import Library, core, find
 from sysmlc.language.names import resolve
 from sysmlc.language.stored import StoredNode, pack, unpack
 from sysmlc.language.text import parse
-from sysmlc.sources import SourceError
+from sysmlc.sources import Source, SourceError
 
 
 @pytest.fixture
@@ -95,6 +95,13 @@ def test_without_any_the_core_serves_and_that_is_told_once(monkeypatch):
     quiet = Sink()
     resolve([parse("attribute a;", "a.sysml", "sysml", quiet)], library, quiet)
     assert list(quiet) == []
+
+
+def test_a_lost_type_is_looked_for_in_library_files_that_nobody_read():
+    tools = Source("Tools.sysml", b"library package Tools { part def Drill; }")
+    sink = Sink()
+    resolve([parse("part d : Drill;", "a.sysml", "sysml", sink)], Library([tools]), sink)
+    assert [found.help for found in sink] == ["'Drill' is in 'Tools', which is not imported here"]
 
 
 def test_every_name_of_the_core_is_known_in_it():

@@ -40,6 +40,7 @@ class Library:
         self._cache = cache
         self._documents: dict[str, Document] = {}
         self._indexing: dict[str, Document] = {}
+        self._speaking: dict[str, list[str]] = {}
         self._stems: dict[str, list[str]] = {}
         for path in self._sources:
             self._stems.setdefault(_stem(path), []).append(path)
@@ -55,6 +56,27 @@ class Library:
         if self._index is None:
             self._index = self._indexed()
         return self._named(self._index.get(name, ()), name)
+
+    def names(self) -> list[str]:
+        """The names of the root members of all files, sorted."""
+        if self._index is None:
+            self._index = self._indexed()
+        return sorted(self._index)
+
+    def packages(self, name: str) -> list[Node]:
+        """The root members of the files whose text has a name, whether they were read or not."""
+        known = self._speaking.get(name)
+        if known is None:
+            said = name.encode()
+            known = [path for path in self.paths() if said in self._sources[path].data]
+            self._speaking[name] = known
+        for path in known:
+            self._indexing[path] = self._read(path)
+        return [member for path in known for member in self._indexing[path].root.members]
+
+    def is_same(self, other: "Library") -> bool:
+        """Whether the files of both say the same."""
+        return self.is_core is other.is_core and self._sources == other._sources
 
     def _named(self, paths: Iterable[str], name: str) -> list[Node]:
         members = (member for path in paths for member in self.document(path).root.members)

@@ -1,6 +1,7 @@
 """Attributes that are literals of the text, word for word, and literals that mean more."""
 
 from collections.abc import Callable, ItemsView, Iterator, KeysView, Sequence, ValuesView
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml.forms import BODIES, KINDS, body, form, has_literal, value
@@ -20,12 +21,16 @@ class Literals:
     """Which attributes literals of the text were given to, and which literals others asked for.
 
     A literal that names, checks or the lowering asked for may mean anything; who only gives it
-    to an attribute asks ``unnoted``.
+    to an attribute asks ``unnoted``. What was asked for in a tree that is kept counts as asked for,
+    as who asked remembers the answer: ``asked`` are the places then.
     """
 
-    def __init__(self, documents: Sequence[Document] = ()) -> None:
+    def __init__(
+        self, documents: Sequence[Document] = (), asked: AbstractSet[Place] = frozenset()
+    ) -> None:
         self._values: dict[Place, AttrValue] = {}
         self._asked: set[Place] = set()
+        self._were_asked = asked
         self._is_noted = True
         self._files = {id(one.root) for one in documents}
         for document in documents:
@@ -40,6 +45,8 @@ class Literals:
         found = node.facts.get(fact)
         if found is not None:
             self._values[place] = found
+            if isinstance(node.facts, Facts) and node.facts.place in self._were_asked:
+                self.note(place)
             node.facts = Facts(node.facts, place, self)
 
     def note(self, place: Place) -> None:
@@ -104,6 +111,10 @@ class Literals:
         facts = (one.facts for one in node.walk())
         return (one.place for one in facts if isinstance(one, Facts) and one.place[0] == path)
 
+    def asked(self) -> frozenset[Place]:
+        """The places of literals that were asked for so far."""
+        return frozenset(self._asked)
+
     def finish(self, graph: Graph) -> None:
         """Leave what was given to attributes and asked for by nobody else."""
         if graph.reads is not None:
@@ -114,10 +125,12 @@ UNWATCHED = Literals()
 """Where nobody wants to know."""
 
 
-def watched(documents: Sequence[Document], graph: Graph) -> Literals:
+def watched(
+    documents: Sequence[Document], graph: Graph, asked: AbstractSet[Place] = frozenset()
+) -> Literals:
     """The literals of texts, where somebody wants to know of them."""
     texts = [one for one in documents if one.text]
-    return UNWATCHED if graph.reads is None else Literals(texts)
+    return UNWATCHED if graph.reads is None else Literals(texts, asked)
 
 
 class Facts(dict[str, Fact]):

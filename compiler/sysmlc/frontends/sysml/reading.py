@@ -32,11 +32,15 @@ def read(
 ) -> None:
     """Add the files to the graph. Raises SourceError for what exceeds the limits."""
     from sysmlc.language.checks import check
-    from sysmlc.language.names import Model, resolve
+    from sysmlc.language.kept import Kept, keep, take
+    from sysmlc.language.names import Model, resolve_all
 
     models = [source for source in sources if not is_description(source)]
     faulty: set[str] = set()
-    documents = [_document(source, sink, cache, faulty) for source in models]
+    is_staying = _is_staying(models, graph, cache)
+    kept = take() if is_staying else None
+    known = kept.documents(models) if kept else {}
+    documents = [known.get(one.name) or _document(one, sink, cache, faulty) for one in models]
     found = _library(library, cache, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
@@ -54,8 +58,15 @@ def read(
     if not own:
         return
     ours += _missing(own, ours, cache)
-    literals = watched([one for one in own if one.path not in faulty], graph)
-    model = resolve([*own, *ours], found, sink)
+    is_staying = is_staying and not (ours or faulty)
+    if kept is None or not is_staying or not kept.renew(own, found):
+        texts = [one.source for one in own if known and one.source is not None]
+        own = [_document(one, Sink(), cache, set()) for one in texts] or own
+        kept = Kept(Model([*own, *ours], found))
+    model = kept.model
+    own = [one for one in model.documents if one not in ours]
+    literals = watched([one for one in own if one.path not in faulty], graph, kept.asked)
+    resolve_all(model, sink)
     check(model, sink)
     settle(own, sink)
     graph.store(Model, [*graph.derived(Model), model])
@@ -63,6 +74,14 @@ def read(
     settle(shared, sink)
     lower([*own, *shared], model, graph, sink, coverage, literals)
     _mark(graph, shared)
+    if is_staying:
+        keep(kept, literals.asked())
+
+
+def _is_staying(models: Sequence[Source], graph: Graph, cache: "Cache | None") -> bool:
+    """Whether what a unit comes to may be kept: of plain texts, where who asks is noted."""
+    is_noted = cache is not None and graph.reads is not None
+    return is_noted and not any("!" in one.name or is_xml(one) for one in models)
 
 
 def _is_named(library: Document, models: Sequence[Source]) -> bool:

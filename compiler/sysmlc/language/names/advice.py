@@ -45,12 +45,12 @@ def advice(
     if package is not None:
         return _not_imported(names[0], package, lookup, start)
     if relation.kind in _IMPORTED and lookup.search(start, names[:1], None) is None:
-        around = _around(start)
-        near = [p.name for p in model.packages() if p.name and p not in around]
+        around = {one.name for one in _around(start)}
+        near = [name for name in model.packages() if name not in around]
         said = did_you_mean(names[0], near) if near else ""
         return said if said.startswith("did you mean") else _NOT_GIVEN
     known = _known(lookup, names, start, within)
-    roots = [p.name for p in model.packages() if p.name] if len(names) > 1 else []
+    roots = model.packages() if len(names) > 1 else []
     return did_you_mean(names[-1], known or roots) if known or roots else _UNNAMED
 
 
@@ -106,8 +106,8 @@ def _of_library(
         package, found = model.find(through), model.find(f"{through}::{name}")
         if found is not None and (wanted is None or found.kind in wanted):
             return package
-    for package in model.packages():
-        if package.name and wanted is not None and _has(model.lookup, package, name, wanted):
+    for package in model.library.packages(name) if wanted is not None else ():
+        if package.name and _has(model.lookup, package, name, wanted):
             return package
     return None
 

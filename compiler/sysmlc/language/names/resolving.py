@@ -18,6 +18,12 @@ _DEPTH = 20_000
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
     """The model of the documents with every reference resolved; what leads nowhere is reported."""
     model = Model(documents, library)
+    resolve_all(model, sink)
+    return model
+
+
+def resolve_all(model: Model, sink: Sink) -> None:
+    """Resolve every reference that is not yet, and report all that lead nowhere."""
     collecting, depth = gc.isenabled(), sys.getrecursionlimit()
     gc.disable()
     sys.setrecursionlimit(max(depth, _DEPTH))
@@ -27,13 +33,12 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
         for document in model.documents:
             _settle(document, model)
         _report_cycles(model, sink)
-        if library.is_core:
+        if model.library.is_core:
             _report_core(model, sink)
     finally:
         sys.setrecursionlimit(depth)
         if collecting:
             gc.enable()
-    return model
 
 
 def _resolve(document: Document, model: Model, sink: Sink) -> None:
@@ -61,12 +66,15 @@ def _settle(document: Document, model: Model) -> None:
     """Find out what leads through many elements while Python may still call itself that deep."""
     lookup = model.lookup
     for node in model.nodes(document):
+        before = lookup.cuts
         try:
             if node.relations:
                 lookup.generals(node)
             lookup.by_position(node)
         except RecursionError:
             lookup.abandon()
+        if lookup.cuts != before:
+            lookup.doubtful.add(node)
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
