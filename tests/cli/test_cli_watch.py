@@ -4,6 +4,7 @@ Pauses are what the tools do between two writes. What is waited for is always an
 bound; no test asserts how long something takes.
 """
 
+import gc
 import io
 import os
 import signal
@@ -308,6 +309,19 @@ class Clock:
         while self._saves and self._saves[0] <= self.now:
             self._path.write_bytes(self._path.read_bytes() + b"x")
             del self._saves[0]
+
+
+def test_what_was_compiled_is_let_go(tmp_path, monkeypatch):
+    """Front ends freeze what they made, so that no collection looks at it later."""
+    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "cell.sysml"
+    path.write_text("package P;")
+    watched = Watch((path,), tmp_path / "out", Settings(), 0.01)
+    for number in range(3):
+        path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
+        watched.build()
+    gc.unfreeze()
+    assert gc.collect() < 50
 
 
 def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):
