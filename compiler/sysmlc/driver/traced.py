@@ -5,9 +5,10 @@ follows from its id, name and ordinal and from the bytes of its file. Where thes
 used again.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from json.encoder import encode_basestring
+from operator import itemgetter
 
 from sysmlc.diagnostics.locate import positions
 from sysmlc.sources import Source
@@ -16,6 +17,7 @@ from sysmlc.values import dataclass
 Start = tuple[str, str, str, int]
 """Qualified name, id, file and ordinal of an element; the file is empty for none."""
 
+_START = itemgetter(0)
 _MOST = 20_000
 """Elements of a unit that are remembered at most."""
 _NOWHERE: Mapping[int, tuple[int, int]] = {}
@@ -39,7 +41,7 @@ def told(sources: Iterable[Source], starts: Iterable[Start]) -> list[str]:
         by_file.setdefault(start[2], []).append(start)
     there = {source.name: source for source in sources if source.name in by_file}
     found = {file: _in_file(file, there.get(file), ours) for file, ours in by_file.items()}
-    every = sorted(chain.from_iterable([one.told for one in found.values()]))
+    every = sorted(chain.from_iterable([one.told for one in found.values()]), key=_START)
     _last.clear()
     if len(every) <= _MOST:
         _last.update(found)
@@ -51,24 +53,18 @@ def _in_file(file: str, source: Source | None, starts: list[Start]) -> _File:
     known = _last.get(file)
     if known is not None and known.data == data and known.starts == starts:
         return known
-    return _File(data, starts, sorted(zip(starts, _made(file, source, starts), strict=True)))
+    made = zip(starts, _made(file, source, starts), strict=True)
+    return _File(data, starts, sorted(made, key=_START))
 
 
-def _made(file: str, source: Source | None, starts: Sequence[Start]) -> Iterable[str]:
+def _made(file: str, source: Source | None, starts: Sequence[Start]) -> Iterator[str]:
     ordinals = {file: [ordinal for *_, ordinal in starts]}
     places = positions([source], ordinals)[file] if source is not None else _NOWHERE
+    in_file = f'{{\n    "file": {encode_basestring(file)},\n    "line": '
     for name, id, _, ordinal in starts:
-        yield _element(id, name, file, *places.get(ordinal, (0, 0)))
-
-
-def _element(id: str, name: str, file: str, line: int, column: int) -> str:
-    source = (
-        f'{{\n    "file": {encode_basestring(file)},\n    "line": {line or "null"},\n'
-        f'    "column": {column or "null"}\n   }}'
-        if file
-        else "null"
-    )
-    return (
-        f'{{\n   "id": {encode_basestring(id)},\n'
-        f'   "qualified_name": {encode_basestring(name)},\n   "source": {source}\n  }}'
-    )
+        line, column = places.get(ordinal, (0, 0))
+        where = f'{in_file}{line or "null"},\n    "column": {column or "null"}\n   }}'
+        yield (
+            f'{{\n   "id": {encode_basestring(id)},\n   "qualified_name": '
+            f'{encode_basestring(name)},\n   "source": {where if file else "null"}\n  }}'
+        )
