@@ -10,37 +10,41 @@ from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.neighbours import Index
+from sysmlc.ir.reads import Value
 from sysmlc.ir.reference import End
 
 _T = TypeVar("_T")
 _ID = attrgetter("id")
+_OWNS = Edge.OWNS
 
 
 class Parts:
     """Some of a graph: elements for themselves, and neighbours by edges of one kind.
 
     ``ids`` are those of elements, or of what is not there; ``forwards`` and ``backwards`` those of
-    elements whose neighbours are meant, too.
+    elements whose neighbours are meant, and what these neighbours are like.
     """
 
-    __slots__ = ("backwards", "forwards", "ids")
+    __slots__ = ("_every", "backwards", "forwards", "ids")
 
     def __init__(self) -> None:
         self.ids: set[str] = set()
         self.forwards: dict[Edge, set[str]] = defaultdict(set)
         self.backwards: dict[Edge, set[str]] = defaultdict(set)
+        self._every: set[str] | None = None
 
     def meet(self, others: "Parts") -> bool:
-        """Whether anything is in both."""
-        return (
+        """Whether anything is in both. Nothing may come to them any more."""
+        return not self._every_id().isdisjoint(others._every_id()) and (
             not self.ids.isdisjoint(others.ids)
             or _meet(self.forwards, others.forwards)
             or _meet(self.backwards, others.backwards)
         )
 
-    def every_id(self) -> set[str]:
-        """Elements that are in it for themselves or for their neighbours."""
-        return self.ids.union(*self.forwards.values(), *self.backwards.values())
+    def _every_id(self) -> set[str]:
+        if self._every is None:
+            self._every = self.ids.union(*self.forwards.values(), *self.backwards.values())
+        return self._every
 
 
 def _meet(one: Mapping[Edge, set[str]], other: Mapping[Edge, set[str]]) -> bool:
@@ -59,6 +63,10 @@ class Noting(Graph):
         self.seen = None
         self.asked = Parts()
         self.is_partial = True
+        self.literals: dict[tuple[Value, str], None] = {}
+        """Literals that were asked for while it is there, and by whom."""
+        if graph.reads is not None:
+            graph.reads.latest = self.literals
 
     # -- some elements -------------------------------------------------------------------------
 
@@ -79,40 +87,29 @@ class Noting(Graph):
         return [self.get(end if isinstance(end, str) else end.id) for end in ends]
 
     def owned(self, element: Element) -> list[Element]:
-        return self._noted(self.asked.forwards[Edge.OWNS], element, super().owned(element))
+        self.asked.forwards[_OWNS].add(element.id)
+        return super().owned(element)
 
     def targets(self, element: Element, edge: Edge) -> list[Element]:
-        return self._noted(self.asked.forwards[edge], element, super().targets(element, edge))
+        self.asked.forwards[edge].add(element.id)
+        return super().targets(element, edge)
 
     def sources(self, element: Element, edge: Edge) -> list[Element]:
-        return self._noted(self.asked.backwards[edge], element, super().sources(element, edge))
+        self.asked.backwards[edge].add(element.id)
+        return super().sources(element, edge)
 
     def target(self, element: Element, edge: Edge) -> Element | None:
-        return self._noted_one(self.asked.forwards[edge], element, super().target(element, edge))
+        self.asked.forwards[edge].add(element.id)
+        return super().target(element, edge)
 
     def source(self, element: Element, edge: Edge) -> Element | None:
-        return self._noted_one(self.asked.backwards[edge], element, super().source(element, edge))
+        self.asked.backwards[edge].add(element.id)
+        return super().source(element, edge)
 
     def subtree(self, element: Element) -> Iterator[Element]:
         found = list(super().subtree(element))
-        self.asked.forwards[Edge.OWNS].update(map(_ID, found))
-        self.asked.ids.update(map(_ID, found))
+        self.asked.forwards[_OWNS].update(map(_ID, found))
         return iter(found)
-
-    def _noted(self, joined: set[str], element: Element, found: list[Element]) -> list[Element]:
-        joined.add(element.id)
-        self.asked.ids.add(element.id)
-        self.asked.ids.update(map(_ID, found))
-        return found
-
-    def _noted_one(
-        self, joined: set[str], element: Element, found: Element | None
-    ) -> Element | None:
-        joined.add(element.id)
-        self.asked.ids.add(element.id)
-        if found is not None:
-            self.asked.ids.add(found.id)
-        return found
 
     # -- all of the graph ----------------------------------------------------------------------
 

@@ -46,6 +46,8 @@ class Reads:
         self.stored: dict[str, dict[str, None]] = {}
         self.used: dict[str, dict[str, None]] = {}
         """Who kept derived values, and who asked for them, by the module of their type."""
+        self.latest: dict[tuple[Value, str], None] = {}
+        """Who asked for which attribute, since someone began to listen here."""
 
     def watch(self, element: Element, literal: Literal) -> None:
         """From now on, note who asks for the attribute."""
@@ -95,8 +97,9 @@ class Watched(dict[str, AttrValue]):
     def _note(self, *keys: str) -> None:
         for key in keys:
             if key in self._keys:
-                readers = self._reads.readers.setdefault((self._id, key), {})
-                readers[self._reads.reader] = None
+                value, reads = (self._id, key), self._reads
+                reads.readers.setdefault(value, {})[reads.reader] = None
+                reads.latest[value, reads.reader] = None
 
     def _set(self, *keys: str) -> None:
         self._reads.rewritten.update((self._id, key) for key in keys if key in self._keys)

@@ -4,7 +4,7 @@ A process that stays compiles nearly the same graph again and again.
 """
 
 import marshal
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar, cast
 
 from sysmlc.ir.element import Element
@@ -12,7 +12,7 @@ from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge
 from sysmlc.ir.noting import Noting, Parts
 from sysmlc.ir.reads import Reads, Value, during
-from sysmlc.ir.rows import Row, Rows
+from sysmlc.ir.rows import Ends, Row, Rows
 from sysmlc.values import dataclass
 
 _T = TypeVar("_T")
@@ -24,18 +24,18 @@ _PLAIN = 2
 class _Made:
     """What was made of what was ``given`` and of these parts of a graph.
 
-    ``literals`` are those that were asked for.
+    ``literals`` are those that were asked for, and by whom.
     """
 
     given: object
     asked: Parts
-    literals: tuple[Value, ...]
+    literals: tuple[tuple[Value, str], ...]
     value: object
 
     def ask(self, reads: Reads) -> None:
-        """Note that who is at work has asked for the literals."""
-        for value in self.literals:
-            reads.readers[value][reads.reader] = None
+        """Note that the literals were asked for."""
+        for value, reader in self.literals:
+            reads.readers[value][reader] = None
 
 
 class Seen:
@@ -50,15 +50,14 @@ class Seen:
         self._state = _state(graph)
         self._elements = _elements(rows[0])
         self._edges = rows[1]
-        self._literals: dict[str, list[Value]] = {}
+        self._literals: dict[str, list[str]] = {}
         for one in () if graph.reads is None else graph.reads.literals:
-            self._literals.setdefault(one.id, []).append((one.id, one.key))
+            self._literals.setdefault(one.id, []).append(one.key)
         self._made: dict[str, _Made] = {}
         self._before = {} if before is None else before._made
         self.indexes: dict[str, Mapping[str, list[Element]]] = {}
         """Elements of the whole graph by some name (``ir.asking``)."""
         self.changed = Parts() if before is None else self._changed(before)
-        self._near = self.changed.every_id()
 
     def _changed(self, before: "Seen") -> Parts:
         changed = Parts()
@@ -66,10 +65,13 @@ class Seen:
         changed.ids.update(_others(before._literals, self._literals.items()))
         for edge in Edge:
             old, new = (one._edges.get(edge, ([], [])) for one in (before, self))
-            if old[0] != new[0]:
-                changed.forwards[edge].update(_others(old[0], new[0]))
-            if old[1] != new[1]:
-                changed.backwards[edge].update(_others(old[1], new[1]))
+            for parts, ends, now in zip(
+                (changed.forwards, changed.backwards), old, new, strict=True
+            ):
+                found = [] if ends == now else _others(ends, now)
+                found += _beside(changed.ids, ends)
+                if found:
+                    parts[edge] = set(found)
         return changed
 
     def is_of(self, graph: Graph) -> bool:
@@ -79,25 +81,14 @@ class Seen:
     def known(self, reader: str, given: object) -> _Made | None:
         """What was made of the graph before, if all that it was made of is as it was."""
         found = self._before.get(reader)
-        if found is None or found.given != given or self._is_changed(found.asked):
+        if found is None or found.given != given or self.changed.meet(found.asked):
             return None
         self._made[reader] = found
         return found
 
-    def _is_changed(self, asked: Parts) -> bool:
-        is_near = not self._near.isdisjoint(asked.ids)
-        return is_near and self.changed.meet(asked)
-
     def keep(self, reader: str, given: object, noting: Noting, value: object) -> None:
         """Remember what the reader made of the elements that were noted."""
-        literals = tuple(self._asked(reader, noting))
-        self._made[reader] = _Made(given, noting.asked, literals, value)
-
-    def _asked(self, reader: str, noting: Noting) -> Iterator[Value]:
-        for id in noting.asked.ids & self._literals.keys():
-            for value in self._literals[id]:
-                if noting.reads is not None and reader in noting.reads.readers[value]:
-                    yield value
+        self._made[reader] = _Made(given, noting.asked, tuple(noting.literals), value)
 
 
 _LAST: dict[str, Seen | None] = {}
@@ -187,3 +178,8 @@ def _others(
     """The keys that have another value, or are in one of both only."""
     known = dict(old)
     return [*(key for key, value in new if known.pop(key, None) != value), *known]
+
+
+def _beside(ids: set[str], ends: Ends) -> list[str]:
+    """Elements that have a neighbour among these."""
+    return [id for id, near in ends if not ids.isdisjoint(near)]
