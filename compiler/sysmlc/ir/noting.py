@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Subject
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import Index
+from sysmlc.ir.neighbours import Index, every, first
 from sysmlc.ir.reads import Value
 from sysmlc.ir.reference import End
 
@@ -88,11 +88,11 @@ class Noting(Graph):
 
     def owned(self, element: Element) -> list[Element]:
         self.asked.forwards[_OWNS].add(element.id)
-        return super().owned(element)
+        return every(self._owned, element.id)
 
     def targets(self, element: Element, edge: Edge) -> list[Element]:
         self.asked.forwards[edge].add(element.id)
-        return super().targets(element, edge)
+        return every(self._out[edge], element.id)
 
     def sources(self, element: Element, edge: Edge) -> list[Element]:
         self.asked.backwards[edge].add(element.id)
@@ -100,7 +100,7 @@ class Noting(Graph):
 
     def target(self, element: Element, edge: Edge) -> Element | None:
         self.asked.forwards[edge].add(element.id)
-        return super().target(element, edge)
+        return first(self._out[edge], element.id)
 
     def source(self, element: Element, edge: Edge) -> Element | None:
         self.asked.backwards[edge].add(element.id)
