@@ -16,7 +16,7 @@ from functools import partial
 
 import pytest
 
-from sysmlc.cli import settling
+from sysmlc.cli import session, settling
 from sysmlc.cli.session import Settings
 from sysmlc.cli.watching import Watch
 
@@ -320,8 +320,47 @@ def test_what_was_compiled_is_let_go(tmp_path, monkeypatch):
     for number in range(3):
         path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
         watched.build()
+    watched.rest()
     gc.unfreeze()
     assert gc.collect() < 50
+
+
+def test_what_many_saves_without_a_pause_left_is_let_go(tmp_path, monkeypatch):
+    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "cell.sysml"
+    path.write_text("package P;")
+    watched = Watch((path,), tmp_path / "out", Settings(), 0)
+    for number in range(8):
+        path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
+        watched.build()
+    gc.unfreeze()
+    assert gc.collect() < 50
+
+
+def test_what_the_cache_knew_is_compiled_while_nothing_is_saved(tmp_path, monkeypatch):
+    """So the first edit is compiled as fast as the next ones: what it cannot change is known."""
+    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "cell.sysml"
+    path.write_text("package P { part def Cell; }")
+    Watch((path,), tmp_path / "out", Settings(), 0).build()
+    compiled = []
+    monkeypatch.setattr(session, "_compile", spied(session._compile, compiled))
+    watched = Watch((path,), tmp_path / "out", Settings(), 0)
+    watched.build()
+    assert compiled == []
+    watched.rest()
+    watched.rest()
+    assert compiled == [(path,)]
+
+
+def spied(real, calls):
+    """A compilation that is noted with its inputs."""
+
+    def compiling(request, *rest):
+        calls.append(request.inputs)
+        return real(request, *rest)
+
+    return compiling
 
 
 def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):

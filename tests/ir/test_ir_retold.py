@@ -27,6 +27,7 @@ Make = Callable[[Graph, Sink], object]
 @pytest.fixture(autouse=True)
 def nothing_is_remembered(monkeypatch):
     monkeypatch.setattr(seen, "_LAST", {})
+    monkeypatch.setattr(seen, "_stays", False)
 
 
 def graph_of(text: str) -> Graph:
@@ -246,6 +247,13 @@ def test_nothing_is_noted_of_the_first_graph_of_a_process():
     for graph in graphs:
         seen.see_again(graph, rows(graph))
     assert [graph.seen is None for graph in graphs] == [True, False, False]
+
+
+def test_a_process_that_stays_remembers_the_first_graph_too():
+    seen.stay()
+    graph = clean_graph_of(PLANT)
+    seen.see_again(graph, rows(graph))
+    assert graph.seen is not None
 
 
 def test_work_that_nobody_asked_for_is_forgotten():

@@ -170,35 +170,38 @@ def outcome_of(
 
     Without ``has_files`` the findings are enough.
     """
-    found, keep = unkept(unit, config, settings, has_files)
+    found, keep, _ = unkept(unit, config, settings, has_files)
     keep()
     return found
 
 
 def unkept(
     unit: Unit, config: "Config", settings: Settings, has_files: bool = True
-) -> "tuple[Outcome, Keep]":
-    """The same, and what puts it into the cache if it is not there: outputs need not wait."""
+) -> "tuple[Outcome, Keep, bool]":
+    """The same, what puts it into the cache, for which outputs need not wait, and if it is new.
+
+    What is not new was there, or was made of something that was there.
+    """
     from sysmlc.driver import STILL, depends_on, keep, kept, open_unit, outcome
 
     request = _request(unit.files, config, settings)
     store = request.cache
     if store is None:
         made = _compile(_with_backends(request, unit.emit), settings)
-        return outcome(made, has_files), _nothing
+        return outcome(made, has_files), _nothing, True
     opened = open_unit(request)
     on = depends_on(opened, request, unit.emit, has_files)
     known = kept(store, on, opened, request)
     if known is not None:
         found, recorded = known
         if recorded is None:
-            return found, _nothing
-        return found, lambda: keep(store, on, opened, found, STILL, recorded)
+            return found, _nothing, False
+        return found, lambda: keep(store, on, opened, found, STILL, recorded), False
     request = _with_backends(request, unit.emit)
     made = _compile(request, settings, opened)
     found = outcome(made, has_files)
     names = [backend.name for backend in request.backends]
-    return found, lambda: keep(store, on, opened, found, names, made.recorded())
+    return found, lambda: keep(store, on, opened, found, names, made.recorded()), True
 
 
 def _nothing() -> None:

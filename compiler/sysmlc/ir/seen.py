@@ -96,6 +96,13 @@ _LAST: dict[str, Seen | None] = {}
 for one of which nothing was noted.
 """
 _UNITS = 8
+_stays = False
+
+
+def stay() -> None:
+    """From now on remember the first graph of a unit, too: this process will see it edited."""
+    global _stays
+    _stays = True
 
 
 def see(graph: Graph, rows: Rows) -> None:
@@ -113,12 +120,12 @@ def see(graph: Graph, rows: Rows) -> None:
 
 
 def see_again(graph: Graph, rows: Rows) -> None:
-    """Begin to remember, unless it is the first graph of its unit.
+    """Begin to remember, unless it is the first graph of its unit in a process that may end then.
 
     Most processes compile a unit once, and to note what is asked for takes 4 % of that.
     """
     unit = next(iter(graph)).id
-    if unit in _LAST:
+    if _stays or unit in _LAST:
         see(graph, rows)
     else:
         _keep(unit, None)
