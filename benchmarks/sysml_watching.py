@@ -38,7 +38,7 @@ class Watched:
         """Wait for the line that ends a rebuild; the time by a clock."""
         assert self._process.stdout is not None
         for line in self._process.stdout:
-            if line.endswith(("changed\n", "the model has errors\n")):
+            if line.endswith(("changed\n", "errors\n")):
                 break
         return time.monotonic()
 
@@ -55,7 +55,7 @@ class Watched:
 def watching(unit: Path, folder: Path) -> Iterator[Watched]:
     """``sysmlc watch`` of a unit, built once."""
     script = str(Path(sysconfig.get_path("scripts")) / "sysmlc")
-    command = [script, "watch", str(unit), "-o", str(folder / "watched"), "--settle", "0"]
+    command = [script, "watch", str(unit), "-o", str(folder / "watched"), "--keep-going"]
     environment = {**os.environ, "SYSMLC_CACHE": str(folder / "watch-cache")}
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment, text=True

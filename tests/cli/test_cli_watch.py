@@ -311,6 +311,25 @@ class Clock:
             del self._saves[0]
 
 
+CELL = """package Cells {{ part def Cell {{ part {0} : Robot; }} part def Robot; }}
+package Lines {{ part def Line {{ part cell : {1}; }} }}
+"""
+
+
+def test_who_keeps_going_gets_what_no_error_concerns(tmp_path, capsys):
+    path, drawn = tmp_path / "cell.sysml", tmp_path / "out" / "diagrams"
+    settings = Settings(emit=("plantuml",), has_cache=False)
+    watched = Watch((path,), tmp_path / "out", settings, 0, keep_going=True)
+    path.write_text(CELL.format("arm", "Cells::Cell"))
+    watched.build()
+    assert {one.name for one in drawn.iterdir()} == {"Cells.bdd.puml", "Lines.bdd.puml"}
+    path.write_text(CELL.format("gripper", "Cells::Nowhere"))
+    watched.build()
+    assert [one.name for one in drawn.iterdir()] == ["Cells.bdd.puml"]
+    assert "gripper" in (drawn / "Cells.bdd.puml").read_text()
+    assert "1 withheld because of errors" in capsys.readouterr().out
+
+
 def test_what_was_compiled_is_let_go(tmp_path, monkeypatch):
     """Front ends freeze what they made, so that no collection looks at it later."""
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))

@@ -35,6 +35,11 @@ Example:
     help="How long files must rest before they are compiled; new findings wait 1.5 s, or five "
     "times as long.",
 )
+@click.option(
+    "--keep-going",
+    is_flag=True,
+    help="While the model has errors, write the files that they do not concern.",
+)
 @options.emitting
 @options.reporting
 @options.reading
@@ -43,17 +48,18 @@ def command(
     models: tuple[Path, ...],
     output: Path | None,
     settle: int,
+    keep_going: bool,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... now and at every save; keep the last good outputs.
 
     Files that are still being saved are waited for. While the model has errors nothing in the
-    output folder changes.
+    output folder changes, but with --keep-going.
     """
     from sysmlc.cli import session
     from sysmlc.cli.watching import Watch
 
-    watched = Watch(models, output, session.Settings(**given), settle / 1000)
+    watched = Watch(models, output, session.Settings(**given), settle / 1000, keep_going)
     saves = _saves(watched.folders())
     watched.build()
     for saved in saves:

@@ -41,10 +41,15 @@ class Watch:
     """What is watched, and how it looked when it was compiled last."""
 
     def __init__(
-        self, models: tuple[Path, ...], output: Path | None, settings: "Settings", settle: float
+        self,
+        models: tuple[Path, ...],
+        output: Path | None,
+        settings: "Settings",
+        settle: float,
+        keep_going: bool = False,
     ) -> None:
         self._models, self._output, self._settings = models, output, settings
-        self._settle = settle
+        self._settle, self._keep_going = settle, keep_going
         self._patience = max(_PATIENCE, _PATIENT * settle) if settle else 0.0
         config, files = _unit_files(models, settings)
         self._config = config.folder
@@ -95,7 +100,7 @@ class Watch:
         self._built = {path: self._built.get(path) for path in self._paths}
         # Whoever saved waits for the outputs, and not for what a later process finds in the cache.
         for one in made:
-            publish(one, self._settings)
+            publish(one, self._settings, self._keep_going)
         for one in made:
             one.keep()
         if any(one.is_new for one in made):
@@ -190,21 +195,26 @@ def prepare(made: "Iterable[Compiled]", models: tuple[Path, ...], settings: "Set
             session.compile_unit(one.unit.files, config, settings, one.unit.emit)
 
 
-def publish(made: Compiled, settings: "Settings") -> bool:
-    """Show the findings; write the outputs unless there are errors."""
+def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> bool:
+    """Show the findings; write the outputs unless there are errors.
+
+    Who keeps going gets those that no error concerns, as from ``build``.
+    """
     from sysmlc.cli import session
     from sysmlc.driver import OutputError, apply, plan
 
-    folder = made.unit.output
+    folder, code = made.unit.output, made.outcome.exit_code()
     session.report([made.outcome], settings)
-    if made.outcome.exit_code():
+    if code > 1 or (code and not keep_going):
         click.echo(f"{folder}: kept as it is, the model has errors")
         return False
     try:
         changed = apply(plan(made.outcome, folder))
     except OutputError as problem:
         session.fail(str(problem))
-    click.echo(f"{folder}: {len(changed)} changed")
+    withheld = len(made.outcome.withheld)
+    held = f", {withheld} withheld because of errors" if withheld else ""
+    click.echo(f"{folder}: {len(changed)} changed{held}")
     return True
 
 
