@@ -372,6 +372,38 @@ def test_what_the_cache_knew_is_compiled_while_nothing_is_saved(tmp_path, monkey
     assert compiled == [(path,)]
 
 
+def test_what_is_saved_during_the_first_compilation_is_not_lost(tmp_path, monkeypatch):
+    """What a folder holds is not known before it was read: nobody looked at the files then."""
+    path, more = tmp_path / "a.sysml", tmp_path / "b.sysml"
+    path.write_text("package A;")
+    saves = {path: "package Edited;", more: "package More;"}
+    real = session.unkept
+
+    def saving(*args):
+        made = real(*args)
+        while saves:
+            path, text = saves.popitem()
+            path.write_text(text)
+        return made
+
+    monkeypatch.setattr(session, "unkept", saving)
+    settings = Settings(emit=("graph",), has_cache=False)
+    Watch((tmp_path,), tmp_path / "out", settings, 0).build()
+    written = (tmp_path / "out" / "graph.json").read_text()
+    assert '"Edited"' in written
+    assert '"More"' in written
+
+
+def test_a_file_that_came_before_the_system_told_of_saves_is_not_lost(tmp_path):
+    (tmp_path / "a.sysml").write_text("package A;")
+    settings = Settings(emit=("graph",), has_cache=False)
+    watched = Watch((tmp_path,), tmp_path / "out", settings, 0)
+    watched.build()
+    (tmp_path / "b.sysml").write_text("package More;")
+    watched.build_if_changed(())
+    assert '"More"' in (tmp_path / "out" / "graph.json").read_text()
+
+
 def spied(real, calls):
     """A compilation that is noted with its inputs."""
 

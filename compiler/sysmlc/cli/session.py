@@ -11,7 +11,7 @@ import click
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
-    from sysmlc.backends.base import Backend
+    from sysmlc.backends.base import Backend, InputFile
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
@@ -202,6 +202,13 @@ def unkept(
     found = outcome(made, has_files)
     names = [backend.name for backend in request.backends]
     return found, lambda: keep(store, on, opened, found, names, made.recorded()), True
+
+
+def inputs_of(unit: Unit, config: "Config", settings: Settings) -> "tuple[InputFile, ...]":
+    """What a compilation of the unit would read now."""
+    from sysmlc.driver import open_unit
+
+    return open_unit(_request(unit.files, config, settings)).inputs()
 
 
 def _nothing() -> None:

@@ -65,6 +65,8 @@ class Watch:
         """What the cache knew, until it is compiled; nothing once this process has compiled."""
         self._left = 0
         """Compilations whose graphs and trees are still in memory."""
+        self._early: Sequence[Compiled] = ()
+        """What was compiled before anybody told of saves."""
         seen.stay()
 
     def folders(self) -> list[Path]:
@@ -78,22 +80,26 @@ class Watch:
         return sorted({*found, *([self._config] if self._config else [])})
 
     def build_if_changed(self, saved: Iterable[Path]) -> None:
-        """Compile when one of the inputs, or of the files saved now, is not as it was."""
+        """Compile when one of the inputs, or of the files saved now, is not as it was.
+
+        The first time it is looked for files that came before the system told of saves.
+        """
         from sysmlc.cli.settling import stamps
 
         self._paths |= dict.fromkeys(saved)
-        now = stamps(self._paths)
-        if now != self._built:
-            self._built = now
-            with suppress(SystemExit):
+        now, (early, self._early) = stamps(self._paths), (self._early, ())
+        with suppress(SystemExit):
+            if now != self._built or not self._is_of_now(early):
+                self._built = now
                 self.build()
-        else:
-            with suppress(SystemExit):
+            else:
                 self.rest()
 
     def build(self) -> None:
         """Compile what has come to rest, show it, and write it when it has no errors."""
+        is_first = not self._built
         made = self._settled()
+        self._early = made if is_first else ()
         for path, stamp in list(self._built.items()):
             if stamp is None and path not in self._named:
                 del self._paths[path]
@@ -147,6 +153,8 @@ class Watch:
             new = dict.fromkeys(path for one in made for path in _read_by(one.outcome))
             self._paths |= new
             self._built = {**settling.stamps(new), **before}
+            if not new.keys() <= before.keys() and not self._is_of_now(made):
+                continue
             told, blank = _findings(made), settling.blank(before)
             is_known = told <= self._told and blank <= self._blank
             if is_known or not settling.is_fresh(before, self._patience):
@@ -155,6 +163,17 @@ class Watch:
                 break
         self._told, self._blank = _findings(made), settling.blank(before)
         return made
+
+    def _is_of_now(self, made: "Sequence[Compiled]") -> bool:
+        """Whether these are made of what the inputs are now, new files included."""
+        from sysmlc.cli import session
+
+        if not made:
+            return True
+        config = session.load_config(self._models, self._settings.config)
+        units = session.units(self._models, config, self._output, self._settings.emit)
+        now = [session.inputs_of(one, config, self._settings) for one in units]
+        return now == [one.outcome.inputs for one in made]
 
     def _rest(self) -> float:
         """How long files must rest: faults of a configuration are told at once, when it is read."""

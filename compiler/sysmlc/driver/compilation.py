@@ -117,6 +117,15 @@ class Opened:
     drawings: tuple[Source, ...] = ()
     """What lies beside the inputs and holds the diagrams of authors, when they are wanted."""
 
+    def inputs(self) -> tuple[InputFile, ...]:
+        """All that was read, as the outputs name it."""
+        models = [(one.source, one.frontend.name) for one in self.reading.recognised]
+        laid = [(one.source, "overlay") for one in self.reading.overlays]
+        drawn = [(one, "diagrams") for one in self.drawings]
+        return tuple(
+            InputFile(one.name, one.sha256, what) for one, what in (*models, *laid, *drawn)
+        )
+
 
 def open_unit(request: Request) -> Opened:
     """Read the inputs of a request, and what they refer to; parse nothing."""
@@ -164,16 +173,11 @@ class _Run:
         self._root = opened.root
         self._reading = opened.reading
         self._drawings = opened.drawings
+        self._inputs = opened.inputs()
         self._done = 0
 
     def compilation(self) -> Compilation:
-        reading = self._reading
-        inputs = tuple(
-            InputFile(r.source.name, r.source.sha256, r.frontend.name) for r in reading.recognised
-        )
-        beside = [(laid.source, "overlay") for laid in reading.overlays]
-        beside += [(drawing, "diagrams") for drawing in self._drawings]
-        inputs += tuple(InputFile(one.name, one.sha256, what) for one, what in beside)
+        reading, inputs = self._reading, self._inputs
         broken = not self._read(reading)
         self._validate(reading)
         store_all(reading.overlays, self._graph)
