@@ -1,6 +1,7 @@
 """A unit that a process keeps is after each edit what a new process makes of it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from random import Random
 
 import pytest
@@ -34,11 +35,18 @@ class Compiled:
         self.model = kept.model
         resolve_all(self.model, self.sink)
         check(self.model, self.sink)
-        kept.asks = self.model.asks()
         self.kept = None if is_faulty else kept
 
     def findings(self) -> list[object]:
         return [(one.rule.code, one.message, one.subject, one.help) for one in self.sink]
+
+    def own(self) -> set[Node]:
+        return {node for one in self.model.documents for node in one.root.walk()}
+
+    def holders(self) -> list[object]:
+        """What remembers something about nodes."""
+        known = [self.model, self.model.lookup, self.model._types]
+        return known if self.kept is None else [*known, self.kept]
 
     def facts(self) -> list[object]:
         """All that the model says of its nodes; nodes by their places."""
@@ -61,6 +69,17 @@ class Compiled:
             )
             for node in list(places)
         ]
+
+
+def _nodes(found: object) -> Iterator[Node]:
+    """The nodes in what is remembered."""
+    if isinstance(found, Node | Document):
+        yield found if isinstance(found, Node) else found.root
+    elif isinstance(found, Mapping):
+        yield from _nodes([*found.keys(), *found.values()])
+    elif isinstance(found, list | tuple | AbstractSet):
+        for one in found:
+            yield from _nodes(one)
 
 
 _OTHERS = ("owner", "members", "relations")
@@ -200,6 +219,41 @@ def test_what_may_help_with_a_lost_name_is_looked_for_in_the_new_texts():
 )
 def test_nothing_is_kept_where_root_members_have_other_names(name, old, new):
     assert not after([(name, old, new)]).is_renewed
+
+
+def test_what_may_help_with_a_lost_name_is_told_whatever_was_resolved_before():
+    """An import behind the name led nowhere yet in a new process."""
+    texts = {
+        "a.sysml": "package Alpha { part foo; }",
+        "b.sysml": "package Beta { part def X { part :>> foo; private import Alpha; } part y; }",
+    }
+    made = after([("b.sysml", "part y", "part z")], texts)
+    assert [one.help for one in made.sink] == ["'foo' is in 'Alpha': import Alpha::*, not it alone"]
+
+
+def test_quotes_may_say_what_a_tree_does_not():
+    texts = {
+        "a.sysml": "package Alpha { part def P; }",
+        "b.sysml": "package Beta { package '$' { package Alpha { part def P; } } "
+        "part x : '$'::Alpha::P; part y; }",
+    }
+    assert after([("b.sysml", "'$'::Alpha", "$  ::Alpha")], texts).is_renewed
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_nothing_is_remembered_of_nodes_that_are_no_more(seed):
+    random, kept, gone = Random(seed), None, set()
+    unit = {**UNIT, "e.sysml": "package Notes { metadata def M { attribute a; } part p { @M; } }"}
+    texts = unit
+    for _ in range(12):
+        made = Compiled(texts, library(), kept)
+        if kept is not made.kept:
+            gone = set()
+        kept, own = made.kept, made.own()
+        gone -= own
+        assert gone.isdisjoint(_nodes([vars(one) for one in made.holders()]))
+        gone |= own
+        texts = edited(unit, random)
 
 
 def test_nothing_is_kept_where_the_library_speaks_of_a_package_of_the_unit():

@@ -15,6 +15,8 @@ _ITEMS = TYPES - kinds_of("MetadataFeature") - kinds_of("Multiplicity") | kinds_
 _IMPORTS = kinds_of("Import")
 _EVERYTHING = "**"
 """What an import mentions that may lead from one to the other without a name."""
+_GLOBAL = "$"
+"""The global scope, or a name in quotes: the tree is the same, the text says which it is."""
 
 
 def names_of(member: Node) -> set[str]:
@@ -58,7 +60,7 @@ class Changes:
     """
 
     def __init__(self, lookup: Lookup, mentions: dict[Node, frozenset[str]]) -> None:
-        self.names = {_EVERYTHING}
+        self.names = {_EVERYTHING, _GLOBAL}
         self.stale: set[Node] = set()
         """Nodes that are no more, and those that now own others."""
         self._lookup = lookup

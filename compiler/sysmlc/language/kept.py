@@ -28,14 +28,12 @@ Place = tuple[str, int]
 class Kept:
     """What is known of a unit of which all references are resolved and checked.
 
-    ``asked`` are places of literals that somebody asked for, who does not ask again; ``asks`` are
-    names of packages that no text says, and that are asked for in every unit.
+    ``asked`` are places of literals that somebody asked for, who does not ask again.
     """
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.asked: frozenset[Place] = frozenset()
-        self.asks: set[str] = set()
         self._mentions: dict[Node, frozenset[str]] = {}
         self._apart: set[Document] = set()
         """Files of the library that do not speak of the unit."""
@@ -76,7 +74,7 @@ class Kept:
             return False
         found = [(one.name, one.short) for node in roots for one in node.members]
         names = {one for pair in found for one in pair if one is not None}
-        if not names.isdisjoint(self.asks) or not all(map(_is_plain, names)):
+        if not names.isdisjoint(self.model.asks()) or not all(map(_is_plain, names)):
             return False
         for one in self.model.library.loaded():
             if one not in self._apart and _mentions(one.text, names):
@@ -113,5 +111,5 @@ def take() -> Kept | None:
 
 def keep(kept: Kept, asked: frozenset[Place]) -> None:
     """Keep a unit, with the places of literals that were asked for in the whole compilation."""
-    kept.asked, kept.asks = asked, kept.model.asks()
+    kept.asked = asked
     _LAST[:] = [kept]

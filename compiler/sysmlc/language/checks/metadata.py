@@ -1,7 +1,6 @@
 """Metadata says what its definition has, about what its definition is for (KerML 8.3.4.12)."""
 
 from collections.abc import Iterable, Iterator
-from weakref import WeakKeyDictionary
 
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
@@ -33,8 +32,6 @@ OTHER_FEATURE = error(
 
 _METADATA = kinds_of("MetadataFeature")
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
-_ALLOWED: WeakKeyDictionary[Model, dict[tuple[Node, ...], list[str]]] = WeakKeyDictionary()
-"""What definitions of metadata are for, found once for all that is annotated with them."""
 
 
 def check_type(model: Model, node: Node) -> Iterator[Found]:
@@ -68,7 +65,7 @@ def _annotated(node: Node) -> list[Node]:
 
 def _allowed(model: Model, node: Node) -> list[str]:
     """Metaclasses that ``annotatedElement`` is redefined or subset to be; empty for any."""
-    kept = _ALLOWED.setdefault(model, {})
+    kept = model.annotating
     definitions = tuple(model.lookup.all_generals(node))
     if definitions not in kept:
         kept[definitions] = _allowed_in(model, model.supers(node)[1:])

@@ -126,7 +126,9 @@ def _not_imported(name: str, package: Node, lookup: Lookup, start: contexts.Star
     """How to come by a name of a package; one imported itself does not bring its members."""
     for scope in _around(start):
         for one in lookup.imports(scope):
-            if any(r.reference.target is package for r in one.relations) and one.kind in _MEMBERS:
+            if one.kind in _MEMBERS and any(
+                lookup.target(one, relation) is package for relation in one.relations
+            ):
                 return f"'{name}' is in '{package.name}': import {package.name}::*, not it alone"
     return f"'{name}' is in '{package.name}', which is not imported here"
 

@@ -42,6 +42,8 @@ class Model:
         """What ``typed`` found out about features, once all names are resolved."""
         self.by_types_above: dict[tuple[Node, ...], set[Node]] = {}
         """The same about all that is above several generals."""
+        self.annotating: dict[tuple[Node, ...], list[str]] = {}
+        """What metadata of several definitions is for, as the checks found out."""
         self.sound: set[Node] = set()
         """Nodes in which the checks found nothing."""
 
