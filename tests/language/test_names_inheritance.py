@@ -160,6 +160,9 @@ def test_elements_that_specialise_themselves_are_told_and_nothing_hangs():
         part def Door :> Gate { part b :> a; }
         part c : Door { part :>> b; part :>> a; }
     """) == ["2: 'Gate' specialises itself through 'Door': remove one specialisation of the circle"]
+    itself = "'Gate' specialises itself: remove one specialisation of the circle"
+    assert told("part def Gate :> Gate; part gate : Gate;") == [f"1: {itself}"]
+    assert told("part gate : Gate; part def Gate :> Gate;") == [f"1: {itself}"]
     assert (
         told("""
         part def Gate :> Door { part a; }

@@ -81,9 +81,9 @@ class Generals(ABC):
                     found.append(target)
         if self.cuts == before:
             self._generals[node] = found
+            self._pointed.update(found)
             if node in self._pointed:
                 self._find_cycle(node)
-            self._pointed.update(found)
         return found
 
     def _find_cycle(self, node: Node) -> None:
