@@ -142,8 +142,8 @@ def assert_it_comes_to_the_same() -> None:
     assert_is_as_from_a_clean_build()
 
 
-def assert_a_new_process_comes_to_the_same() -> None:
-    command = [sys.executable, "-m", "sysmlc", "unit", "-o", "new", "--no-cache"]
+def assert_a_new_process_comes_to_the_same(*options: str) -> None:
+    command = [sys.executable, "-m", "sysmlc", "unit", "-o", "new", "--no-cache", *options]
     subprocess.run([*command, "--format", "json"], check=False, capture_output=True)
     assert files("new") == files("out")
 
@@ -197,3 +197,17 @@ def test_templates_of_the_users_are_read_again(used_again):
         Path("unit/cell.sysml").write_text(CELL.replace("grip", f"grip{number}"))
         assert_is_as_from_a_clean_build("--templates", "mine")
         assert Path("out/contracts/Cell.Wait.md").read_text() == f"Version {number}"
+
+
+def test_templates_of_the_users_that_come_and_go(used_again):
+    """Ours was taken where there was none: it must not stay when one comes."""
+    mine = [Path("mine", name) for name in ("plantuml/act.puml.j2", "act.puml.j2", "_frame.j2")]
+    mine[0].parent.mkdir(parents=True)
+    for number, path in enumerate((None, *mine, *mine)):
+        if path is not None and path.exists():
+            path.unlink()
+        elif path is not None:
+            path.write_text(f"{path} {number}")
+        Path("unit/cell.sysml").write_text(CELL.replace("grip", f"grip{number}"))
+        sysmlc("unit", "-o", "out", "--templates", "mine")
+        assert_a_new_process_comes_to_the_same("--templates", "mine")
