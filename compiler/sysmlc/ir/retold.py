@@ -6,7 +6,8 @@ As in ``seen``, but findings are allowed, and some questions about more than sin
 from collections.abc import Callable
 from typing import TypeVar, cast
 
-from sysmlc.diagnostics import Rule, Sink, Subject
+from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics.relay import Relay, Report
 from sysmlc.ir.asking import Asking, Question
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.reads import during
@@ -19,22 +20,11 @@ _PLAIN = (str, int, float)
 
 
 @dataclass(frozen=True, slots=True)
-class _Finding:
-    """What was reported about an element."""
-
-    rule: Rule
-    id: str
-    notes: tuple[str, ...]
-    help: str
-    facts: dict[str, object]
-
-
-@dataclass(frozen=True, slots=True)
 class _Work:
     """What came of someone's work, what was reported, and the answers that it needed."""
 
     result: object
-    findings: tuple[_Finding, ...]
+    findings: tuple[Report, ...]
     answers: tuple[tuple[Question, object], ...]
 
     def is_of(self, graph: Graph) -> bool:
@@ -44,39 +34,14 @@ class _Work:
     def tell(self, graph: Graph, sink: Sink) -> None:
         """Report again, at the places where the elements are now."""
         for one in self.findings:
-            subject = graph.subject(graph[one.id])
-            sink.report(one.rule, subject, notes=one.notes, help=one.help, **one.facts)
+            one.tell(sink, graph.subject(graph[one.subject.id]))
 
 
-class _Hearing(Sink):
-    """Hands on what is reported, and keeps it."""
-
-    def __init__(self, sink: Sink) -> None:
-        super().__init__()
-        self._sink = sink
-        self._told: list[tuple[Subject, _Finding]] = []
-
-    def report(
-        self,
-        rule: Rule,
-        subject: Subject,
-        *,
-        notes: tuple[str, ...] = (),
-        help: str = "",
-        **facts: object,
-    ) -> None:
-        self._told.append((subject, _Finding(rule, subject.id, notes, help, facts)))
-        self._sink.report(rule, subject, notes=notes, help=help, **facts)
-
-    def findings(self, graph: Graph) -> tuple[_Finding, ...] | None:
-        """What was reported; None unless all is about elements, in values that nobody changes."""
-        is_clear = all(
-            one.id in graph
-            and subject == graph.subject(graph[one.id])
-            and all(isinstance(fact, _PLAIN) for fact in one.facts.values())
-            for subject, one in self._told
-        )
-        return tuple(one for _, one in self._told) if is_clear else None
+def _can_be_told_again(graph: Graph, one: Report) -> bool:
+    """Whether it is about an element, in values that nobody changes."""
+    id = one.subject.id
+    is_about_element = id in graph and one.subject == graph.subject(graph[id])
+    return is_about_element and all(isinstance(fact, _PLAIN) for fact in one.facts.values())
 
 
 def retold(
@@ -104,10 +69,10 @@ def retold(
 def _made(
     graph: Graph, seen: Seen, sink: Sink, given: object, make: Callable[[Graph, Sink], _T]
 ) -> _T:
-    asking, hearing = Asking(graph), _Hearing(sink)
-    result = make(asking, hearing)
-    findings = hearing.findings(graph)
-    if asking.is_partial and graph.reads is not None and findings is not None:
-        work = _Work(result, findings, asking.answers())
+    asking, relay = Asking(graph), Relay(sink)
+    result = make(asking, relay)
+    is_clear = all(_can_be_told_again(graph, one) for one in relay.reports)
+    if asking.is_partial and graph.reads is not None and is_clear:
+        work = _Work(result, tuple(relay.reports), asking.answers())
         seen.keep(graph.reads.reader, given, asking, work)
     return result
