@@ -3,19 +3,15 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.passes.classify import vocabulary
 
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
 
-LEVELS = {
-    "Recipe": "recipe",
-    "Task": "task",
-    "MachineService": "machine service",
-    "InfrastructureService": "infrastructure service",
-    "MachineFunction": "machine function",
-    "Machine": "machine",
-    "Material": "material",
-}
+_OF_PARTS = ("capability", "opc ua call")
+"""What else the profile marks: no levels, but what services and machine functions have."""
+LEVELS = {name: level for name, level in vocabulary.LEVELS.items() if level not in _OF_PARTS}
+"""Level of the recipe, by stereotype of the profile."""
 
 _FOLLOWED = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edge.METHOD)
 """Edges along which an element has the level of another one."""
