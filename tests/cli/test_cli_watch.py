@@ -330,28 +330,21 @@ def test_who_keeps_going_gets_what_no_error_concerns(tmp_path, capsys):
     assert "1 withheld because of errors" in capsys.readouterr().out
 
 
-def test_what_was_compiled_is_let_go(tmp_path, monkeypatch):
-    """Front ends freeze what they made, so that no collection looks at it later."""
-    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
-    path = tmp_path / "cell.sysml"
-    path.write_text("package P;")
-    watched = Watch((path,), tmp_path / "out", Settings(), 0.01)
-    for number in range(3):
-        path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
-        watched.build()
-    watched.rest()
-    gc.unfreeze()
-    assert gc.collect() < 50
+@pytest.mark.parametrize(("saves", "pauses"), [(3, 1), (8, 0)])
+def test_what_was_compiled_is_let_go(saves, pauses, tmp_path, monkeypatch):
+    """Front ends freeze what they made, so that no collection looks at it later.
 
-
-def test_what_many_saves_without_a_pause_left_is_let_go(tmp_path, monkeypatch):
+    In a pause it is let go, and after many saves without one.
+    """
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
     path = tmp_path / "cell.sysml"
     path.write_text("package P;")
     watched = Watch((path,), tmp_path / "out", Settings(), 0)
-    for number in range(8):
+    for number in range(saves):
         path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
         watched.build()
+    for _ in range(pauses):
+        watched.rest()
     gc.unfreeze()
     assert gc.collect() < 50
 

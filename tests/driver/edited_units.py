@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from sysmlc import cache, resources
 from sysmlc.cli import group
 from sysmlc.driver import compilation
+from sysmlc.ir import seen
 from sysmlc.language import library
 
 
@@ -32,6 +33,21 @@ def compiled_units(
 
     monkeypatch.setattr(compilation._Run, "compilation", counted)
     return happened
+
+
+def work_used_again(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The readers whose work a process that stays uses again, from now on and as they come."""
+    monkeypatch.setattr(seen, "_LAST", {})
+    readers: list[str] = []
+    real = seen.Seen.known
+
+    def known(self: seen.Seen, reader: str, given: object) -> object:
+        found = real(self, reader, given)
+        readers.extend([reader] if found else [])
+        return found
+
+    monkeypatch.setattr(seen.Seen, "known", known)
+    return readers
 
 
 def sysmlc(*arguments: str) -> tuple[int, str, str]:

@@ -8,9 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from edited_units import assert_is_as_from_a_clean_build, compiled_units, files, sysmlc
-
-from sysmlc.ir import seen
+from edited_units import (
+    assert_is_as_from_a_clean_build,
+    compiled_units,
+    files,
+    sysmlc,
+    work_used_again,
+)
 
 CELL = """\
 package Cell {
@@ -123,17 +127,7 @@ def with_an_edit(text: str, chosen: random.Random) -> str:
 def used_again(monkeypatch, tmp_path):
     """A unit of its own; the readers whose work was used again."""
     compiled_units(monkeypatch, tmp_path, {"cell.sysml": CELL, "drives.sysml": DRIVES})
-    monkeypatch.setattr(seen, "_LAST", {})
-    readers: list[str] = []
-    real = seen.Seen.known
-
-    def known(self: seen.Seen, reader: str, given: object) -> object:
-        found = real(self, reader, given)
-        readers.extend([reader] if found else [])
-        return found
-
-    monkeypatch.setattr(seen.Seen, "known", known)
-    return readers
+    return work_used_again(monkeypatch)
 
 
 def assert_it_comes_to_the_same() -> None:

@@ -6,10 +6,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from edited_units import assert_is_as_from_a_clean_build, compiled_units, sysmlc
+from edited_units import assert_is_as_from_a_clean_build, compiled_units, sysmlc, work_used_again
 from test_driver_staying import with_an_edit
 
-from sysmlc.ir import seen
 from sysmlc.recipe.model import FlowGraph, Node
 from sysmlc.recipe.remembered import remembered
 
@@ -20,17 +19,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples/lego-recipe-v2/lego-recipe.sysml
 def used_again(monkeypatch, tmp_path):
     """A unit with a recipe; what was used again."""
     compiled_units(monkeypatch, tmp_path, {"recipe.sysml": EXAMPLE.read_text("utf-8")})
-    monkeypatch.setattr(seen, "_LAST", {})
-    readers: list[str] = []
-    real = seen.Seen.known
-
-    def known(self: seen.Seen, reader: str, given: object) -> object:
-        found = real(self, reader, given)
-        readers.extend([reader] if found else [])
-        return found
-
-    monkeypatch.setattr(seen.Seen, "known", known)
-    return readers
+    return work_used_again(monkeypatch)
 
 
 @pytest.mark.parametrize("seed", range(4))
