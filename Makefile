@@ -3,10 +3,10 @@ PYTHON ?= python3
 MODEL ?= examples/lego-recipe/lego-recipe.uml
 PIP = -m pip --disable-pip-version-check --quiet install
 
-.PHONY: help demo test check format bench wheel clean
+.PHONY: help demo test test-long check format bench wheel clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 demo: .demo/.ready ## compile an example and show what came out (MODEL=... for another)
 	@.demo/bin/sysmlc $(MODEL) -o .demo/out
@@ -19,18 +19,22 @@ demo: .demo/.ready ## compile an example and show what came out (MODEL=... for a
 	@echo
 	@echo "Your own model:  .demo/bin/sysmlc model.uml -o out/    More: .demo/bin/sysmlc --help"
 
-test: .venv/.ready ## everything that continuous integration runs
+test: .venv/.ready ## style, types and all tests but the long ones
 	@.ci/system-packages
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
-	.venv/bin/pytest -n 2
+	.venv/bin/pytest -n 2 -m "not long"
+
+test-long: .venv/.ready ## the long tests: random models, crashes, whole corpus
+	@.ci/system-packages
+	.venv/bin/pytest -n 2 -m long
 
 check: .venv/.ready ## the quick half of 'make test': style, types, tests that are not slow
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
-	.venv/bin/pytest -n 2 -m "not slow"
+	.venv/bin/pytest -n 2 -m "not slow and not long"
 
 format: .venv/.ready ## put the code into its form
 	.venv/bin/ruff check --fix
