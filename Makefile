@@ -3,7 +3,7 @@ PYTHON ?= python3
 MODEL ?= examples/lego-recipe/lego-recipe.uml
 PIP = -m pip --disable-pip-version-check --quiet install
 
-.PHONY: help demo test test-long check format bench wheel clean
+.PHONY: help demo test test-long check format bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -44,9 +44,6 @@ bench: .venv/.ready ## the measurements of benchmarks/
 	@failed=0; for name in startup xmi aml cache; do \
 	  echo "== $$name"; .venv/bin/python benchmarks/$$name.py || failed=1; \
 	done; exit $$failed
-
-wheel: .venv/.ready ## a wheel for this platform with compiled modules, in dist (docs/performance.md)
-	SYSMLC_COMPILED=1 .venv/bin/python -m build --wheel --outdir dist
 
 clean: ## remove the environments and what the tools keep
 	rm -rf .venv .demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
