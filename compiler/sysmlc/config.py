@@ -1,6 +1,6 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import field
 from pathlib import Path
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sysmlc import cache, resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
+from sysmlc.sources import Roots
 from sysmlc.suggest import did_you_mean
 from sysmlc.values import dataclass
 
@@ -50,30 +51,53 @@ class Config:
     models: tuple[ModelUnit, ...] = ()
 
 
-def find(start: Path) -> Path | None:
-    """The nearest ``sysmlc.toml`` from ``start`` upwards, else the nearest ``[tool.sysmlc]``.
+def find_project_root(start: Path) -> Path:
+    """Return the nearest folder from *start* upwards that holds ``sysmlc.toml`` or ``.git``.
 
-    The search ends at the repository root. Without a repository it ends at the working folder
-    when that is above ``start``, else it looks in ``start`` only: a file that happens to lie
-    higher up must not change the outputs.
+    *start* is a model or a folder. Without such a folder the root is *start* itself, or the folder
+    of the model. ``.git`` is a file in worktrees and submodules.
     """
-    folders = list(_upwards(start.resolve()))
-    for folder in folders:
-        if (folder / FILE_NAME).is_file():
-            return folder / FILE_NAME
-    for folder in folders:
-        project = folder / "pyproject.toml"
-        if project.is_file() and _tool_table(_parsed(project, _read(project))) is not None:
-            return project
+    folder = _folder_of(start)
+    for parent in (folder, *folder.parents):
+        if (parent / FILE_NAME).is_file() or (parent / ".git").exists():
+            return parent
+    return folder
+
+
+def find(start: Path) -> Path | None:
+    """Return the configuration file of the project that holds *start*, if it has one.
+
+    ``sysmlc.toml`` of the project root wins; else the nearest ``pyproject.toml`` inside the root
+    that has ``[tool.sysmlc]`` counts. Files above the root are ignored: they belong to others.
+    Raises ConfigError.
+    """
+    root = find_project_root(start)
+    if (root / FILE_NAME).is_file():
+        return _refuse_outside(root / FILE_NAME, root)
+    folder = _folder_of(start)
+    for parent in (folder, *folder.parents):
+        project = parent / "pyproject.toml"
+        if not parent.is_relative_to(root):
+            break
+        if project.is_file():
+            _refuse_outside(project, root)
+            if _tool_table(_parsed(project, _read(project))) is not None:
+                return project
     return None
 
 
-def _upwards(start: Path) -> Iterator[Path]:
-    chain = [start, *start.parents]
-    roots = [folder for folder in chain if (folder / ".git").exists()]
-    here = Path.cwd()
-    last = roots[0] if roots else here if here in chain else start
-    yield from chain[: chain.index(last) + 1]
+def _folder_of(start: Path) -> Path:
+    return start.resolve() if start.is_dir() else start.parent.resolve()
+
+
+def _refuse_outside(file: Path, root: Path) -> Path:
+    """Return *file* unless it is a symbolic link that leads out of *root*."""
+    if not Roots((root,)).allows(file):
+        raise ConfigError(
+            f"{file}: is a link that leads out of the project root; "
+            "replace it by the file, or name the file with --config"
+        )
+    return file
 
 
 def load(file: Path | None) -> Config:
