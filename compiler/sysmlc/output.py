@@ -2,8 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterable
-from json.encoder import encode_basestring
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from sysmlc.values import dataclass
@@ -49,34 +48,23 @@ class Output:
         return [self._artefacts[path] for path in sorted(self._artefacts)]
 
 
-def json_text(value: object, indent: int) -> str:
-    """JSON as ``json.dumps(value, ensure_ascii=False, indent=indent)`` writes it.
+def encode_json(content: object, indent: int = 1) -> str:
+    """Return *content* as the text of a JSON file: indented, with a line feed at the end.
 
-    That function leaves its C code as soon as lines are indented. Keys are texts, and values
-    lists, tuples, mappings, texts, numbers, Booleans or None; TypeError for others.
+    Characters beyond ASCII stay as they are, because all files are UTF-8.
     """
-    return _json(value, "\n", " " * indent)
+    return json.dumps(content, ensure_ascii=False, indent=indent) + "\n"
 
 
-def _json(value: object, line: str, step: str) -> str:
-    if isinstance(value, str):
-        return encode_basestring(value)
-    inner = line + step
-    # Most values are texts: a call for each of them would double the time.
-    if isinstance(value, dict):
-        parts = [
-            f"{encode_basestring(key)}: "
-            f"{encode_basestring(one) if one.__class__ is str else _json(one, inner, step)}"
-            for key, one in value.items()
-        ]
-        return f"{{{inner}{f',{inner}'.join(parts)}{line}}}" if parts else "{}"
-    if isinstance(value, list | tuple):
-        parts = [
-            encode_basestring(one) if one.__class__ is str else _json(one, inner, step)
-            for one in value
-        ]
-        return f"[{inner}{f',{inner}'.join(parts)}{line}]" if parts else "[]"
-    return repr(value) if value.__class__ is int else json.dumps(value)
+def encode_row(content: object) -> str:
+    """Return *content* as JSON on one line, for lists that are too long to be indented."""
+    return json.dumps(content, ensure_ascii=False)
+
+
+def append_members(head: Mapping[str, object], members: Iterable[str]) -> str:
+    """Return a JSON file with the members of *head* and then *members*, which are JSON already."""
+    start = encode_json(head, 2).removesuffix("\n}\n")
+    return ",\n".join((start, *members)) + "\n}\n"
 
 
 def write_if_changed(target: Path, text: str) -> bool:

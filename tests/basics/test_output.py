@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.output import Output, json_text, write_if_changed
+from sysmlc.output import Output, append_members, encode_json, encode_row, write_if_changed
 
 _JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
@@ -55,6 +55,12 @@ def test_two_artefacts_never_share_a_path():
         output.add("a", "")
 
 
-@given(_JSON, st.integers(1, 2))
-def test_json_is_that_of_the_standard_library(value, indent):
-    assert json_text(value, indent) == json.dumps(value, ensure_ascii=False, indent=indent)
+def test_a_json_file_is_indented_and_keeps_characters_beyond_ascii():
+    assert encode_json({"één": [1, None]}) == '{\n "één": [\n  1,\n  null\n ]\n}\n'
+
+
+@given(st.dictionaries(st.text(), _JSON, min_size=1), _JSON)
+def test_members_on_one_line_follow_the_indented_ones(head, row):
+    text = append_members(head, [f'"new row": {encode_row(row)}'])
+    assert json.loads(text) == head | {"new row": row}
+    assert text.endswith("\n}\n")

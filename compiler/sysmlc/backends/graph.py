@@ -1,11 +1,9 @@
 """Back end ``graph``: the whole graph as ``graph.json``, for other programs."""
 
-import json
-
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Element, Graph
-from sysmlc.output import Output
+from sysmlc.output import Output, encode_json
 from sysmlc.values import dataclass
 
 
@@ -36,8 +34,7 @@ class GraphBackend:
                 )
             ],
         }
-        text = json.dumps(content, ensure_ascii=False, indent=1) + "\n"
-        output.add("graph.json", text, trace=(), backend=self.name)
+        output.add("graph.json", encode_json(content), trace=(), backend=self.name)
 
 
 def _element(element: Element, qualified_name: str, place: Place | None) -> dict[str, object]:

@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from sysmlc import __version__
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
-from sysmlc.driver.tracing import COVERAGE, TRACE, as_text
+from sysmlc.driver.tracing import COVERAGE, TRACE
+from sysmlc.output import encode_json
 
 MANIFEST = "manifest.json"
 
@@ -18,7 +19,7 @@ def manifest_text(outcome: Outcome, kept: Iterable[str] = ()) -> str:
 
     ``kept`` are files of an earlier run whose inputs could not be read this time.
     """
-    return as_text(
+    return encode_json(
         {
             "schema": "sysmlc-manifest/1",
             "sysmlc": __version__,

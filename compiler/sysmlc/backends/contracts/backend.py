@@ -97,7 +97,7 @@ def _add(
     options: EmitOptions,
 ) -> None:
     trace = tuple(trace_of(graph, contract))
-    output.add(f"{path}.contract.json", f"{text(contract)}\n", trace, "contracts")
+    output.add(f"{path}.contract.json", text(contract), trace, "contracts")
     _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
     _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
 

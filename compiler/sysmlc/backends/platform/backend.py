@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.output import Output, json_text
+from sysmlc.output import Output, encode_json
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ class PlatformBackend:
 
         for platform in graph.derived(Platform):
             found = options.locate(places(graph, platform))
-            text = json_text(document(graph, platform, found), 2)
-            output.add(PATH, f"{text}\n", _trace(platform), self.name)
+            text = encode_json(document(graph, platform, found), 2)
+            output.add(PATH, text, _trace(platform), self.name)
 
 
 def _trace(platform: "Platform") -> Iterator[str]:

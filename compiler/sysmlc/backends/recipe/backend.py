@@ -7,7 +7,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.output import Output, encode_json
 from sysmlc.recipe import samples
 from sysmlc.values import dataclass
 
@@ -48,7 +48,7 @@ class RecipeBackend:
                 subject = graph.subject(graph[model.recipe.element])
                 sink.report(EMPTY_RECIPE, subject, recipe=model.recipe.id)
                 continue
-            text = document(model, options.inputs)
+            text = encode_json(document(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
             output.add(path, text, _trace(model), self.name)
 

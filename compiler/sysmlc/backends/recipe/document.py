@@ -1,12 +1,10 @@
 """The JSON form of a recipe model: what is absent is left out, everything is sorted."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar
 
 from sysmlc.backends.base import InputFile
 from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace, value_type
-from sysmlc.output import json_text
 from sysmlc.recipe.check_bindings import is_complete
 from sysmlc.recipe.model import (
     Derived,
@@ -25,43 +23,24 @@ from sysmlc.recipe.model import (
     Service,
     Task,
 )
-from sysmlc.recipe.remembered import remembered
 
 Json = dict[str, object]
 _T = TypeVar("_T")
 
 
-def document(model: Model, inputs: Sequence[InputFile]) -> str:
-    """The whole file, ``sysmlc-recipe/1``, as ``json_text`` writes it with two blanks."""
-    sources = sorted(inputs, key=lambda one: one.path)
-    lists: dict[str, Iterable[tuple[str, ...]]] = {
-        "source": [(json_text(_source(one), 2),) for one in sources],
-        "machines": map(_machine_text, model.machines),
-        "materials": map(_material_text, model.materials),
-        "recipes": [(json_text(_recipe(model.recipe), 2),)],
-        "services": map(_service_text, model.services),
-        "functions": map(_function_text, model.functions),
-        "serviceGraphs": map(_graph_text, model.service_graphs),
-        "functionGraphs": map(_graph_text, model.function_graphs),
+def document(model: Model, inputs: Iterable[InputFile]) -> Json:
+    """Return the recipe with everything that it refers to (``sysmlc-recipe/1``)."""
+    return {
+        "format": "sysmlc-recipe/1",
+        "source": _each(_source, sorted(inputs, key=lambda file: file.path)),
+        "machines": _each(_machine, model.machines),
+        "materials": _each(_material, model.materials),
+        "recipes": [_recipe(model.recipe)],
+        "services": _each(_service, model.services),
+        "functions": _each(_function, model.functions),
+        "serviceGraphs": _each(flow_graph, model.service_graphs),
+        "functionGraphs": _each(flow_graph, model.function_graphs),
     }
-    listed = (f'  "{name}": {_list(chain.from_iterable(each))}' for name, each in lists.items())
-    members = ",\n".join(('  "format": "sysmlc-recipe/1"', *listed))
-    return f"{{\n{members}\n}}\n"
-
-
-def _list(texts: Iterable[str]) -> str:
-    """A list of what is written already, as the value of a member of the file."""
-    inner = ",\n".join(texts).replace("\n", "\n    ")
-    return f"[\n    {inner}\n  ]" if inner else "[]"
-
-
-def _written(write: Callable[[_T], Json]) -> Callable[[_T], tuple[str, ...]]:
-    """The text of something, which a process that stays does not write again."""
-
-    def text(value: _T) -> Iterator[str]:
-        yield json_text(write(value), 2)
-
-    return remembered(text)
 
 
 def _source(file: InputFile) -> Json:
@@ -259,10 +238,3 @@ def _function(function: Function) -> Json:
         "opcua": _opcua(function.opcua),
     }
     return {**_without_absent(found), **trace(function.element)}
-
-
-_machine_text = _written(_machine)
-_material_text = _written(_material)
-_service_text = _written(_service)
-_function_text = _written(_function)
-_graph_text = _written(flow_graph)

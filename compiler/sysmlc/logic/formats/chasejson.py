@@ -19,7 +19,7 @@ from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.placed import PlacedList, PlacedObject, PlacedText
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.ltl import FormulaError, parse_formula
-from sysmlc.output import json_text
+from sysmlc.output import encode_json
 
 __all__ = ["plain", "read", "write"]
 _DECLARING = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}
@@ -85,7 +85,7 @@ def write(contract: Contract, form: str) -> str:
         for title, owner in _DECLARING.items()
     }
     said_ = {"assumptions": _lines(made.assumptions), "guarantees": _lines(made.guarantees)}
-    return f"{json_text({'name': word(contract.component)} | declared | said_, 2)}\n"
+    return encode_json({"name": word(contract.component)} | declared | said_, 2)
 
 
 def _type(variable: Variable) -> object:

@@ -4,8 +4,6 @@ The neutral form of corpus/gr1 with ``{formula, class, origin, text}`` for each 
 """
 
 from collections.abc import Iterable
-from functools import lru_cache
-from json.encoder import encode_basestring
 
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -15,57 +13,46 @@ from sysmlc.logic.contract import (
     Domain,
     EnumerationDomain,
     IntegerDomain,
-    Variable,
 )
 from sysmlc.logic.printing import print_formula
-from sysmlc.output import json_text
+from sysmlc.output import encode_json
 
 FORMAT = "sysmlc-contract/1"
-_REMEMBERED = 1 << 10
-"""Texts of domains that are kept: most variables are Boolean."""
 
 
 def text(contract: Contract) -> str:
-    """JSON of the contract (metamodels/sysmlc-contract.schema.json), indented by two.
-
-    There are thousands of variables and conjuncts: they are written without dicts between.
-    """
-    known = {"format": FORMAT, "name": contract.component, "origin": contract.origin}
-    head = json_text(known, 2).removesuffix("\n}")
-    variables = ",\n    ".join(map(_variable_text, contract.variables))
-    named = f"{{\n    {variables}\n  }}" if variables else "{}"
-    sides = (("assumptions", contract.assumptions), ("guarantees", contract.guarantees))
-    told = "".join(_side_text(*side) for side in sides)
-    return f'{head},\n  "variables": {named}{told}\n}}'
-
-
-def _variable_text(variable: Variable) -> str:
-    return (
-        f'{encode_basestring(variable.name)}: {{\n      "owner": "{variable.owner}",'
-        f'\n      "type": {_type_text(variable.domain)},'
-        f'\n      "origin": {encode_basestring(variable.origin)}\n    }}'
-    )
+    """Return the contract as a document after metamodels/sysmlc-contract.schema.json."""
+    document = {
+        "format": FORMAT,
+        "name": contract.component,
+        "origin": contract.origin,
+        "variables": {
+            variable.name: {
+                "owner": str(variable.owner),
+                "type": type_of(variable.domain),
+                "origin": variable.origin,
+            }
+            for variable in contract.variables
+        },
+        "assumptions": _group_by_class(contract.assumptions),
+        "guarantees": _group_by_class(contract.guarantees),
+    }
+    return encode_json(document, 2)
 
 
-@lru_cache(_REMEMBERED)
-def _type_text(domain: Domain) -> str:
-    return json_text(type_of(domain), 2).replace("\n", "\n      ")
-
-
-def _side_text(name: str, conjuncts: Iterable[Conjunct]) -> str:
-    found: dict[Class, list[str]] = {class_: [] for class_ in Class}
-    for one in conjuncts:
-        found[one.class_].append(
-            f'{{\n        "formula": {encode_basestring(print_formula(one.formula))},'
-            f'\n        "class": "{one.class_}",'
-            f'\n        "origin": {encode_basestring(one.origin)},'
-            f'\n        "text": {encode_basestring(one.text)}\n      }}'
+def _group_by_class(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, str]]]:
+    """Return the conjuncts of each class, of classes without conjuncts an empty list."""
+    groups: dict[str, list[dict[str, str]]] = {str(class_): [] for class_ in Class}
+    for conjunct in conjuncts:
+        groups[str(conjunct.class_)].append(
+            {
+                "formula": print_formula(conjunct.formula),
+                "class": str(conjunct.class_),
+                "origin": conjunct.origin,
+                "text": conjunct.text,
+            }
         )
-    rows = (
-        f'\n    "{class_}": [\n      {joined}\n    ]' if joined else f'\n    "{class_}": []'
-        for class_, joined in ((class_, ",\n      ".join(texts)) for class_, texts in found.items())
-    )
-    return f',\n  "{name}": {{{",".join(rows)}\n  }}'
+    return groups
 
 
 def type_of(domain: Domain) -> str | list[int] | list[str]:
@@ -96,4 +83,4 @@ def neutral(contract: Contract) -> str:
             ("guarantees", contract.guarantees),
         )
     }
-    return json_text({"name": contract.component, "variables": variables} | sides, 1)
+    return encode_json({"name": contract.component, "variables": variables} | sides)

@@ -194,7 +194,7 @@ def write(contract: Contract, form: str) -> str:
     from sysmlc.logic.formats.document_text import neutral, text
 
     made = plain(contract, form)
-    return f"{text(made) if form == 'contract' else neutral(made)}\n"
+    return text(made) if form == "contract" else neutral(made)
 
 
 def plain(contract: Contract, form: str) -> Contract:

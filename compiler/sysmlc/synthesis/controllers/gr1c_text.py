@@ -11,7 +11,7 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Literal
-from sysmlc.output import json_text
+from sysmlc.output import append_members, encode_row
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers.closed import Controller
 
@@ -36,7 +36,7 @@ def json_of(controller: Controller, contract: Contract, most: int = MOST_STEPS) 
         "SYS": [_declared(one) for one in controller.outputs],
     }
     nodes = ",\n".join(_Unrolling(controller, contract, most).lines())
-    return f'{json_text(head, 2)[:-2]},\n  "nodes": {{\n{nodes}\n  }}\n}}\n'
+    return append_members(head, [f'  "nodes": {{\n{nodes}\n  }}'])
 
 
 def _declared(variable: Variable) -> dict[str, object]:
@@ -89,12 +89,14 @@ class _Unrolling:
         self, place: int, values: Values, state: int, is_first: bool, after: list[int]
     ) -> str:
         variables = (*self._controller.inputs, *self._controller.outputs)
-        codes = [_code(one, values[one.name]) for one in variables]
-        names = ", ".join(f'"{one}"' for one in after)
-        return (
-            f'    "{place}": {{"state": {codes}, "mode": {state}, "rgrad": -1, '
-            f'"initial": {"true" if is_first else "false"}, "trans": [{names}]}}'
-        )
+        node = {
+            "state": [_code(variable, values[variable.name]) for variable in variables],
+            "mode": state,
+            "rgrad": -1,
+            "initial": is_first,
+            "trans": [str(successor) for successor in after],
+        }
+        return f'    "{place}": {encode_row(node)}'
 
 
 def _rules(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:

@@ -6,7 +6,7 @@ from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.formats.document_text import type_of
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.output import json_text
+from sysmlc.output import append_members, encode_row
 from sysmlc.plantuml import plain
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 
@@ -19,7 +19,7 @@ _MOST_LINES = 4
 
 
 def json_of(machine: Machine, contract: Contract) -> str:
-    """The machine as JSON text, a line a move."""
+    """Return the machine as a JSON file with one line for each move."""
     names = register_names(machine)
     head = {
         "format": FORMAT,
@@ -29,8 +29,8 @@ def json_of(machine: Machine, contract: Contract) -> str:
         "outputs": [declared(one) for one in machine.outputs],
         "registers": [{"name": name, "of": of} for of, name in names.items()],
     }
-    states = ",\n".join(f"    [{_listed(moves, names)}]" for moves in machine.states)
-    return f'{json_text(head, 2)[:-2]},\n  "states": [\n{states}\n  ]\n}}\n'
+    states = ",\n".join(f"    [{_encode_moves(moves, names)}]" for moves in machine.states)
+    return append_members(head, [f'  "states": [\n{states}\n  ]'])
 
 
 def register_names(machine: Machine) -> dict[str, str]:
@@ -65,22 +65,25 @@ def declared(variable: Variable) -> dict[str, object]:
     }
 
 
-def _listed(moves: Sequence[Move], names: Mapping[str, str]) -> str:
+def _encode_moves(moves: Sequence[Move], names: Mapping[str, str]) -> str:
     if not moves:
         return ""
     lines = (
-        f'      {{"when": {json_text(_said(move.when, names), 0)}, '
-        f'"output": [{", ".join(_value(one, names) for one in move.output)}], '
-        f'"next": {move.state}}}'
+        "      "
+        + encode_row(
+            {
+                "when": _said(move.when, names),
+                "output": [_describe_output(output, names) for output in move.output],
+                "next": move.state,
+            }
+        )
         for move in moves
     )
     return "\n" + ",\n".join(lines) + "\n    "
 
 
-def _value(output: Formula, names: Mapping[str, str]) -> str:
-    if isinstance(output, Const):
-        return json_text(output.value, 0)
-    return f'{{"value": {json_text(_said(output, names), 0)}}}'
+def _describe_output(output: Formula, names: Mapping[str, str]) -> object:
+    return output.value if isinstance(output, Const) else {"value": _said(output, names)}
 
 
 def _said(formula: Formula, names: Mapping[str, str]) -> str:

@@ -1,9 +1,9 @@
 """Symbolic controllers as JSON (metamodels/sysmlc-controller.schema.json)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from sysmlc.logic.contract import Contract
-from sysmlc.output import json_text
+from sysmlc.output import append_members, encode_row
 from sysmlc.synthesis.controllers.machine_text import declared
 from sysmlc.synthesis.controllers.table import Entry, Table
 
@@ -13,7 +13,7 @@ _A_LINE = 8
 
 
 def json_of(table: Table, contract: Contract) -> str:
-    """The table as JSON text."""
+    """Return the table as a JSON file with several nodes on a line."""
     head = {
         "format": FORMAT,
         "name": contract.component,
@@ -21,31 +21,30 @@ def json_of(table: Table, contract: Contract) -> str:
         "inputs": [declared(one) for one in table.inputs],
         "outputs": [declared(one) for one in table.outputs],
     }
-    parts = (
-        _rows("bits", _bits(table)),
-        _rows("nodes", _nodes(table)),
-        f'  "first": {_entry(table.first)}',
-        _rows("modes", map(_entry, table.modes)),
+    members = (
+        _encode_list("bits", _encode_bits(table)),
+        _encode_list("nodes", _encode_nodes(table)),
+        f'  "first": {_encode_entry(table.first)}',
+        _encode_list("modes", map(_encode_entry, table.modes)),
     )
-    return f"{json_text(head, 2)[:-2]},\n" + ",\n".join(parts) + "\n}\n"
+    return append_members(head, members)
 
 
-def _rows(name: str, rows: Iterator[str]) -> str:
+def _encode_list(name: str, rows: Iterable[str]) -> str:
     lines = ",\n".join(f"    {row}" for row in rows)
     return f'  "{name}": [\n{lines}\n  ]' if lines else f'  "{name}": []'
 
 
-def _bits(table: Table) -> Iterator[str]:
-    for one in table.bits:
-        step = "before" if one.is_before else "now"
-        name = json_text(one.variable, 0)
-        yield f'{{"variable": {name}, "bit": {one.place}, "step": "{step}"}}'
+def _encode_bits(table: Table) -> Iterator[str]:
+    for bit in table.bits:
+        step = "before" if bit.is_before else "now"
+        yield encode_row({"variable": bit.variable, "bit": bit.place, "step": step})
 
 
-def _nodes(table: Table) -> Iterator[str]:
-    for at in range(0, len(table.nodes), _A_LINE):
-        yield ", ".join(str(list(one)) for one in table.nodes[at : at + _A_LINE])
+def _encode_nodes(table: Table) -> Iterator[str]:
+    for start in range(0, len(table.nodes), _A_LINE):
+        yield ", ".join(map(encode_row, table.nodes[start : start + _A_LINE]))
 
 
-def _entry(entry: Entry) -> str:
-    return f'{{"outputs": {list(entry.outputs)}, "next": {list(entry.onward)}}}'
+def _encode_entry(entry: Entry) -> str:
+    return encode_row({"outputs": entry.outputs, "next": entry.onward})
