@@ -1,8 +1,5 @@
 """Applications of stereotypes: siblings of the model that name their base elements."""
 
-from collections.abc import Iterable
-from typing import NamedTuple
-
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import application_tags, metaclasses
 from sysmlc.frontends.xmi.behaviour import references
@@ -20,15 +17,8 @@ _Target = tuple[str, int, bool]
 
 def lower(context: Context) -> None:
     """Lower the applications that the walk over the document has found."""
-    document = context.document
-    shapes = [Attributes.of(names) for _, _, names in document.shapes]
     for row in context.applications:
-        names = shapes[document.shape_numbers[row]]
-        plain = _plain_bases(context, row, names) if names is not None else {}
-        if names is not None and plain:
-            _plain(context, row, plain, names.tags)
-        else:
-            _application(context, row)
+        _application(context, row)
     for element, row in context.ends:
         _path(context, element, row)
 
@@ -64,54 +54,6 @@ def _application(context: Context, row: int) -> None:
         context.link(Edge.SUBJECT, element.id, target, at, "subject", is_href)
     application_tags.read(context, element, row)
     _specialities(context, element, row, kept)
-
-
-class Attributes(NamedTuple):
-    """Names of the attributes of an application that is only attributes, by what they are."""
-
-    bases: list[str]
-    tags: list[str]
-
-    @classmethod
-    def of(cls, names: Iterable[str]) -> "Attributes | None":
-        """None where more than ids of bases and tags is told."""
-        names = [name for name in names if "}" not in name]
-        if f"{_BASE}Diagram" in names or any(name.startswith("__EA") for name in names):
-            return None
-        bases = [name for name in names if name.startswith(_BASE)]
-        return cls(bases, [name for name in names if name not in bases])
-
-
-def _plain_bases(context: Context, row: int, names: Attributes) -> dict[str, int]:
-    """Bases of an application that is only attributes: ids and rows; empty for any other."""
-    document, own = context.document, context.lowered.own
-    found: dict[str, int] = {}
-    if document.ends[row] != row + 1:
-        return found
-    values = document.attributes[row]
-    for name in names.bases:
-        at = document.ids.get(values[name])
-        if at is None or own[at] is None:
-            return {}
-        found[values[name]] = at
-    return found
-
-
-def _plain(context: Context, row: int, bases: dict[str, int], tags: list[str]) -> None:
-    """What ``_application`` does, for nearly all applications of a large model."""
-    document, links = context.document, context.unit.links
-    context.verdicts[row] = Verdict.MAPPED
-    places = list(bases.values())
-    element = _element(context, row, context.gids[places[0]])
-    links.begin(context.lowered)
-    for target, at in bases.items():
-        links.add(Edge.SUBJECT, element, target, at, row)
-    values = document.attributes[row]
-    for name in tags:
-        tag = application_tags.value(context, element, row, name, values[name])
-        element.attrs[f"tag.{name}"] = tag
-    if element.name == "ItemFlow" or "propertyPath" in values:
-        _specialities(context, element, row, [(context.lowered, at) for at in places])
 
 
 def _bases(context: Context, row: int) -> list[_Target]:

@@ -205,7 +205,7 @@ def _event(document: Document, row: int) -> Event:
 
 def _event_details(context: Context, element: Element, holder: Lowered, event: Event) -> None:
     for feature, target, at, is_href in event.types:
-        context.link_from(holder, Edge.TYPED_BY, element, target, at, feature, is_href)
+        context.link_from(holder, Edge.TYPED_BY, element.id, target, at, feature, is_href)
     for key, value in event.conditions:
         _condition(element, key, value)
         if key == "when" and event.is_relative:

@@ -1,194 +1,128 @@
-"""From the bytes of a file to the columns of a document, in one pass of the XML parser.
+"""Reads the bytes of an XMI file into the columns of a document with one pass of expat.
 
-The handlers here are called for every element of a file: they do the least that they can.
+Expat calls the handlers for each element of the file, so they only append to columns;
+``indexing`` derives features, types and ids from the columns afterwards. Expat and not an lxml
+parser target, because expat tells the byte offset of a fault, and both take the same time.
 """
 
-from collections.abc import Callable
 from itertools import pairwise
 
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.makers import NOTHING
-from sysmlc.frontends.xmi.prefixes import IrregularError, Prefixes
+from sysmlc.frontends.xmi.indexing import index
 from sysmlc.sources import DEFAULT_LIMITS, Source
-from sysmlc.sources.xml import parse, parser, plain_parser, too_deep
+from sysmlc.sources.xml import parse, parser, too_deep
 
-_DRAWINGS = frozenset({"diagramRepresentation", "filePart"})
+_SKIPPED = frozenset({"diagramRepresentation", "filePart"})
 """Elements of MagicDraw's extensions whose content is only counted: up to 87 % of a file."""
 
-_IRREGULAR = "MDFoundation:MDExtension"
-"""What MagicDraw attaches is another document of XMI, whose prefixes mean something else."""
 
-SPECIAL = _DRAWINGS | {_IRREGULAR}
-"""Elements whose content is no part of the columns as other content is."""
-
-_TOP = [-1]
-
-_Start = Callable[[str, dict[str, str]], None]
-"""Handler of an element's start; takes its name and its attributes."""
+def read_document(source: Source) -> Document:
+    """Return the document of an XMI file. Raises SourceError."""
+    reader = _ColumnReader(source)
+    reader.run()
+    index(reader.document, tuple(reader.namespaces))
+    return reader.document
 
 
-def fill(document: Document, source: Source) -> tuple[str, ...]:
-    """Fill the columns; return the namespaces that the file declares outside drawings.
+class _ColumnReader:
+    """The parser handlers that fill the columns of one document.
 
-    Raises SourceError.
+    ``namespaces`` holds the namespaces that the file declares outside skipped content, in order.
     """
-    filling = _Filling(document, source)
-    filling.run()
-    return tuple(filling.declared)
 
-
-def fill_swiftly(document: Document, source: Source, prefixes: Prefixes) -> tuple[str, ...]:
-    """The same for files as nearly all are; some attributes keep their prefixes.
-
-    Raises SourceError or IrregularError for any other: faults, namespaces declared below the
-    root, drawings inside drawings.
-    """
-    filling = _Filling(document, source, prefixes)
-    filling.run()
-    if filling.stack != _TOP:
-        raise IrregularError
-    return tuple(prefixes.declared.values())
-
-
-class _Filling:
-    """One run of the parser over a file; the swift one knows what prefixes mean."""
-
-    def __init__(
-        self, document: Document, source: Source, prefixes: Prefixes | None = None
-    ) -> None:
-        self.breaks: list[tuple[int, int]] = []
-        """Rows after which content is hidden, and the number of elements hidden so far."""
-        self.stack = [*_TOP]
-        self.declared: dict[str, None] = {}
-        self._document = document
+    def __init__(self, source: Source) -> None:
+        self.document = Document(source.name)
+        self.namespaces: dict[str, None] = {}
         self._source = source
-        self._prefixes = prefixes
-        self._made = parser() if prefixes is None else plain_parser(prefixes.names)
+        self._parser = parser()
+        self._open_rows = [-1]
+        self._breaks: list[tuple[int, int]] = []
+        """After a skipped element: the next row, and how many elements were skipped so far."""
 
     def run(self) -> None:
-        start = self._handle_elements()
-        if self._prefixes is not None:
-            self._handle_root(self._prefixes, start)
+        """Parse the source. Raises SourceError."""
+        self._set_handlers()
         try:
-            parse(self._source, self._made)
+            parse(self._source, self._parser)
         finally:
-            self._let_go()
-        if self.breaks:
-            self._document.ordinals = _ordinals(len(self._document.tags), self.breaks)
+            # The parser and its handlers refer to one another; the garbage collector is off.
+            self._parser.StartElementHandler = None
+            self._parser.EndElementHandler = None
+            self._parser.CharacterDataHandler = None
+            self._parser.StartNamespaceDeclHandler = None
+        if self._breaks:
+            self.document.ordinals = _number_elements(len(self.document.tags), self._breaks)
 
-    def _let_go(self) -> None:
-        """End the circle of parser and handlers: the frozen graph would keep it for good."""
-        made = self._made
-        made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
-        made.StartNamespaceDeclHandler = None
+    def _set_handlers(self) -> None:
+        document, open_rows = self.document, self._open_rows
+        texts, ends = document.texts, document.ends
+        following = len(document.tags)
 
-    def _handle_root(self, prefixes: Prefixes, start: _Start) -> None:
-        def root(tag: str, values: dict[str, str]) -> None:
-            self._made.StartElementHandler = start
-            start(prefixes.begin(tag, values), values)
-
-        self._made.StartElementHandler = root
-
-    def _handle_elements(self) -> _Start:
-        tags, stack, texts = self._document.tags, self.stack, self._document.texts
-        ends = self._document.ends
-        add_tag, add_attributes = tags.append, self._document.attributes.append
-        add_parent, add_end = self._document.parents.append, ends.append
-        add_ordinal = self._document.ordinals.append
-        push, pop = stack.append, stack.pop
-        deepest = DEFAULT_LIMITS.depth
-        following = len(tags)
-
-        def start(tag: str, values: dict[str, str]) -> None:
-            # Columns share their numbers: a number of its own is four times its place in a list.
+        def start_element(tag: str, attributes: dict[str, str]) -> None:
             nonlocal following
             row = following
             following = row + 1
-            add_ordinal(row)
-            add_tag(tag)
-            add_attributes(values or NOTHING)
-            add_parent(stack[-1])
-            add_end(row)
-            push(row)
-            if tag in SPECIAL or len(stack) > deepest:
-                self._special(tag)
+            document.ordinals.append(row)
+            document.tags.append(tag)
+            document.attributes.append(attributes)
+            document.parents.append(open_rows[-1])
+            ends.append(row)
+            open_rows.append(row)
+            if len(open_rows) > DEFAULT_LIMITS.depth:
+                too_deep(self._source, self._parser)
+            if tag in _SKIPPED:
+                self._skip_content(tag)
 
-        def end(_tag: str) -> None:
-            ends[pop()] = following
+        def end_element(_tag: str) -> None:
+            ends[open_rows.pop()] = following
 
-        def text(data: str) -> None:
-            if not data.isspace():
-                row = stack[-1]
-                texts[row] = texts[row] + data if row in texts else data
+        def add_text(text: str) -> None:
+            if not text.isspace():
+                row = open_rows[-1]
+                texts[row] = texts.get(row, "") + text
 
-        def namespace(_: str | None, uri: str | None) -> None:
-            self.declared[uri or ""] = None
+        def declare_namespace(_prefix: str | None, uri: str | None) -> None:
+            self.namespaces[uri or ""] = None
 
-        self._made.StartNamespaceDeclHandler = namespace
-        self._made.StartElementHandler = start
-        self._made.EndElementHandler = end
-        self._made.CharacterDataHandler = text
-        return start
+        self._parser.StartNamespaceDeclHandler = declare_namespace
+        self._parser.StartElementHandler = start_element
+        self._parser.EndElementHandler = end_element
+        self._parser.CharacterDataHandler = add_text
 
-    def _special(self, tag: str) -> None:
-        if len(self.stack) > DEFAULT_LIMITS.depth:
-            too_deep(self._source, self._made)
-        if tag == _IRREGULAR:
-            raise IrregularError
-        if self._prefixes is None:
-            self._hide_nested(tag)
-        else:
-            self._hide(tag)
+    def _skip_content(self, outer: str) -> None:
+        """Count the elements up to the end of the open element, which is called ``outer``."""
+        depth = skipped = 0
 
-    def _hide(self, outer: str) -> None:
-        """Only count what ends before ``outer`` does; starts are not even looked at."""
-        hidden = 0
-
-        def end_hidden(tag: str) -> None:
-            nonlocal hidden
-            if tag == outer:
-                self._show(tag, hidden)
-            else:
-                hidden += 1
-
-        self._made.StartElementHandler = None
-        self._made.EndElementHandler = end_hidden
-        self._made.CharacterDataHandler = None
-        self._made.StartNamespaceDeclHandler = None
-
-    def _hide_nested(self, outer: str) -> None:
-        depth = hidden = 0
-
-        def start_hidden(_tag: str, _values: dict[str, str]) -> None:
-            nonlocal depth, hidden
+        def start_skipped(_tag: str, _attributes: dict[str, str]) -> None:
+            nonlocal depth, skipped
             depth += 1
-            hidden += 1
+            skipped += 1
             if depth > DEFAULT_LIMITS.depth:
-                too_deep(self._source, self._made)
+                too_deep(self._source, self._parser)
 
-        def end_hidden(_tag: str) -> None:
+        def end_skipped(_tag: str) -> None:
             nonlocal depth
             depth -= 1
             if depth < 0:
-                self._show(outer, hidden)
+                self._resume(outer, skipped)
 
-        self._made.StartElementHandler = start_hidden
-        self._made.EndElementHandler = end_hidden
-        self._made.CharacterDataHandler = None
-        self._made.StartNamespaceDeclHandler = None
+        self._parser.StartElementHandler = start_skipped
+        self._parser.EndElementHandler = end_skipped
+        self._parser.CharacterDataHandler = None
+        self._parser.StartNamespaceDeclHandler = None
 
-    def _show(self, tag: str, hidden: int) -> None:
-        document = self._document
-        if hidden:
-            document.drawn[tag] += hidden
-        self.breaks.append((len(document.tags), document.drawn.total()))
-        document.ends[self.stack.pop()] = len(document.tags)
-        self._handle_elements()
+    def _resume(self, outer: str, skipped: int) -> None:
+        document = self.document
+        if skipped:
+            document.drawn[outer] += skipped
+        self._breaks.append((len(document.tags), document.drawn.total()))
+        document.ends[self._open_rows.pop()] = len(document.tags)
+        self._set_handlers()
 
 
-def _ordinals(rows: int, breaks: list[tuple[int, int]]) -> list[int]:
-    """Place of each row's element among all elements of the file."""
-    found: list[int] = []
-    for (row, hidden), (following, _) in pairwise([(0, 0), *breaks, (rows, 0)]):
-        found += range(row + hidden, following + hidden)
-    return found
+def _number_elements(rows: int, breaks: list[tuple[int, int]]) -> list[int]:
+    """Return the position of each row's element among all elements of the file."""
+    ordinals: list[int] = []
+    for (row, skipped), (next_row, _) in pairwise([(0, 0), *breaks, (rows, 0)]):
+        ordinals += range(row + skipped, next_row + skipped)
+    return ordinals

@@ -9,10 +9,9 @@ from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.keys import KEYS, PASSED_OVER
 from sysmlc.frontends.xmi.loose import Loose, Names
 from sysmlc.frontends.xmi.rows import Rows
-from sysmlc.frontends.xmi.unit import NOWHERE, Link, Lowered, Unit
+from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.reference import End, id_of
 from sysmlc.sources import DEFAULT_LIMITS
 
 Completion = Callable[["Context", Element, int], None]
@@ -175,7 +174,7 @@ class Context(Rows):
     def link(
         self,
         edge: Edge,
-        source: End,
+        source: str,
         target: str,
         row: int,
         feature: str,
@@ -183,61 +182,21 @@ class Context(Rows):
         is_reversed: bool = False,
     ) -> None:
         """Leave a reference from an element to an id or href."""
-        self._link(self.lowered, edge, source, target, row, feature, is_href, is_reversed)
+        link = Link(edge, source, self.lowered, target, row, feature, is_href, is_reversed)
+        self.unit.links.append(link)
 
     def link_from(
         self,
         holder: Lowered,
         edge: Edge,
-        source: End,
+        source: str,
         target: str,
         row: int,
         feature: str,
         is_href: bool,
     ) -> None:
         """Leave a reference that a row of another document makes."""
-        self._link(holder, edge, source, target, row, feature, is_href, False)
-
-    def _link(
-        self,
-        holder: Lowered,
-        edge: Edge,
-        source: End,
-        target: str,
-        row: int,
-        feature: str,
-        is_href: bool,
-        is_reversed: bool,
-    ) -> None:
-        links, document = self.unit.links, holder.document
-        links.begin(holder)
-        element = self.graph.get(source) if isinstance(source, str) else source
-        if is_href or element is None or element.source != document.name:
-            id = id_of(source)
-            links.append(Link(edge, id, holder, target, row, feature, is_href, is_reversed))
-            return
-        add = links.add_reversed if is_reversed else links.add
-        add(edge, element, target, document.ids.get(target, NOWHERE), row)
-
-    def listed(
-        self,
-        element: Element,
-        row: int,
-        name: str,
-        edge: Edge | None,
-        is_reversed: bool,
-        is_list: bool,
-    ) -> None:
-        """Put an attribute that can be a list of ids into the graph; without an edge only look."""
-        value, ids, links = self.document.attributes[row][name], self.document.ids, self.unit.links
-        targets = value.split() if is_list else []
-        found = [ids.get(target, NOWHERE) for target in targets]
-        if not found or NOWHERE in found or len(found) > DEFAULT_LIMITS.references:
-            self.attribute(element, row, name, value)
-        elif edge is not None:
-            add = links.add_reversed if is_reversed else links.add
-            for target, at in zip(targets, found, strict=True):
-                add(edge, element, target, at, row)
+        self.unit.links.append(Link(edge, source, holder, target, row, feature, is_href))
 
     def conditions(self, targets: list[str], feature: str) -> None:
         """The constraints with these ids are pre- or postconditions."""

@@ -63,10 +63,10 @@ def localise(context: Context) -> None:
     """Tie references to profiles and primitive types to what the extension holds of them."""
     if not context.extensions:
         return
-    links = context.unit.links
-    for index, link in enumerate(links):
-        if link.lowered is context.lowered:
-            links[index] = _localised(context, link)
+    context.unit.links[:] = [
+        _localised(context, link) if link.lowered is context.lowered else link
+        for link in context.unit.links
+    ]
 
 
 def _localised(context: Context, link: Link) -> Link:

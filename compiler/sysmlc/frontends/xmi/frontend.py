@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import detect
 from sysmlc.frontends.xmi.snapshot import is_snapshot
@@ -14,13 +13,6 @@ class XmiFrontend:
     """Reads UML 2 and SysML v1 models in XMI: Papyrus, MagicDraw/Cameo, and what is like them."""
 
     name = "xmi"
-
-    def __init__(self, cache: Cache | None = None) -> None:
-        self._cache = cache
-
-    def with_cache(self, cache: Cache) -> "XmiFrontend":
-        """The same front end; files that were read before are taken from the cache."""
-        return XmiFrontend(cache)
 
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1, that the source is UML in XMI."""
@@ -44,7 +36,7 @@ class XmiFrontend:
         """
         from sysmlc.frontends.xmi import reading
 
-        reading.read(sources, graph, sink, coverage, self._cache)
+        reading.read(sources, graph, sink, coverage)
 
     def companions(self, name: str) -> Sequence[str]:
         """Papyrus' notation file, MagicDraw's entries with shapes."""

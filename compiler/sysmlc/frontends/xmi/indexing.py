@@ -4,7 +4,6 @@ from typing import cast
 
 from sysmlc.frontends.xmi import namespaces
 from sysmlc.frontends.xmi.document import Document, Shape
-from sysmlc.frontends.xmi.tags import Kind
 
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 """Its ``type`` says what ``xmi:type`` says where EMF saves without the options of UML2."""
@@ -22,23 +21,7 @@ def index(document: Document, declared: tuple[str, ...]) -> None:
     _set_keys(document, xmi)
     _index_types(document)
     _index_ids(document)
-    index_shapes(document)
-
-
-def index_kinds(document: Document, declared: tuple[str, ...], kinds: list[Kind], xmi: str) -> None:
-    """The same for columns whose rows have the numbers of their kinds instead of shapes."""
-    document.declared = declared
-    _set_keys(document, xmi)
-    rows, short, numbers = document.shape_numbers, _Short(), _Numbers()
-    features = [_local(tag) for tag, _, _ in kinds]
-    types = [short[written] for _, written, _ in kinds]
-    document.tags = list(map([tag for tag, _, _ in kinds].__getitem__, rows))
-    document.features = list(map(features.__getitem__, rows))
-    document.types = list(map(types.__getitem__, rows))
-    shapes = zip(features, types, (names for _, _, names in kinds), strict=True)
-    document.shape_numbers = list(map([numbers[shape] for shape in shapes].__getitem__, rows))
-    _keep_shapes(document, numbers)
-    _index_ids(document)
+    _index_shapes(document)
 
 
 def _set_keys(document: Document, xmi: str) -> None:
@@ -70,15 +53,11 @@ class _Short(dict[str, str]):
         return short
 
 
-def index_shapes(document: Document) -> None:
+def _index_shapes(document: Document) -> None:
     """Number the shapes of the rows, in the order in which they are met."""
     numbers = _Numbers()
     shapes = zip(document.features, document.types, map(tuple, document.attributes), strict=True)
     document.shape_numbers = list(map(numbers.__getitem__, shapes))
-    _keep_shapes(document, numbers)
-
-
-def _keep_shapes(document: Document, numbers: "_Numbers") -> None:
     document.shapes = list(numbers)
     references = {document.idref_key, "href"}
     referring = (feature for feature, _, names in numbers if not references.isdisjoint(names))

@@ -17,7 +17,6 @@ from sysmlc.frontends.xmi import (
 )
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.making import make
-from sysmlc.frontends.xmi.swift import Swift
 from sysmlc.frontends.xmi.unit import Lowered, Unit
 
 _Reader = Callable[[Context, int], None]
@@ -38,11 +37,15 @@ _TYPES: dict[str, _Reader] = (
 def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
     """Lower one document; stereotype applications and references are left for later."""
     context = Context(unit, lowered, sink)
+    document = lowered.document
     row = 0
-    if namespaces.is_xmi(lowered.document.namespace(0)):
+    if namespaces.is_xmi(document.namespace(0)):
         context.verdicts[0] = Verdict.MAPPED
         row = 1
-    Swift(context, _FEATURES, _TYPES).walk(row, _root, _row)
+    root_parent = row - 1
+    while row < len(document):
+        is_root = document.parents[row] == root_parent
+        row = _root(context, row) if is_root else _row(context, row)
     return context
 
 

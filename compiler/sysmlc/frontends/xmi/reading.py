@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from sysmlc.cache import Cache
 from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.xmi import (
@@ -15,11 +14,11 @@ from sysmlc.frontends.xmi import (
     lowering,
     odd_values,
     parts,
-    remembered,
     rules,
     unread,
     unread_tags,
 )
+from sysmlc.frontends.xmi.columns import read_document
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.finishing import finish
@@ -29,13 +28,7 @@ from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
 
 
-def read(
-    sources: Sequence[Source],
-    graph: Graph,
-    sink: Sink,
-    coverage: Coverage,
-    cache: Cache | None = None,
-) -> None:
+def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
     """Read the files into the graph; references are left for the pass ``resolve``.
 
     A damaged file is reported and left out. Raises SourceError for what exceeds the
@@ -45,7 +38,7 @@ def read(
     models = [source for source in ordered if not is_snapshot(source)]
     beside = [source for source in ordered if is_snapshot(source)]
     with uncollected():
-        found = [_read(source, sink, cache) for source in models]
+        found = [_read(source, sink) for source in models]
         documents = [document for document in found if document is not None]
         unit = Unit(documents, graph)
         contexts = [lowering.lower(unit, lowered, sink) for lowered in unit.files]
@@ -99,9 +92,9 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         account.account(context, sink, coverage)
 
 
-def _read(source: Source, sink: Sink, cache: Cache | None) -> Document | None:
+def _read(source: Source, sink: Sink) -> Document | None:
     try:
-        return remembered.read(source, cache)
+        return read_document(source)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise

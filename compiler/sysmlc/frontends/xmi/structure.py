@@ -9,23 +9,41 @@ from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.making import make
 from sysmlc.frontends.xmi.parts import is_part
-from sysmlc.frontends.xmi.shapes import may_be_value
 from sysmlc.frontends.xmi.uml_features import is_misplaced
 from sysmlc.ir import Edge, Element, Kind
 
 _Reader = Callable[[Context, int], None]
 
 
+_ALWAYS_VALUES = frozenset(
+    {
+        "lowerValue",
+        "upperValue",
+        "lower",
+        "upper",
+        "defaultValue",
+        "joinSpec",
+        "upperBound",
+        "specification",
+    }
+    | {"clause", "handler", "endData", "weight", "nameExpression"}
+)
+"""Features that hold values whatever their type."""
+
 # -- what a row is -----------------------------------------------------------------------------
 
 
 def is_value(context: Context, row: int, feature: str) -> bool:
     """Whether the row holds a value, not an element of the same feature (a pin, a constraint)."""
-    told = may_be_value(feature, context.document.types[row])
-    if told is None:
-        owner = context.owner(row)
-        return owner is not None and (owner.kind is Kind.SLOT or owner.subkind == "value")
-    return told
+    if feature in _ALWAYS_VALUES:
+        return True
+    type_name = context.document.types[row]
+    if type_name:
+        return type_name in metaclasses.VALUE_TYPES
+    if feature != "value":
+        return feature not in metaclasses.DEFAULT_TYPES
+    owner = context.owner(row)
+    return owner is not None and (owner.kind is Kind.SLOT or owner.subkind == "value")
 
 
 def is_text(context: Context, row: int, feature: str) -> bool:
@@ -101,11 +119,11 @@ def _refer(context: Context, owner: Element, row: int, feature: str, href: str) 
     target = href or context.document.idref(row)
     edge = v.SPECIAL.get((owner.kind, feature)) or v.REFERENCES.get(feature)
     if edge is not None:
-        context.link(edge, owner, target, row, feature, bool(href))
+        context.link(edge, owner.id, target, row, feature, bool(href))
         return
     backwards = v.REVERSED.get((owner.kind, feature))
     if backwards is not None:
-        context.link(backwards, owner, target, row, feature, bool(href), is_reversed=True)
+        context.link(backwards, owner.id, target, row, feature, bool(href), is_reversed=True)
     elif feature in v.CONDITIONS:
         context.conditions([target], feature)
     elif feature in v.REDUNDANT:

@@ -1,9 +1,6 @@
 """All files of one compile unit: ids that are the same for every order of files, references."""
 
-from collections.abc import Iterator
-from itertools import compress, pairwise
-from operator import not_
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import fragments, hrefs
@@ -11,10 +8,6 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.profiles import Profiles
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.identity import is_unmistakable
-from sysmlc.ir.reference import End, References, id_of
-
-NOWHERE = -1
-"""The row of what is not in the file; no element is below it."""
 
 _NOT_KEPT = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
 
@@ -48,98 +41,13 @@ class Link(NamedTuple):
     is_reversed: bool = False
 
 
-class Links:
-    """Links in the order in which they were found.
-
-    Nearly all lead from an element of a file to a local id in it: they are columns of edge,
-    source, target as written, the target's row or -1, and the row that says so; ``files`` says
-    where the links of another file begin. ``backwards`` are the numbers of those that lead from
-    the target to the source. Those that lead to an href, or to another file, are in ``rare``,
-    by number.
-    """
-
-    __slots__ = ("backwards", "edges", "files", "found", "rare", "rows", "sources", "targets")
-
-    def __init__(self) -> None:
-        self.edges: list[Edge] = []
-        self.sources: list[End] = []
-        self.targets: list[str] = []
-        self.found: list[int] = []
-        self.rows: list[int] = []
-        self.files: list[tuple[int, Lowered]] = []
-        self.rare: dict[int, Link] = {}
-        self.backwards: set[int] = set()
-
-    def begin(self, lowered: Lowered) -> None:
-        """What is added from here on is in this file, unless it is rare."""
-        if not self.files or self.files[-1][1] is not lowered:
-            self.files.append((len(self.edges), lowered))
-
-    def __iter__(self) -> Iterator[Link]:
-        return map(self.__getitem__, range(len(self.edges)))
-
-    def __getitem__(self, number: int) -> Link:
-        rare = self.rare.get(number)
-        if rare is not None:
-            return rare
-        lowered = next(file for start, file in reversed(self.files) if start <= number)
-        edge, target, row = self.edges[number], self.targets[number], self.rows[number]
-        feature, source = _feature(lowered.document, row, target), id_of(self.sources[number])
-        return Link(edge, source, lowered, target, row, feature, False, number in self.backwards)
-
-    def __setitem__(self, number: int, link: Link) -> None:
-        self.rare[number] = link
-
-    def add(self, edge: Edge, source: Element, target: str, at: int, row: int) -> None:
-        """Add a link from an element of the file that was begun to the local id of a row."""
-        self.edges.append(edge)
-        self.sources.append(source)
-        self.targets.append(target)
-        self.found.append(at)
-        self.rows.append(row)
-
-    def add_reversed(self, edge: Edge, source: Element, target: str, at: int, row: int) -> None:
-        """Add a link that leads from what the local id means to the element."""
-        self.backwards.add(len(self.edges))
-        self.add(edge, source, target, at, row)
-
-    def append(self, link: Link) -> None:
-        """Add a link, whatever it is."""
-        self.rare[len(self.edges)] = link
-        self.edges.append(link.edge)
-        self.sources.append(link.source)
-        self.targets.append(link.target)
-        self.found.append(NOWHERE)
-        self.rows.append(link.row)
-
-    def runs(self) -> Iterator[tuple[range, Lowered]]:
-        """Numbers of each run of links in one file."""
-        last = (len(self.edges), None)
-        for (start, lowered), (end, _) in pairwise([*self.files, last]):
-            if lowered is not None:
-                yield range(start, end), lowered
-
-    def clear(self) -> None:
-        """Forget all links."""
-        for name in self.__slots__:
-            getattr(self, name).clear()
-
-
-def _feature(document: Document, row: int, target: str) -> str:
-    """The attribute of the row that names the target; without one the row is the reference."""
-    for name, value in document.attributes[row].items():
-        if value == target and "}" not in name:
-            return name
-    return document.features[row]
-
-
 class Unit:
     """The documents of a compile unit, and the references between their elements."""
 
     def __init__(self, documents: list[Document], graph: Graph) -> None:
         self.graph = graph
         self.files = [Lowered(document) for document in documents]
-        self.links = Links()
+        self.links: list[Link] = []
         self.profiles = Profiles()
         self.library: dict[str, tuple[str, str]] = {}
         self.paths: dict[str, tuple[Lowered, list[tuple[str, int, bool]]]] = {}
@@ -229,30 +137,12 @@ class Unit:
         return known if hrefs.can_lead_into(file, path, id) else None
 
     def flush(self) -> None:
-        """Give all references to the graph, in the order in which they were found."""
-        for numbers, lowered in self.links.runs():
-            self._flush(numbers, lowered)
+        """Add all references to ``graph.pending``, in the order in which they were found."""
+        for link in self.links:
+            reference = self._resolved(link)
+            if reference is not None:
+                self.graph.pending.append(reference)
         self.links.clear()
-
-    def _flush(self, numbers: range, lowered: Lowered) -> None:
-        """Column by column for all links at once, but for those that have to be looked at."""
-        links, run = self.links, slice(numbers.start, numbers.stop)
-        lowered.own.append(None)
-        targets = cast("list[End]", list(map(lowered.own.__getitem__, links.found[run])))
-        lowered.own.pop()
-        ordinals = list(map(lowered.document.ordinals.__getitem__, links.rows[run]))
-        found = References(links.edges[run], links.sources[run], targets, ordinals)
-        others = set(compress(numbers, map(not_, targets))) | (links.rare.keys() & numbers)
-        for number in links.backwards.intersection(numbers) - others:
-            found.turn(number - numbers.start)
-        lost = set()
-        for number in sorted(others):
-            reference = self._resolved(links[number])
-            if reference is None:
-                lost.add(number - numbers.start)
-            else:
-                found[number - numbers.start] = reference
-        self.graph.pending.extend(found, lost)
 
     def _resolved(self, link: Link) -> Reference | None:
         target = self.target_id(link.lowered, link.target, link.is_href)
