@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-from sysmlc.backends.templates import filled
+from sysmlc.backends.templates import render_template
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
@@ -81,7 +81,7 @@ class Page:
 
 def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
     """Markdown text. Raises ``jinja2.TemplateError`` when a template of the user's is wrong."""
-    return filled(_FOLDER, "contract.md.j2", templates, page=_page(graph, contract))
+    return render_template(_FOLDER, "contract.md.j2", templates, page=_page(graph, contract))
 
 
 _Told = Callable[[str], tuple[str, str]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sysmlc.backends.plantuml.views import Diagram
-from sysmlc.backends.templates import filled
+from sysmlc.backends.templates import render_template
 
 _FOLDER = "plantuml"
 
@@ -25,4 +25,4 @@ class Renderer:
         """
         name = f"{diagram.kind}.puml.j2"
         values = {"diagram": diagram, "view": diagram.view, "header": header}
-        return filled(_FOLDER, name, self._templates, **values)
+        return render_template(_FOLDER, name, self._templates, **values)

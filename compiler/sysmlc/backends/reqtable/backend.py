@@ -8,7 +8,7 @@ from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
 from sysmlc.backends.reqtable.table import Table, tables
 from sysmlc.backends.reqtable.text import csv_text, markdown, markdown_cell
 from sysmlc.backends.reqtable.unmet import report_open
-from sysmlc.backends.templates import environment
+from sysmlc.backends.templates import faults, render_template
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
@@ -52,8 +52,6 @@ def _free(name: str, number: int) -> str:
 
 
 def _markdown(table: Table, sink: Sink, templates: Path | None) -> str:
-    from jinja2 import TemplateError
-
     # A column in which nothing stands only makes a page wide; a CSV file keeps its columns.
     shown = [at for at, name in enumerate(table.columns) if name in _ALWAYS or _is_used(table, at)]
     page = {
@@ -62,9 +60,8 @@ def _markdown(table: Table, sink: Sink, templates: Path | None) -> str:
         "rows": [[markdown_cell(row.cells[at]) for at in shown] for row in table.rows],
     }
     try:
-        template = environment("reqtable", templates).get_template(_TEMPLATE)
-        return template.render(page=page)
-    except TemplateError as error:
+        return render_template("reqtable", _TEMPLATE, templates, page=page)
+    except faults() as error:
         fault = f"{type(error).__name__}: {error}"
         sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
         return ""
