@@ -89,13 +89,6 @@ def test_watch_keeps_the_last_good_outputs_while_the_model_has_errors(here):
     assert here.read("out/graph.json") != good
 
 
-def test_watch_without_watchfiles_says_how_to_get_it(here, monkeypatch):
-    monkeypatch.setitem(sys.modules, "watchfiles", None)
-    done = here.sysmlc("watch", "plant.ir", "--emit", "graph")
-    assert done.exit_code == 2
-    assert "pip install 'sysmlc[watch]'" in done.stderr
-
-
 def test_watch_does_not_start_again_because_of_its_own_outputs():
     assert watch._is_input(1, "/x/plant.uml")
     assert watch._is_input(1, "/x/sysmlc.toml")

@@ -1,5 +1,6 @@
 """Where the library is found, that it is read lazily, and what the cache keeps of it."""
 
+import importlib.metadata
 import sys
 import zipfile
 
@@ -82,19 +83,40 @@ def test_the_installed_distribution_is_read_as_data_and_not_imported(tmp_path, m
     assert not library.is_core
 
 
-def test_without_any_the_core_serves_and_that_is_told_once(monkeypatch):
-    monkeypatch.setattr("sysmlc.language.library._installed", lambda: None)
-    library = find(None, {})
-    assert library.is_core
+def codes_without_library(text):
     sink = Sink()
+    resolve([parse(text, "a.sysml", "sysml", sink)], find(None, {}), sink)
+    return [diagnostic.rule.code for diagnostic in sink]
+
+
+@pytest.fixture
+def wheel_without_models(tmp_path, monkeypatch):
+    """The distribution as it is on platforms for which it has no library files."""
+    (tmp_path / "sysml").mkdir()
+    (tmp_path / "sysml" / "__init__.py").touch()
+    monkeypatch.delitem(sys.modules, "sysml", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+
+
+def test_the_core_replaces_a_distribution_without_models_which_is_reported_once(
+    wheel_without_models,
+):
+    assert find(None, {}).is_core
     text = "attribute a : ScalarValues::Real; attribute b : ScalarValues::String;"
-    resolve([parse(text, "a.sysml", "sysml", sink)], library, sink)
-    assert [found.message for found in sink] == [
-        "no standard library of SysML v2 was found: 2 names are taken from sysmlc's own core"
-    ]
-    quiet = Sink()
-    resolve([parse("attribute a;", "a.sysml", "sysml", quiet)], library, quiet)
-    assert list(quiet) == []
+    assert codes_without_library(text) == ["SM207"]
+    assert codes_without_library("attribute a;") == []
+
+
+def test_labels_of_libraries(folder, wheel_without_models):
+    assert find(folder).label == f"{folder} (--library)"
+    environment = {"SYSML_LIBRARY_PATH": str(folder)}
+    assert find(None, environment).label == f"{folder} (SYSML_LIBRARY_PATH)"
+    assert find(None, {}).label == "core of sysmlc (bundled)"
+
+
+def test_the_label_of_the_installed_library_has_the_version():
+    version = importlib.metadata.version("sysml")
+    assert find(None, {}).label == f"sysml {version} (installed)"
 
 
 def test_a_lost_type_is_looked_for_in_library_files_that_nobody_read():

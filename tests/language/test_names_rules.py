@@ -5,7 +5,7 @@ from resolving import documents, library, told
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.names import resolve
-from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP, UNRESOLVED
+from sysmlc.language.names.rules import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP, UNRESOLVED
 
 
 def codes(text):
@@ -15,7 +15,8 @@ def codes(text):
 
 
 @pytest.mark.parametrize(
-    ("rule", "code"), [(UNRESOLVED, "SM205"), (CYCLE, "SM206"), (CORE, "SM207")]
+    ("rule", "code"),
+    [(UNRESOLVED, "SM205"), (CYCLE, "SM206"), (NO_STANDARD_LIBRARY, "SM207")],
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
     assert rule.code == code

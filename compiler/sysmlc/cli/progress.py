@@ -52,12 +52,22 @@ class Progress(Observer):
             self._drawn = True
 
     def after(self, what: str, graph: "Graph") -> None:
-        """Print the graph when it was asked for."""
+        """Print the graph after the passes of ``--print-after``; with ``-v`` name the library."""
+        if what == "read" and self._verbose:
+            self._show_libraries(graph)
         if what in self._print_after:
             from sysmlc.ir.text import print_text
 
             self.clear()
             click.echo(f"// after {what}\n{print_text(graph)}", nl=False)
+
+    def _show_libraries(self, graph: "Graph") -> None:
+        from sysmlc.language.names import Model
+
+        for model in graph.derived(Model):
+            library = model.library
+            text = f"SysML v2 library: {library.label}, {len(library.paths())} files"
+            click.echo(f"{'':9} {text}", err=True)
 
     def fault(self, where: str, trace: str) -> None:
         """With ``-v`` show where a fault of ours happened."""

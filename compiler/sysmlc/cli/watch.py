@@ -76,12 +76,8 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
 
 def _saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
     """The files of each group of changes; none now and then, for systems that tell nothing."""
-    from sysmlc.cli.session import fail
+    from watchfiles import watch
 
-    try:
-        from watchfiles import watch
-    except ImportError:
-        fail("'watch' needs the package watchfiles: pip install 'sysmlc[watch]'")
     changes = watch(
         *folders,
         watch_filter=_is_input,

@@ -24,8 +24,8 @@ _DISTRIBUTION = "sysml"
 class Library:
     """Files of a library and their root members, each file read when a name of it is asked for.
 
-    ``name`` says where it was found, for messages; ``is_core`` tells that it is the small one of
-    our own, which has only what examples need.
+    ``label`` names the library and how it was found, for users. ``is_core`` marks the core that is
+    bundled with sysmlc, which has only the names that production models use.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class Library:
         sources: Iterable[Source],
         cache: Cache | None = None,
         *,
-        name: str = "",
+        label: str = "",
         is_core: bool = False,
     ) -> None:
         self._sources = {source.name: source for source in sources}
@@ -45,7 +45,7 @@ class Library:
         for path in self._sources:
             self._stems.setdefault(_stem(path), []).append(path)
         self._index: dict[str, list[str]] | None = None
-        self.name = name
+        self.label = label
         self.is_core = is_core
 
     def roots(self, name: str) -> list[Node]:
@@ -151,17 +151,19 @@ def find(
     """The library at ``path``, else of the environment, of the installed distribution, our own.
 
     ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar.
-    Raises SourceError when the one that was asked for is not there or has no model files.
+    Some wheels of the distribution come without model files (Linux on ARM, musl): they count as
+    not installed. Raises SourceError when the library that was asked for is missing or has no
+    model files.
     """
     asked = asked_for(path, environment)
     if asked:
         sources = _read(Path(asked))
         if not sources:
             raise SourceError("has no .sysml or .kerml files", asked, fault=Fault.MISSING)
-        return Library(sources, cache, name=asked)
+        return Library(sources, cache, label=f"{asked} ({'--library' if path else VARIABLE})")
     installed = _installed()
     if installed is not None:
-        return Library(_read(installed), cache, name=f"the '{_DISTRIBUTION}' distribution")
+        return Library(_read(installed), cache, label=_label_of_installed(installed))
     return core(cache)
 
 
@@ -177,12 +179,11 @@ def place(path: str | Path | None, environment: Mapping[str, str] = os.environ) 
 
 
 def core(cache: Cache | None = None) -> Library:
-    """The small library of our own."""
+    """The core that is bundled with sysmlc."""
     from sysmlc import resources
 
-    return Library(
-        _read(resources.path("metamodels", "core")), cache, name="sysmlc's core", is_core=True
-    )
+    files = _read(resources.path("metamodels", "core"))
+    return Library(files, cache, label="core of sysmlc (bundled)", is_core=True)
 
 
 def _installed() -> Path | None:
@@ -198,6 +199,13 @@ def _installed() -> Path | None:
         if models.is_dir():
             return models
     return None
+
+
+def _label_of_installed(models: Path) -> str:
+    """Return name and version of the distribution, which the name of its metadata folder has."""
+    folders = models.parents[1].glob(f"{_DISTRIBUTION}-*.dist-info")
+    version = next((folder.stem.partition("-")[2] for folder in folders), "of unknown version")
+    return f"{_DISTRIBUTION} {version} (installed)"
 
 
 def _read(path: Path) -> list[Source]:

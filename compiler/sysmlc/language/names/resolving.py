@@ -4,10 +4,10 @@ import gc
 import sys
 from collections.abc import Sequence
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.language.library import Library
 from sysmlc.language.names.model import Model, root
-from sysmlc.language.names.rules import CORE, CYCLE, TOO_DEEP
+from sysmlc.language.names.rules import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
 from sysmlc.language.names.unresolved import report, subject
 from sysmlc.language.tree import Document, Node, Relation
 
@@ -34,7 +34,7 @@ def resolve_all(model: Model, sink: Sink) -> None:
             _settle(document, model)
         _report_cycles(model, sink)
         if model.library.is_core:
-            _report_core(model, sink)
+            _report_missing_library(model, sink)
     finally:
         sys.setrecursionlimit(depth)
         if collecting:
@@ -89,15 +89,17 @@ def _report_cycles(model: Model, sink: Sink) -> None:
             sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
 
 
-def _report_core(model: Model, sink: Sink) -> None:
-    """Tell once how many names the small library of our own had to serve, at the first use."""
-    roots = {document.root for document in model.library.loaded()}
-    uses = [
-        (document, node, relation.reference.start)
+def _report_missing_library(model: Model, sink: Sink) -> None:
+    """Report that the bundled core replaces the standard library, if a name of the library is used.
+
+    The diagnostic has no location: the installation lacks something, not a line of the model.
+    """
+    core = {document.root for document in model.library.loaded()}
+    targets = (
+        relation.reference.target
         for document in model.documents
         for node in model.nodes(document)
         for relation in node.relations
-        if relation.reference.target is not None and root(relation.reference.target) in roots
-    ]
-    if uses:
-        sink.report(CORE, subject(*uses[0]), count=len(uses))
+    )
+    if any(target is not None and root(target) in core for target in targets):
+        sink.report(NO_STANDARD_LIBRARY, Subject())

@@ -46,15 +46,17 @@ package Plant {
 }
 """,
 )
-CORE = rule(
+NO_STANDARD_LIBRARY = rule(
     "SM207",
     "no-standard-library",
     Severity.WARNING,
-    "no standard library of SysML v2 was found: {count} names are taken from sysmlc's own core",
-    why="Types, units and functions come from the standard library. The core of sysmlc has only "
-    "their names and how they specialise each other, and only those that production models use.",
-    help="install the distribution 'sysml', or say where the library is: --library PATH or "
-    "the environment variable SYSML_LIBRARY_PATH",
+    "the standard library of SysML v2 is not installed; the core that sysmlc bundles replaces it",
+    why="Types, units and functions come from the standard library. It is part of the distribution "
+    "'sysml', which is installed with sysmlc, except on platforms where that distribution comes "
+    "without its library files (Linux on ARM, musl). The bundled core has only the names that "
+    "production models use, and how they specialise each other.",
+    help="if names of the library are missing, get the library's files from the SysML v2 release "
+    "and name their folder with --library PATH or the environment variable SYSML_LIBRARY_PATH",
     wrong="""\
 package Plant {
     private import ScalarValues::Real;
