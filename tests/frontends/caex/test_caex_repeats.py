@@ -3,8 +3,6 @@
 import pytest
 from reading_caex import Read, classes, interfaces, plant, types
 
-from sysmlc.frontends.caex import repeats
-
 ONE = '<Attribute Name="a"><Value>1</Value></Attribute>'
 TWO = '<Attribute Name="a"><Value>2</Value></Attribute>'
 THREE = '<Attribute Name="a"><Value>3</Value></Attribute>'
@@ -57,16 +55,6 @@ REPEATS = [
 @pytest.mark.parametrize(("body", "told"), REPEATS)
 def test_a_name_that_two_elements_have_is_told(body, told):
     assert Read(body).findings == [f"SM635: {told}"]
-
-
-@pytest.mark.parametrize("rows", [1, 4])
-@pytest.mark.parametrize(("body", "told"), REPEATS)
-def test_a_name_is_told_however_many_rows_are_looked_at_together(body, told, rows, monkeypatch):
-    monkeypatch.setattr(repeats, "_AT_ONCE", rows)
-    more = plant('<InternalElement Name="j" ID="j"><Attribute Name="x"/></InternalElement>', "More")
-    assert Read(more + body + more.replace("More", "Other").replace('"j"', '"k"')).findings == [
-        f"SM635: {told}"
-    ]
 
 
 ALONE = [

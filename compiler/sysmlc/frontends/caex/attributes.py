@@ -1,7 +1,7 @@
 """Attributes: value properties of classes."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import constraints, fitting, measures, mirrors, structures
+from sysmlc.frontends.caex import constraints, fitting, measures, mirrors
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Member, Type
@@ -11,18 +11,13 @@ from sysmlc.ir import Edge, Element, Kind
 
 def attribute(context: Context, owner: Type, top: Node, document: Document) -> None:
     """Add an attribute of a class, with those below it as features of a type of its own."""
-    plain = context.plain.get(document)
-    waiting = [(owner, top.row)]
+    waiting = [(owner, top)]
     while waiting:
-        holder, row = waiting.pop()
-        if plain is not None and plain.attribute(holder, row):
-            continue
-        structure = None if plain is None else structures.structure(context, plain, holder, row)
-        if structure is None:
-            structure = _attribute(context, holder, document.node(row), document)
+        holder, node = waiting.pop()
+        structure = _attribute(context, holder, node, document)
         if structure is not None:
-            inside = document.children(row)
-            waiting += [(structure, r) for r in reversed(inside) if document.tags[r] == "Attribute"]
+            inner_nodes = list(node.of("Attribute"))
+            waiting += [(structure, inner) for inner in reversed(inner_nodes)]
 
 
 def _attribute(context: Context, owner: Type, node: Node, document: Document) -> Type | None:

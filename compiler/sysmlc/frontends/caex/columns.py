@@ -1,18 +1,26 @@
-"""From the bytes of any file to the columns of a document, in one pass of the XML parser.
+"""Reads the bytes of a CAEX file into the columns of a document with one pass of expat.
 
-The handlers here are called for every element of a file: they do the least that they can.
+Expat calls the handlers for each element of the file, so they only append to columns.
 """
 
+from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.vocabulary import STRUCTURE
-from sysmlc.sources import DEFAULT_LIMITS, Source
-from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser, too_deep
+from sysmlc.frontends.caex.vocabulary import SIGNS, STRUCTURE
+from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
+from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep
 
 _Texts = dict[int, str]
 
 
-class _Kinds(dict[str, _Texts | None]):
-    """What text each tag has: none, one that is folded, or (the column of) its own."""
+def read_document(source: Source, is_built_in: bool = False) -> Document:
+    """Return the document of a CAEX file. Raises SourceError."""
+    reader = _ColumnReader(source, is_built_in)
+    reader.run()
+    return reader.document
+
+
+class _TextColumns(dict[str, _Texts | None]):
+    """The column for the text of each tag: None, that of a folded tag, or that of the row."""
 
     def __init__(self, texts: dict[str, _Texts]) -> None:
         super().__init__()
@@ -21,93 +29,98 @@ class _Kinds(dict[str, _Texts | None]):
     def __missing__(self, tag: str) -> _Texts | None:
         name = tag.rpartition(SEPARATOR)[2]
         own = None if name in STRUCTURE else self._texts[""]
-        self[tag] = kind = self._texts.get(name, own) if name else own
-        return kind
+        self[tag] = column = self._texts.get(name, own) if name else own
+        return column
 
 
-def fill(document: Document, source: Source) -> None:
-    """Fill the columns. Raises SourceError."""
-    made = parser()
-    try:
-        stray = _handle(document, source, made)
-        parse(source, made)
-        document.has_stray = any(map(str.strip, stray))
-        document.has_changes = "ChangeMode" in made.intern
-        local = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
-        document.tags = [local[tag] for tag in document.tags]
-        document.ids = [values.get("ID", "") for values in document.attributes]
-        document.alike = list(range(len(document.tags)))
-    finally:
-        # The handlers know the parser and the columns: nothing else ends this circle.
-        made.StartElementHandler = made.EndElementHandler = made.CharacterDataHandler = None
+class _ColumnReader:
+    """The parser handlers that fill the columns of one document.
 
-
-def _handle(document: Document, source: Source, made: Parser) -> set[str]:
-    """Set the handlers; the set that they return will hold what stands where CAEX has no text.
-
-    Text is kept only where CAEX has some: between the other elements stand line ends.
-    The text of what is inside a folded element is its parent's, too.
+    An element whose tag is folded (``vocabulary.FOLDED``) gets no row when it has no attributes:
+    its text becomes an entry of its parent's row. Text elsewhere is noted as stray.
     """
-    stray: set[str] = set()
-    hear = stray.add
-    tags, ends, texts = document.tags, document.ends, document.texts
-    stack = [-1]
-    kinds = _Kinds(texts)
-    deepest = DEFAULT_LIMITS.depth
-    own = texts[""]
-    ordinal = -1
-    following = 0
-    folding: _Texts | None = None
-    depth = 0
-    add_tag, add_attributes = tags.append, document.attributes.append
-    add_parent, add_ordinal = document.parents.append, document.ordinals.append
-    add_end, push, pop = ends.append, stack.append, stack.pop
 
-    def start(tag: str, values: dict[str, str]) -> None:
-        # Columns share their numbers: a number of its own is four times its place in a list.
-        nonlocal ordinal, following, folding, depth
-        ordinal += 1
-        above = stack[-1]
-        kind = kinds[tag]
-        if kind is not None:
-            made.CharacterDataHandler = text
-            made.EndElementHandler = end_of_text
-            is_folded = not values and kind is not own and folding is None
-            if is_folded and above >= 0 and above not in kind:
-                folding, depth = kind, len(stack)
-                kind[above] = ""
+    def __init__(self, source: Source, is_built_in: bool) -> None:
+        self.document = Document(source.name, is_built_in)
+        self._source = source
+        self._parser = parser()
+        self._stray_texts: set[str] = set()
+
+    def run(self) -> None:
+        """Parse the source and complete the columns. Raises SourceError."""
+        self._set_handlers()
+        try:
+            parse(self._source, self._parser)
+        finally:
+            # The parser and its handlers refer to one another; the garbage collector is off.
+            self._parser.StartElementHandler = None
+            self._parser.EndElementHandler = None
+            self._parser.CharacterDataHandler = None
+        document = self.document
+        document.has_stray = any(map(str.strip, self._stray_texts))
+        local_names = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
+        document.tags = [local_names[tag] for tag in document.tags]
+        if document.tags[0] != "CAEXFile":
+            raise SourceError("its root element is no CAEXFile", self._source.name, 0)
+        document.ids = [attributes.get("ID", "") for attributes in document.attributes]
+        document.signs = bytes(map(SIGNS.__getitem__, document.tags))
+        document.verdicts = list[Verdict | None]([None]) * len(document.tags)
+        document.elements = [""] * len(document.tags)
+
+    def _set_handlers(self) -> None:
+        document, expat = self.document, self._parser
+        tags, ends, texts = document.tags, document.ends, document.texts
+        own_texts, text_columns = texts[""], _TextColumns(texts)
+        open_rows = [-1]
+        ordinal = -1
+        following = 0
+        folding: _Texts | None = None
+        folding_depth = 0
+
+        def start_element(tag: str, attributes: dict[str, str]) -> None:
+            nonlocal ordinal, following, folding, folding_depth
+            ordinal += 1
+            parent = open_rows[-1]
+            column = text_columns[tag]
+            if column is not None:
+                expat.CharacterDataHandler = add_text
+                expat.EndElementHandler = end_text_element
+                is_foldable = not attributes and column is not own_texts and folding is None
+                if is_foldable and parent >= 0 and parent not in column:
+                    folding, folding_depth = column, len(open_rows)
+                    column[parent] = ""
+                    return
+            row = following
+            following = row + 1
+            open_rows.append(row)
+            tags.append(tag)
+            document.attributes.append(attributes)
+            document.parents.append(parent)
+            document.ordinals.append(ordinal)
+            ends.append(0)
+            if len(open_rows) > DEFAULT_LIMITS.depth:
+                too_deep(self._source, expat)
+
+        def end_element(_tag: str) -> None:
+            ends[open_rows.pop()] = following
+
+        def end_text_element(_tag: str) -> None:
+            nonlocal folding
+            expat.CharacterDataHandler = self._stray_texts.add
+            if folding is None:
+                expat.EndElementHandler = end_element
+            elif len(open_rows) == folding_depth:
+                folding = None
+                expat.EndElementHandler = end_element
                 return
-        row = following
-        following = row + 1
-        push(row)
-        add_tag(tag)
-        add_attributes(values)
-        add_parent(above)
-        add_ordinal(ordinal)
-        add_end(0)
-        if len(stack) > deepest:
-            too_deep(source, made)
+            ends[open_rows.pop()] = following
 
-    def end(_tag: str) -> None:
-        ends[pop()] = following
+        def add_text(text: str) -> None:
+            row = open_rows[-1]
+            is_folded = folding is not None and len(open_rows) == folding_depth
+            column = folding if is_folded and folding is not None else own_texts
+            column[row] = column.get(row, "") + text
 
-    def end_of_text(_tag: str) -> None:
-        nonlocal folding
-        made.CharacterDataHandler = hear
-        if folding is None:
-            made.EndElementHandler = end
-        elif len(stack) == depth:
-            folding = None
-            made.EndElementHandler = end
-            return
-        ends[pop()] = following
-
-    def text(data: str) -> None:
-        row = stack[-1]
-        column = folding if folding is not None and len(stack) == depth else own
-        column[row] = column[row] + data if column.get(row) else data
-
-    made.StartElementHandler = start
-    made.EndElementHandler = end
-    made.CharacterDataHandler = hear
-    return stray
+        expat.StartElementHandler = start_element
+        expat.EndElementHandler = end_element
+        expat.CharacterDataHandler = self._stray_texts.add

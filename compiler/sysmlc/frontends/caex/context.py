@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Rule, Sink, Subject, Verdict
 from sysmlc.frontends.caex import rules
@@ -13,9 +12,6 @@ from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
 from sysmlc.ir.shared import NOTHING, Shared
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.caex.plain import Plain
 
 Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
@@ -47,8 +43,6 @@ class Context:
         self.ids = Identifiers(documents)
         self.missing: dict[Missing, list[tuple[Document, Node]]] = {}
         self.mirrors: list[tuple[Document, Node]] = []
-        self.plain: dict[Document, Plain] = {}
-        """What adds plain features of the files."""
         self.special: dict[str, str] = {}
         self.strange_units: dict[tuple[Document, str], list[Node]] = {}
         self.unfit: dict[tuple[Document, str, str], list[int]] = {}
@@ -202,7 +196,6 @@ class Context:
 
     def forget(self) -> None:
         """Let go what knows each other: nothing of it outlives the reading."""
-        self.plain.clear()
         for document in self.documents:
             document.forget()
 

@@ -9,17 +9,17 @@ from sysmlc.frontends.caex.vocabulary import FOLDED, SIGNS
 class Node:
     """One row of a document. There is one node for each row that was asked for.
 
-    ``tag`` is its local name, ``ordinal`` its place in the file.
+    ``tag`` is its local name, ``name`` the attribute ``Name``, ``ordinal`` its place in the file.
     """
 
-    __slots__ = ("attributes", "document", "row", "tag")
+    __slots__ = ("attributes", "document", "name", "row", "tag")
 
     def __init__(self, document: "Document", row: int) -> None:
         self.document = document
         self.row = row
         self.tag = document.tags[row]
-        values, id = document.attributes[row], document.ids[row]
-        self.attributes = values if values.get("ID", "") == id else {**values, "ID": id}
+        self.attributes = document.attributes[row]
+        self.name = self.attributes.get("Name", "")
 
     @property
     def ordinal(self) -> int:
@@ -51,14 +51,10 @@ class Node:
         self.document.verdicts[self.row] = verdict
 
     @property
-    def name(self) -> str:
-        """The attribute ``Name``."""
-        return self.attributes.get("Name", "")
-
-    @property
     def children(self) -> list["Node"]:
         """The nodes directly below it."""
-        return list(map(self.document.node, self.document.children(self.row)))
+        document = self.document
+        return [document.node(row) for row in document.children(self.row)]
 
     @property
     def texts(self) -> dict[str, str]:
@@ -68,9 +64,12 @@ class Node:
 
     def text(self, tag: str) -> str | None:
         """Text of a child, or None when there is no such child."""
-        column = self.document.texts.get(tag)
-        if column is not None and self.row in column:
-            return column[self.row]
+        document, row = self.document, self.row
+        column = document.texts.get(tag)
+        if column is not None and row in column:
+            return column[row]
+        if document.ends[row] == row + 1:
+            return None
         child = next(self.of(tag), None)
         return None if child is None else child.own_text
 
@@ -87,9 +86,11 @@ class Node:
 
     def of(self, *tags: str) -> Iterator["Node"]:
         """Children with these tags, in order."""
-        document, all_tags = self.document, self.document.tags
-        rows = [row for row in document.children(self.row) if all_tags[row] in tags]
-        return map(document.node, rows)
+        document, row = self.document, self.row
+        if document.ends[row] == row + 1:
+            return iter(())
+        all_tags = document.tags
+        return map(document.node, [r for r in document.children(row) if all_tags[r] in tags])
 
     def above(self) -> Iterator["Node"]:
         """The nodes that the node lies in, nearest first."""
@@ -109,30 +110,23 @@ class Document:
     ``tags`` are local names; ``ends[row]`` is the first row after the row's content;
     ``ordinals`` are places among all elements of the file. ``texts`` holds by tag the texts of
     folded children, and under the empty name the row's own, for the rows that have some.
-    ``has_changes`` tells whether some row may have a ChangeMode, ``has_stray`` whether text
-    may stand where CAEX has none. ``shapes`` are the pairs of a tag and the names of its attributes
-    that occur, where they are known (else it is empty). ``elements`` are ids of what
+    ``has_stray`` tells whether text may stand where CAEX has none. ``elements`` are ids of what
     the rows became in the graph. ``signs`` are the tags as numbers (``vocabulary.SIGNS``):
-    bytes are looked through in a tenth of the time of a list.
-
-    ``ids`` are the IDs, empty where there is none. ``alike`` is the first row with the same tag
-    and attributes, but for the ID; such rows may share ``attributes``, where the ID is empty then.
+    bytes are looked through in a tenth of the time of a list. ``ids`` are the IDs, empty where
+    there is none.
     """
 
     __slots__ = (
         "_nodes",
-        "alike",
         "attributes",
         "elements",
         "ends",
-        "has_changes",
         "has_stray",
         "ids",
         "is_built_in",
         "name",
         "ordinals",
         "parents",
-        "shapes",
         "signs",
         "tags",
         "texts",
@@ -152,14 +146,11 @@ class Document:
         self.ends: list[int] = []
         self.signs = b""
         self.ids: list[str] = []
-        self.alike: list[int] = []
         self.ordinals: list[int] = []
         self.texts: dict[str, dict[int, str]] = {tag: {} for tag in ("", *FOLDED)}
         self.verdicts: list[Verdict | None] = []
         self.elements: list[str] = []
-        self.has_changes = True
         self.has_stray = False
-        self.shapes: set[tuple[str, tuple[str, ...]]] = set()
         self._nodes: dict[int, Node] = {}
 
     @property

@@ -11,12 +11,9 @@ from sysmlc.ir import Edge, Element, Kind
 
 def interface(context: Context, owner: Type, top: Node, document: Document) -> None:
     """Add an external interface of a class; nested ones are ports of a class of its own."""
-    plain = context.plain.get(document)
     waiting = [(owner, top)]
     while waiting:
         holder, node = waiting.pop()
-        if plain is not None and plain.interface(holder, node.row):
-            continue
         made = _interface(context, holder, node, document)
         waiting += [(made, child) for child in node.of("ExternalInterface") if made is not None]
 

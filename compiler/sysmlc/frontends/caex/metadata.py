@@ -51,8 +51,7 @@ def _holders(document: Document) -> list[int]:
     rows: set[int] = set()
     for tag in _SAID:
         rows.update(parents[row] for row in document.tagged(tag, 0, len(parents)))
-    if document.has_changes:
-        rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
+    rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
     rows.update(document.texts["Description"], document.texts["Version"])
     return sorted(rows)
 

@@ -14,11 +14,10 @@ from sysmlc.frontends.caex import (
     roles,
     rules,
 )
+from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.links import Links
-from sysmlc.frontends.caex.opening import read
-from sysmlc.frontends.caex.plain import Plain
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.standard import Standard
 from sysmlc.frontends.caex.vocabulary import Family
@@ -42,7 +41,6 @@ def read_all(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Cove
 def _lower(context: Context) -> None:
     types = []
     for document in context.documents:
-        context.plain[document] = Plain(context, document)
         libraries.header(context, document)
     libraries.tie_aliases(context)
     for document in context.documents:
@@ -57,8 +55,6 @@ def _lower(context: Context) -> None:
     for document in context.documents:
         sites.lower_hierarchies(document)
     sites.finish()
-    for plain in context.plain.values():
-        plain.finish()
     mirrors.finish(context)
     roles.lower(context, sites)
     mappings.lower(context, sites)
@@ -70,7 +66,7 @@ def _lower(context: Context) -> None:
 
 def _read(source: Source, sink: Sink) -> Document | None:
     try:
-        return read(source)
+        return read_document(source)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise

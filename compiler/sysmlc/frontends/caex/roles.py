@@ -1,12 +1,10 @@
 """Roles: what a class or an internal element realises (thesis, Table 3.1)."""
 
-from collections import defaultdict
 from collections.abc import Iterable
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import ports, special
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Document
 from sysmlc.frontends.caex.holders import instance
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
@@ -19,23 +17,20 @@ _MAPPED = Verdict.MAPPED
 
 PORT_ATTRIBUTES = ("direction", "multiplicity", "category")
 
-_Known = defaultdict[Document, dict[int, Type]]
-"""Role classes by the first row that names them alike."""
-
 
 def lower(context: Context, sites: Sites) -> None:
     """Draw the realizations: once each, and not again where the class realises the role.
 
     Classes are the first among the sites: instances need not repeat what they realise.
     """
-    played, known = _Played(), _Known(dict)
+    played = _Played()
     clients: list[str] = []
     realized: list[Element | None] = []
     for site in sites:
         if site.type is None:
             continue
         inherited, site.ppr = played.above(site)
-        for role in _roles(context, site, known) if site.roles else ():
+        for role in _find_roles(context, site):
             if role in inherited:
                 continue
             ppr, is_port = played.meaning(role)
@@ -124,23 +119,14 @@ def _client(context: Context, site: Site) -> str:
     return site.part
 
 
-def _roles(context: Context, site: Site, known: _Known) -> Iterable[Type]:
+def _find_roles(context: Context, site: Site) -> Iterable[Type]:
+    """Return the role classes that a site names, each once, in order."""
     document = site.document
-    verdicts, alike, types = document.verdicts, document.alike, known[document]
-    found: dict[Type, None] = {}
+    roles: dict[Type, None] = {}
     for row in site.roles:
-        verdicts[row] = _MAPPED
-        role = types.get(alike[row]) or _role(context, document, row, types)
+        document.verdicts[row] = _MAPPED
+        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
+        role = context.type(path, Family.ROLE, document, document.node(row)) if path else None
         if role is not None:
-            found[role] = None
-    return found
-
-
-def _role(context: Context, document: Document, row: int, types: dict[int, Type]) -> Type | None:
-    path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
-    if not path:
-        return None
-    role = context.type(path, Family.ROLE, document, document.node(row))
-    if role is not None:
-        types[document.alike[row]] = role
-    return role
+            roles[role] = None
+    return roles

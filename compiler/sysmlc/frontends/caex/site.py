@@ -21,8 +21,7 @@ class Site:
     class above, ``instance`` the Instance that holds its values (empty while there are none).
     ``part_made`` and ``instance_made`` are the elements of these ids, where they were made for it.
     ``ppr`` is product, process, resource or empty. ``inner`` are the rows of the internal
-    elements in it, ``roles`` those that name a role, ``members`` all others but links; all but
-    ``roles`` are let go when they are lowered.
+    elements in it, which are released when they are lowered, and ``roles`` those that name a role.
     """
 
     __slots__ = (
@@ -35,7 +34,6 @@ class Site:
         "interface_ids",
         "is_known",
         "is_mirror",
-        "members",
         "name",
         "own",
         "parent",
@@ -65,24 +63,16 @@ class Site:
         self._sort(document.tags, document.ends)
 
     def _sort(self, tags: list[str], ends: list[int]) -> None:
-        """One look at the rows below it for all who ask for them."""
+        """Collect the rows of the internal elements and roles directly below the site."""
         self.inner: list[int] = []
         self.roles: list[int] = []
-        self.members: list[int] = []
-        row, end, add = self.row + 1, ends[self.row], self.members.append
+        row, end = self.row + 1, ends[self.row]
         while row < end:
-            tag, after = tags[row], ends[row]
-            if tag == "Attribute" or tag == "ExternalInterface":
-                add(row)
-            elif tag == "InternalElement":
+            if tags[row] == "InternalElement":
                 self.inner.append(row)
-            elif tag in ROLE_REFERENCES:
+            elif tags[row] in ROLE_REFERENCES:
                 self.roles.append(row)
-                if after > row + 1:
-                    add(row)
-            elif tag != "InternalLink":
-                add(row)
-            row = after
+            row = ends[row]
 
     @property
     def node(self) -> Node:

@@ -8,7 +8,6 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.site import NO_IDS, NO_ROWS, Site
-from sysmlc.frontends.caex.swift import Swift
 from sysmlc.frontends.caex.types import Member, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -34,7 +33,6 @@ class Sites:
         self._rows: dict[Document, list[Site | None]] = {}
         self._mirrors: list[Site] = []
         self._showing: list[Site] = []
-        self._swift: Swift | None = None
 
     def __iter__(self) -> Iterator[Site]:
         return iter(self._all)
@@ -60,11 +58,8 @@ class Sites:
 
     def lower_hierarchies(self, document: Document) -> None:
         """All hierarchies of a file."""
-        self._swift = Swift(self._context, document)
         for node in document.root.of("InstanceHierarchy"):
             self._lower_hierarchy(node, document)
-        self._swift.finish()
-        self._swift = None
 
     def _lower_hierarchy(self, node: Node, document: Document) -> None:
         """A hierarchy: a package with an instance for each internal element at its top."""
@@ -114,10 +109,7 @@ class Sites:
             return
         if site.type is None:
             own(self._context, site)
-        if self._swift is None:
-            members.lower(self._context, site)
-        else:
-            self._swift.lower(site)
+        members.lower(self._context, site)
 
     def _lower_below(self, top: Site) -> None:
         waiting = [top]

@@ -4,8 +4,8 @@ from functools import cache
 
 from sysmlc import resources
 from sysmlc.frontends.caex import features, libraries
+from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.opening import read
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
 from sysmlc.sources import Source
 
@@ -17,7 +17,7 @@ class Standard:
 
     def __init__(self) -> None:
         # A tree of its own for each unit: nodes remember what they became.
-        self._document = read(Source(FILE, _data()), is_built_in=True)
+        self._document = read_document(Source(FILE, _data()), is_built_in=True)
         roots = self._document.root.of(*LIBRARIES)
         self._left = {(LIBRARIES[node.tag][0], node.name): node for node in roots}
 

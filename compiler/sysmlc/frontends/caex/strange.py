@@ -49,7 +49,7 @@ def report(context: Context, sources: Sequence[Source]) -> None:
 
 
 def _attributes(context: Context, document: Document) -> None:
-    unknown = _unknown_by_shape(document.shapes or _shapes(document))
+    unknown = _unknown_by_shape(set(_shape_of_each_row(document)))
     found: dict[tuple[str, str], list[int]] = {}
     for row in _rows(document, unknown) if unknown else ():
         tag = document.tags[row]
@@ -63,10 +63,6 @@ def _attributes(context: Context, document: Document) -> None:
         facts = {"tag": tag, "attribute": name, "more": _more(len(rows))}
         facts["hint"] = did_you_mean(name, ATTRIBUTES[tag] or ())
         _tell(context, document, rows[0], facts)
-
-
-def _shapes(document: Document) -> set[_Shape]:
-    return set(_shape_of_each_row(document))
 
 
 def _shape_of_each_row(document: Document) -> Iterator[_Shape]:
