@@ -11,12 +11,16 @@ from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.sources import Roots
 from sysmlc.suggest import did_you_mean
+from sysmlc.toml_text import TomlError, parse_toml
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError
 
 FILE_NAME = "sysmlc.toml"
+_LONGEST_MESSAGE = 300
+_EXCERPT = 100
+"""Characters of either end of a longer message that are shown."""
 
 
 class ConfigError(Exception):
@@ -140,12 +144,10 @@ def _read(file: Path) -> str:
 
 
 def _parsed(file: Path, text: str) -> dict[str, Any]:
-    import tomllib
-
     try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise ConfigError(f"{file}: {problem}") from problem
+        return parse_toml(text)
+    except TomlError as problem:
+        raise ConfigError(f"{file}:{problem.line}:{problem.column}: {problem}") from problem
 
 
 def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -173,7 +175,10 @@ def _explained(file: Path, text: str, error: "ValidationError") -> str:
         advice = did_you_mean(key, cast("dict[str, object]", known))
         return f"{file}:{_line(text, key)}: unknown key '{'.'.join([*path, key])}'; {advice}"
     key = next((part for part in reversed(path) if not part.isdigit()), "")
-    return f"{file}:{_line(text, key)}: '{'.'.join(path)}': {error.message}"
+    message = error.message
+    if len(message) > _LONGEST_MESSAGE:  # it quotes the value; what is wrong with it comes last
+        message = f"{message[:_EXCERPT]} ... {message[-_EXCERPT:]}"
+    return f"{file}:{_line(text, key)}: '{'.'.join(path)}': {message}"
 
 
 def _line(text: str, key: str) -> int:

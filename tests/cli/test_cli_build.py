@@ -208,7 +208,7 @@ def test_an_accepted_finding_is_not_shown(here):
         ('\n[[model]]\nname = "a"\nfile = "x"\n', "sysmlc.toml:4: unknown key 'model.0.file'"),
         ('[rules]\nuntyped = "off"\n', "unknown rule 'untyped'; "),
         ('[rules]\nmissing-file = "of"\n', "sysmlc.toml:2: 'rules.missing-file': 'of' is not one"),
-        ("strict = \n", "sysmlc.toml: Invalid value (at line 1"),
+        ("strict = \n", "sysmlc.toml:1:10: Invalid value"),
     ],
 )
 def test_a_wrong_configuration_says_where_and_what_was_meant(here, text, sentence):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sysmlc.cli import options
+from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Unit
@@ -86,7 +86,7 @@ def _check_command_word(models: tuple[Path, ...]) -> None:
 def _compare(planned: "Plan") -> int:
     stale = planned.differences()
     for path in stale:
-        click.echo(f"not up to date: {planned.folder / path}", err=True)
+        terminal.echo(f"not up to date: {planned.folder / path}", err=True)
     return 1 if stale else 0
 
 
@@ -100,9 +100,9 @@ def _write(planned: "Plan", unit: "Unit", outcome: "Outcome", talk: bool, verbos
         fail(str(problem))
     if verbose:
         for path in changed:
-            click.echo(f"changed {unit.output / path}", err=True)
+            terminal.echo(f"changed {unit.output / path}", err=True)
     if talk:
-        click.echo(_sentence(planned, len(changed), outcome, unit.output))
+        terminal.echo(_sentence(planned, len(changed), outcome, unit.output))
 
 
 def _sentence(planned: "Plan", changed: int, outcome: "Outcome", folder: Path) -> str:

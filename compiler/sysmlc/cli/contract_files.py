@@ -4,8 +4,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
+from sysmlc.cli import terminal
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
@@ -160,4 +159,4 @@ def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> No
     found = session.named(read.root, make_report(read.sink, read.sources).findings)
     session.show([*read.findings, *found], settings)
     for line in lines:
-        click.echo(line, err=not session.says_more(settings))
+        terminal.echo(line, err=not session.says_more(settings))

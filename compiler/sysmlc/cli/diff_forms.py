@@ -5,10 +5,12 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import Any
 
 import click
 
 from sysmlc.diagnostics import Place
+from sysmlc.escapes import escape_invisible, escape_markdown
 from sysmlc.ir.compare import Change, Ref, What
 
 _SIGNS = {What.ADDED: "+", What.REMOVED: "-"}
@@ -21,7 +23,7 @@ _NOWHERE = "(model)"
 def text(changes: Sequence[Change], *, color: bool = False) -> str:
     """A block for each owner, then how many there are of each kind."""
     blocks = [
-        "\n".join([click.style(owner, bold=True) if color else owner, *_lines(group, color=color)])
+        "\n".join([_paint(owner, color, bold=True), *_lines(group, color=color)])
         for owner, group in _by_owner(changes)
     ]
     return "\n\n".join([*blocks, counts(changes)]) + "\n"
@@ -36,7 +38,12 @@ def _lines(changes: Iterable[Change], *, color: bool) -> Iterator[str]:
     for change in changes:
         sign = _SIGNS.get(change.what, "~")
         line = f"{sign} {change.kind} {change.name}: {_phrase(change)}"
-        yield "  " + (click.style(line, fg=_COLORS[sign]) if color else line)
+        yield f"  {_paint(line, color, fg=_COLORS[sign])}"
+
+
+def _paint(line: str, color: bool, **style: Any) -> str:  # noqa: ANN401 - options of click.style
+    shown = escape_invisible(line)
+    return click.style(shown, **style) if color else shown
 
 
 def _phrase(change: Change) -> str:
@@ -95,10 +102,10 @@ def markdown(changes: Sequence[Change]) -> str:
 def _cells(change: Change) -> tuple[str, ...]:
     sign = _SIGNS.get(change.what, "~")
     is_telling = change.what in (What.CHANGED, What.RETYPED, What.REWIRED)
-    what = f"{change.what}: {_escaped(change.aspect)}" if is_telling else str(change.what)
+    what = f"{change.what}: {escape_markdown(change.aspect)}" if is_telling else str(change.what)
     what += _contents(change, ", with {} below it")
     before, after = excerpts(change.before, change.after)
-    name = f"{_escaped(change.kind)} {_code(change.name)}"
+    name = f"{escape_markdown(change.kind)} {_code(change.name)}"
     return (f"`{sign}`", name, what, _code(before), _code(after))
 
 
@@ -111,13 +118,10 @@ def _span(content: str) -> str:
     """A code span: its fence is longer than any run of such signs in it (CommonMark 6.1)."""
     if not content:
         return ""
-    longest = max(map(len, re.findall("`+", content)), default=0)
+    shown = escape_invisible(content.replace("\n", " "))
+    longest = max(map(len, re.findall("`+", shown)), default=0)
     fence, gap = "`" * (longest + 1), " " if longest else ""
-    return f"{fence}{gap}{content}{gap}{fence}".replace("\n", " ")
-
-
-def _escaped(content: str) -> str:
-    return "".join(f"\\{sign}" if sign in "|*_`<[" else sign for sign in content)
+    return f"{fence}{gap}{shown}{gap}{fence}"
 
 
 # -- JSON --------------------------------------------------------------------------------------

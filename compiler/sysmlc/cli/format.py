@@ -105,6 +105,8 @@ def _read(path: Path, language: str | None) -> _Text:
     from sysmlc.sources.whole import read_whole
 
     name = path.as_posix()
+    if name == "-" and sys.stdin is None:
+        fail("standard input is closed")
     try:
         if name == "-":
             return _formatted("-", None, sys.stdin.buffer.read(), language or "sysml")

@@ -1,6 +1,5 @@
 """The command ``sysmlc``: finds the command word, or compiles when there is none."""
 
-import os
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -9,6 +8,7 @@ from typing import ParamSpec, TypeVar
 import click
 
 from sysmlc import __version__
+from sysmlc.cli import terminal
 
 COMMANDS = (
     "build",
@@ -80,25 +80,14 @@ def sysmlc() -> None:
 
 def main() -> None:
     """Run the command line; a fault of our own is one sentence and exit code 2."""
+    terminal.open_streams()
     try:
         _guarded(sysmlc, prog_name="sysmlc")
     except SystemExit as end:
-        if isinstance(end.code, int) and not (sys.gettrace() or sys.getprofile()):
-            _leave(end.code)
+        is_measured = sys.gettrace() or sys.getprofile()
+        if isinstance(end.code, int) and (not is_measured or terminal.find_stream_problems()):
+            terminal.leave(end.code)
         raise
-
-
-def _leave(code: int) -> None:
-    """End the process at once: to take a compilation apart first costs a fortieth of it.
-
-    Returns when the last words cannot be written: Python tells of that as it always does.
-    """
-    try:
-        sys.stdout.flush()
-        sys.stderr.flush()
-    except (OSError, ValueError):
-        return
-    os._exit(code)
 
 
 def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -109,8 +98,10 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
     except MemoryError:
         fault = "there is not enough memory for the model"
     except Exception as problem:
+        if isinstance(problem, OSError) and terminal.find_stream_problems():
+            sys.exit(2)
         fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
-    click.echo(f"sysmlc: {fault}\nPlease report it with the command and the model.", err=True)
+    terminal.echo(f"sysmlc: {fault}\nPlease report it with the command and the model.", err=True)
     sys.exit(2)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from sysmlc.cli import terminal
 from sysmlc.driver import Observer
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Progress(Observer):
         """Draw the bar, or with ``-v`` say the step."""
         passed = self._clock() - self._start
         if self._verbose:
-            click.echo(f"{passed:7.2f} s  {what}", err=True)
+            terminal.echo(f"{passed:7.2f} s  {what}", err=True)
         elif self._on_terminal and passed > _PATIENCE:
             filled = _WIDTH * number // max(total, 1)
             bar = "#" * filled + "-" * (_WIDTH - filled)
@@ -59,7 +60,7 @@ class Progress(Observer):
             from sysmlc.ir.text import print_text
 
             self.clear()
-            click.echo(f"// after {what}\n{print_text(graph)}", nl=False)
+            terminal.echo(f"// after {what}\n{print_text(graph)}", nl=False)
 
     def _show_libraries(self, graph: "Graph") -> None:
         from sysmlc.language.names import Model
@@ -72,7 +73,7 @@ class Progress(Observer):
     def fault(self, where: str, trace: str) -> None:
         """With ``-v`` show where a fault of ours happened."""
         if self._verbose:
-            click.echo(f"{where}:\n{trace}", err=True, nl=False)
+            terminal.echo(f"{where}:\n{trace}", err=True, nl=False)
 
     def clear(self) -> None:
         """Take the bar away before anything else is printed."""

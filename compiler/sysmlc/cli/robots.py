@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sysmlc.cli import options
+from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -107,7 +107,7 @@ def _studied(
     found = session.named(made.root, make_report(sink, made.sources).findings)
     session.show([*of_model, *found], settings)
     for one in outcomes:
-        click.echo(summary(one), err=not session.says_more(settings))
+        terminal.echo(summary(one), err=not session.says_more(settings))
     has_errors = any(one.severity is Severity.ERROR for one in sink)
     return max(code, _code(outcomes, has_errors))
 

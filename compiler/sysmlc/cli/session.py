@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from sysmlc.cli import terminal
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Unit:
 
 def fail(message: str) -> NoReturn:
     """End with one sentence and exit code 2."""
-    click.echo(f"sysmlc: {message}", err=True)
+    terminal.echo(f"sysmlc: {message}", err=True)
     sys.exit(2)
 
 
@@ -76,7 +77,7 @@ def known_rules() -> "dict[str, Rule]":
     """Every rule by its code; those of a module that cannot be imported are noted as missing."""
     from sysmlc.driver import full_catalogue
 
-    return full_catalogue(lambda note: click.echo(f"sysmlc: note: {note}", err=True))
+    return full_catalogue(lambda note: terminal.echo(f"sysmlc: note: {note}", err=True))
 
 
 def load_config(models: Sequence[Path], file: Path | None) -> "Config":

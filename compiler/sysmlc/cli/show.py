@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sysmlc.cli import options
+from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
     from sysmlc.ir import Element, Graph
@@ -41,7 +41,7 @@ def command(
     session.show(session.findings(made, only_errors=not settings.verbose), settings)
     if made.exit_code() < 2:
         text = print_text(made.graph) if element is None else _one(made.graph, element)
-        click.echo(text, nl=False)
+        terminal.echo(text, nl=False)
     ctx.exit(session.exit_code([made], config, settings))
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sysmlc.cli import options
+from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
     from sysmlc.sources import Source
@@ -59,7 +59,7 @@ def command(
     of_model = session.findings(made, only_errors=not settings.verbose)
     session.show([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
-        click.echo(result.text(), nl=False, err=not session.says_more(settings))
+        terminal.echo(result.text(), nl=False, err=not session.says_more(settings))
         _save(junit, result.junit())
         _save(output and output / f"{scenario.stem}.seq.puml", result.sequence_diagram())
     passed = result is not None and result.passed

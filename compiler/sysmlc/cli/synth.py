@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sysmlc.cli import options
+from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -215,11 +215,11 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     try:
         environment = environment_of(contracts[0], options)
     except NotLostError:
-        click.echo(f"{contracts[0].component}: realizable, nothing defeats it")
+        terminal.echo(f"{contracts[0].component}: realizable, nothing defeats it")
         return 0
     except (LimitError, OutsideGr1Error) as problem:
         fail(str(problem))
-    Player(environment, contracts[0], input, click.echo).play()
+    Player(environment, contracts[0], input, terminal.echo).play()
     return 1
 
 

@@ -6,8 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
+from sysmlc.cli import terminal
 from sysmlc.ir import seen
 from sysmlc.values import dataclass
 
@@ -225,7 +224,7 @@ def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> b
     folder, code = made.unit.output, made.outcome.exit_code()
     session.report([made.outcome], settings)
     if code > 1 or (code and not keep_going):
-        click.echo(f"{folder}: kept as it is, the model has errors")
+        terminal.echo(f"{folder}: kept as it is, the model has errors")
         return False
     try:
         changed = apply(plan(made.outcome, folder))
@@ -233,7 +232,7 @@ def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> b
         session.fail(str(problem))
     withheld = len(made.outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
-    click.echo(f"{folder}: {len(changed)} changed{held}")
+    terminal.echo(f"{folder}: {len(changed)} changed{held}")
     return True
 
 

@@ -1,7 +1,8 @@
 """Findings in one line each, as compilers print them: editors and grep read it."""
 
 from sysmlc.diagnostics.render.report import Finding, Report
-from sysmlc.diagnostics.render.text import summary_line, visible
+from sysmlc.diagnostics.render.text import summary_line
+from sysmlc.escapes import escape_invisible
 
 
 def render(report: Report, *, color: bool = False) -> str:
@@ -15,4 +16,6 @@ def _line(finding: Finding) -> str:
     where = f"{finding.where}: " if finding.where else ""
     rule = f"{diagnostic.rule.code} {diagnostic.rule.name}"
     element = f" ({diagnostic.subject.name})" if diagnostic.subject.name else ""
-    return visible(f"{where}{diagnostic.severity.value}[{rule}]: {diagnostic.message}{element}")
+    return escape_invisible(
+        f"{where}{diagnostic.severity.value}[{rule}]: {diagnostic.message}{element}"
+    )

@@ -21,7 +21,7 @@ from sysmlc.diagnostics.coverage_report import (
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
 from sysmlc.diagnostics.render import sarif as findings_as_sarif
 from sysmlc.diagnostics.render.report import Finding, Report
-from sysmlc.diagnostics.render.text import visible
+from sysmlc.escapes import escape_invisible
 
 _COLUMNS = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
 _TITLES = {Verdict.IGNORED_NOTATION: "notation"}
@@ -54,9 +54,9 @@ def _percent(tenths: int) -> str:
 def _tables(files: Sequence[FileReport], color: bool) -> Iterator[str]:
     total = added(file.totals for file in files)
     if len(files) > 1:
-        rows = [(_short(visible(file.file)), file.totals) for file in worst_first(files)]
+        rows = [(_short(escape_invisible(file.file)), file.totals) for file in worst_first(files)]
         yield _table("file", [*rows, ("total", total)], color)
-    types = [(visible(one.name), one.counts) for one in type_reports(files)]
+    types = [(escape_invisible(one.name), one.counts) for one in type_reports(files)]
     shares = ["per cent", "", *map(_share, (tenths(total)[v.value] for v in _COLUMNS)), "100.0"]
     yield _table("type", [*types, ("total", total)], color, shares)
 
@@ -116,7 +116,8 @@ def _details(files: Sequence[FileReport], color: bool, every: bool) -> Iterator[
                 groups.setdefault((lost.loss.verdict, code, _general(lost)), []).append(lost)
         for (verdict, code, reason), members in groups.items():
             word = _painted(verdict.value, _COLORS[verdict]) if color else verdict.value
-            head = f"{visible(one.name)}: {len(members)} {word}, {visible(reason)}{code}"
+            type_name, shown_reason = escape_invisible(one.name), escape_invisible(reason)
+            head = f"{type_name}: {len(members)} {word}, {shown_reason}{code}"
             yield "\n".join([head, *_examples(members, every)])
 
 
@@ -126,7 +127,8 @@ def _unlisted(files: Sequence[FileReport]) -> Iterator[str]:
         counted = sum(file.totals[verdict.value] for verdict in LOSSES)
         listed = sum(x.loss.elements for x in file.losses if x.loss.verdict in LOSSES)
         if counted > listed:
-            yield f"{visible(file.file)}: {counted - listed:,} of these elements without a place"
+            name = escape_invisible(file.file)
+            yield f"{name}: {counted - listed:,} of these elements without a place"
 
 
 def _general(lost: LostElement) -> str:
@@ -139,7 +141,7 @@ def _examples(members: Sequence[LostElement], every: bool) -> Iterator[str]:
     shown = members if every else members[:_EXAMPLES]
     for lost in shown:
         more = f", {lost.loss.elements} with all that it contains" if lost.loss.elements > 1 else ""
-        yield f"  {visible(lost.where)}  {visible(lost.element)}{more}"
+        yield f"  {escape_invisible(lost.where)}  {escape_invisible(lost.element)}{more}"
     if len(members) > len(shown):
         yield f"  and {len(members) - len(shown)} more"
 

@@ -1,8 +1,9 @@
 """Findings as workflow commands, which GitHub Actions shows beside the changed lines."""
 
 from sysmlc.diagnostics.render.report import Finding, Report
-from sysmlc.diagnostics.render.text import summary_line, visible
+from sysmlc.diagnostics.render.text import summary_line
 from sysmlc.diagnostics.rule import Severity
+from sysmlc.escapes import escape_invisible
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
@@ -28,7 +29,7 @@ def _line(finding: Finding) -> str:
 
 def _data(text: str) -> str:
     escaped = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-    return visible(escaped)
+    return escape_invisible(escaped)
 
 
 def _property(text: str) -> str:

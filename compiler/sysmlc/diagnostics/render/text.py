@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics.render.report import Finding, Report
 from sysmlc.diagnostics.rule import Severity
+from sysmlc.escapes import escape_invisible
 
 _COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 _WIDTH = 100
@@ -53,23 +54,23 @@ def _block(finding: Finding, paint: _Painter) -> Iterator[str]:
     diagnostic = finding.diagnostic
     severity, code = diagnostic.severity, _COLORS[diagnostic.severity]
     head = paint(f"{severity.value}[{diagnostic.rule.code} {diagnostic.rule.name}]", f"1;{code}")
-    yield f"{head}: {paint(visible(diagnostic.message), '1')}"
+    yield f"{head}: {paint(escape_invisible(diagnostic.message), '1')}"
     if finding.where or diagnostic.subject.name:
         yield "  " + paint("-->", "34") + " " + " ".join(_where(finding))
     yield from _excerpt(finding, paint, code)
     if finding.xpath:
-        yield f"  xpath: {visible(finding.xpath)}"
+        yield f"  xpath: {escape_invisible(finding.xpath)}"
     for note in diagnostic.notes:
-        yield f"  note: {visible(note)}"
+        yield f"  note: {escape_invisible(note)}"
     if diagnostic.help:
-        yield f"  help: {visible(diagnostic.help)}"
+        yield f"  help: {escape_invisible(diagnostic.help)}"
 
 
 def _where(finding: Finding) -> Iterator[str]:
     if finding.where:
-        yield visible(finding.where)
+        yield escape_invisible(finding.where)
     if finding.diagnostic.subject.name:
-        yield f"({visible(finding.diagnostic.subject.name)})"
+        yield f"({escape_invisible(finding.diagnostic.subject.name)})"
 
 
 def _excerpt(finding: Finding, paint: _Painter, code: str) -> Iterator[str]:
@@ -78,9 +79,9 @@ def _excerpt(finding: Finding, paint: _Painter, code: str) -> Iterator[str]:
     shown, at = _window(finding.excerpt, max(finding.column - 1 - finding.shift, 0))
     gutter = " " * len(str(finding.line))
     yield f" {gutter} |"
-    yield f" {finding.line} | {visible(shown)}"
+    yield f" {finding.line} | {escape_invisible(shown)}"
     if finding.column:
-        yield f" {gutter} | {' ' * _columns(shown[:at])}{paint('^', f'1;{code}')}"
+        yield f" {gutter} | {' ' * _columns(escape_invisible(shown[:at]))}{paint('^', f'1;{code}')}"
 
 
 def _window(line: str, at: int) -> tuple[str, int]:
@@ -101,12 +102,3 @@ def _columns(text: str) -> int:
     wide = sum(unicodedata.east_asian_width(sign) in "WF" for sign in text)
     marks = sum(unicodedata.combining(sign) > 0 for sign in text)
     return len(text) + wide - marks
-
-
-def visible(text: str) -> str:
-    """The text with control characters shown: a name must not steer the terminal."""
-    if text.isprintable():
-        return text
-    return "".join(
-        f"\\x{ord(sign):02x}" if unicodedata.category(sign) == "Cc" else sign for sign in text
-    )

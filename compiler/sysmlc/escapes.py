@@ -1,0 +1,80 @@
+"""Escapes for text of models and file names that terminals and Markdown would interpret."""
+
+import re
+import unicodedata
+
+from sysmlc.patterns import pattern
+
+_INVISIBLE = frozenset(["Cc", "Cf", "Cs", "Zl", "Zp"])
+"""Unicode categories of controls, bidirectional and zero-width signs, surrogates, separators."""
+_BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
+"""Letters and marks that take part in names but are displayed as nothing."""
+
+_MARKDOWN = pattern(r"[\\`*\[\]<>|~]|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)")
+"""Characters that CommonMark interprets within a line; '_' between letters is plain text."""
+_BLOCK = pattern(r"([0-9]*)([#=+\-.)])")
+"""The start of a line that CommonMark reads as a heading, list item or rule."""
+_SURROGATE = pattern("[\ud800-\udfff]")
+
+
+def escape_invisible(text: str, allowed: str = "") -> str:
+    r"""Return *text* with invisible characters as escapes such as ``\x1b`` and ``\u202e``.
+
+    A name in a model or of a file must neither steer the terminal nor change the order in which
+    the rest of the line is displayed. Characters of *allowed* (``\n`` in a text of several lines)
+    stay as they are.
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(
+        _escape(sign) if _is_invisible(sign) and sign not in allowed else sign for sign in text
+    )
+
+
+def escape_markdown(text: str) -> str:
+    """Return *text* as one line of Markdown that is displayed as plain text.
+
+    The line may stand anywhere: at the start of a paragraph, in a list item or in a table cell.
+    """
+    line = escape_invisible(" ".join(text.split()))
+    escaped = _MARKDOWN.sub(_escape_markup, line)
+    start = _BLOCK.match(escaped)
+    return f"{start[1]}\\{escaped[start.start(2) :]}" if start else escaped
+
+
+def escape_code(text: str, *, in_table: bool = False) -> str:
+    r"""Return *text* for a Markdown code span between single backticks.
+
+    A code span knows no escape for a backtick, which is displayed as ``\x60``. Only tables
+    interpret the character '|' inside a code span.
+    """
+    code = escape_invisible(" ".join(text.split())).replace("`", r"\x60")
+    return code.replace("|", r"\|") if in_table else code
+
+
+def escape_undecodable(name: str) -> str:
+    r"""Return a file name with each byte that is not UTF-8 as an escape such as ``\xff``.
+
+    Python represents the byte 0xff by the lone surrogate U+DCFF, which no output can encode.
+    """
+    return _SURROGATE.sub(_escape_surrogate, name)
+
+
+def _is_invisible(sign: str) -> bool:
+    return unicodedata.category(sign) in _INVISIBLE or sign in _BLANK_LETTERS
+
+
+def _escape(sign: str) -> str:
+    code = ord(sign)
+    if code < 0x20:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def _escape_markup(match: re.Match[str]) -> str:
+    return "&amp;" if match[0] == "&" else f"\\{match[0]}"
+
+
+def _escape_surrogate(match: re.Match[str]) -> str:
+    code = ord(match[0])
+    return f"\\x{code - 0xDC00:02x}" if 0xDC80 <= code <= 0xDCFF else f"\\u{code:04x}"

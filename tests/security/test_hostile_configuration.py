@@ -1,0 +1,61 @@
+"""Configuration that would exhaust the TOML parser ends in a message with file and line."""
+
+import time
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.cli.group import sysmlc
+from sysmlc.toml_text import TomlError, parse_toml
+
+DEEP = ": more than 50 nested brackets"
+LONG_KEY = ": a dotted key of more than 50 parts"
+LONG_WORD = ":1:5: a number or key of more than 1,000 characters"
+ATTACKS = {
+    "arrays": ("a = " + "[" * 100_000, DEEP),
+    "inline tables": ("a = {a" * 100_000, DEEP),
+    "dotted key": (".".join("a" * 100_000) + " = 1", LONG_KEY),
+    "quoted dotted key": (".".join(['"a"'] * 100_000) + " = 1", LONG_KEY),
+    "table header": ("\n\n[" + ".".join("a" * 100_000) + "]", LONG_KEY),
+    "integer": ("a = " + "1" * 5_000, LONG_WORD),
+    "size": ("# " + "x" * 1_000_000, "1:1: the file has more than 1,000,000 characters"),
+    "unterminated": ('a = "b', ":1:7: Unterminated string"),
+    "value": ("a = 1\nb = = 2\n", ":2:5: Invalid value"),
+}
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+@pytest.mark.parametrize("name", ["sysmlc.toml", "pyproject.toml"])
+def test_hostile_toml_is_a_located_message(tmp_path, monkeypatch, name, attack):
+    text, message = ATTACKS[attack]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_text(text)
+    (tmp_path / "m.ir").write_text('Class a "A"\n')
+    start = time.process_time()
+    ended = CliRunner().invoke(sysmlc, ["check", "m.ir"])
+    assert ended.exit_code == 2
+    assert ended.stderr.startswith(f"sysmlc: {tmp_path / name}:")
+    assert message in ended.stderr
+    assert len(ended.stderr) < 1_000
+    assert time.process_time() - start < 5
+
+
+def test_ordinary_toml_is_within_the_limits():
+    strings = '"""' + "[" * 60 + '"""'
+    text = f"a = {strings} # {'[' * 60}\nb = [{', '.join(['1.5'] * 200)}]\n[c.'d.e'.f]\ng = ']'\n"
+    assert parse_toml(text)["c"] == {"d.e": {"f": {"g": "]"}}}
+
+
+def test_positions_are_those_of_the_parser():
+    with pytest.raises(TomlError, match="Invalid statement") as raised:
+        parse_toml("a = 1\n  ?")
+    assert (raised.value.line, raised.value.column) == (2, 3)
+
+
+def test_a_long_value_is_cut_in_the_message(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sysmlc.toml").write_text(f"output = [{', '.join(['12'] * 90_000)}]\n")
+    ended = CliRunner().invoke(sysmlc, ["check"])
+    assert ended.exit_code == 2
+    assert "is not of type 'string'" in ended.stderr
+    assert len(ended.stderr) < 500

@@ -1,0 +1,68 @@
+"""A standard stream that is closed, full or cut off ends with exit code 2, not with 1."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+WRONG = 'Class a "A"\n  -> specializes a\n'
+CLEAN = 'Class a "A"\n'
+
+pytestmark = pytest.mark.skipif(
+    not Path("/dev/full").exists(), reason="the system has no device that is always full"
+)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Run a shell command in a folder with a clean and a wrong model; ``sysmlc`` is a function."""
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "clean.ir").write_text(CLEAN)
+    (tmp_path / "wrong.ir").write_text(WRONG)
+
+    def run_in_shell(command):
+        define = f'sysmlc() {{ "{sys.executable}" -m sysmlc "$@"; }}; set -o pipefail; '
+        return subprocess.run(
+            ["bash", "-c", define + command], cwd=tmp_path, capture_output=True, text=True
+        )
+
+    return run_in_shell
+
+
+@pytest.mark.parametrize(
+    "redirection", [">&-", "2>&-", ">&- 2>&-", "2>/dev/full", "--format json >/dev/full"]
+)
+def test_a_closed_or_full_stream_is_exit_code_2(run, redirection):
+    ended = run(f"sysmlc check wrong.ir {redirection}")
+    assert ended.returncode == 2
+    assert "Traceback" not in ended.stderr
+    assert "ignored" not in ended.stderr
+
+
+@pytest.mark.parametrize("redirection", ["", ">/dev/null", "2>/dev/null", "<&-", "| cat"])
+def test_other_redirections_leave_the_exit_code(run, redirection):
+    assert run(f"sysmlc check wrong.ir {redirection}").returncode == 1
+    assert run(f"sysmlc check clean.ir {redirection}").returncode == 0
+
+
+def test_messages_name_the_stream(run):
+    closed = run("sysmlc check clean.ir >&-")
+    assert closed.stderr == (
+        "sysmlc: standard output is closed; redirect it to /dev/null to discard it\n"
+    )
+    full = run("sysmlc --help >/dev/full")
+    assert full.stderr == "sysmlc: cannot write to standard output: No space left on device\n"
+    assert full.returncode == 2
+
+
+@pytest.mark.parametrize("command", ["explain", "--help", "show clean.ir", "nonsense 2>&1"])
+def test_a_reader_that_has_ended_is_exit_code_2_without_a_message(run, command):
+    # The subshell waits until 'true' has closed its end of the pipe.
+    ended = run(f"(sleep 0.2; sysmlc {command}) | true")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (2, "", "")
+
+
+def test_formatting_closed_standard_input_is_refused(run):
+    ended = run("sysmlc format - <&-")
+    assert (ended.returncode, ended.stderr) == (2, "sysmlc: standard input is closed\n")
