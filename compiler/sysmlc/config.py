@@ -1,6 +1,6 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import field
 from pathlib import Path
@@ -21,6 +21,7 @@ FILE_NAME = "sysmlc.toml"
 _LONGEST_MESSAGE = 300
 _EXCERPT = 100
 """Characters of either end of a longer message that are shown."""
+_WILDCARDS = "*?["
 
 
 class ConfigError(Exception):
@@ -39,9 +40,13 @@ class ModelUnit:
 
 @dataclass(frozen=True, slots=True)
 class Config:
-    """What a project chose; ``folder`` is where its file stands, None when there is none."""
+    """What a project chose; ``folder`` is where its file stands, None when there is none.
+
+    Paths of the file may not lead out of ``root``, the project root of the file.
+    """
 
     folder: Path | None = None
+    root: Path | None = None
     file: Path | None = None
     output: str = "out"
     emit: tuple[str, ...] = ()
@@ -108,7 +113,66 @@ def load(file: Path | None) -> Config:
     """The configuration of a file; the defaults when there is none. Raises ConfigError."""
     if file is None:
         return Config()
-    return _config(file.resolve(), _table(file, _read(file)))
+    text = _read(file)
+    config = _config(file.absolute(), _table(file, text))
+    _check_paths(file, text, config)
+    return config
+
+
+def _check_paths(file: Path, text: str, config: Config) -> None:
+    """Refuse paths that lead out of the project root. Raises ConfigError.
+
+    A repository must not choose what is read or written elsewhere on the machine.
+    """
+    entries = [("output", config.output), ("templates", config.templates)]
+    for unit in config.models:
+        if not _is_inside(unit.name):
+            message = f"the name '{unit.name}' leads out of the output folder"
+            raise ConfigError(f"{file}:{_line(text, 'name')}: {message}; use a plain name")
+        entries += [("output", unit.output), *(("files", pattern) for pattern in unit.files)]
+    for key, value in entries:
+        if not _is_confined(value, config):
+            raise ConfigError(
+                f"{file}:{_line(text, key)}: '{key}': '{value}' leads out of the project root "
+                f"'{config.root}'; only paths on the command line may do that"
+            )
+
+
+def _is_inside(name: str) -> bool:
+    """Whether the name of a unit, used as a folder, stays below the folder that it is in."""
+    return not Path(name).is_absolute() and ".." not in Path(name).parts and "\0" not in name
+
+
+def _is_confined(pattern: str, config: Config) -> bool:
+    """Whether a path lies in the project root; of a pattern, what stands before wildcards."""
+    if "\0" in pattern:
+        return False
+    parts = Path(pattern).parts
+    wild = next((at for at, part in enumerate(parts) if set(part) & set(_WILDCARDS)), len(parts))
+    if config.folder is None or config.root is None or ".." in parts[wild:]:
+        return False
+    if wild < len(parts) and Path(pattern).is_absolute():
+        return False  # Path.glob does not expand absolute patterns
+    return Roots((config.root,)).allows(config.folder.joinpath(*parts[:wild]))
+
+
+def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
+    """Return the files that patterns of the configuration name, in order.
+
+    Files that links lead to outside the project root are refused. Raises ConfigError.
+    """
+    folder, root = config.folder or Path.cwd(), config.root or Path.cwd()
+    files: list[Path] = []
+    for pattern in patterns:
+        has_wildcard = any(sign in pattern for sign in _WILDCARDS)
+        files += sorted(folder.glob(pattern)) if has_wildcard else [folder / pattern]
+    for path in files:
+        if not Roots((root,)).allows(path):
+            raise ConfigError(
+                f"{config.file}: '{path}' is a link that leads out of the project root '{root}'; "
+                "only files named on the command line may do that"
+            )
+    return files
 
 
 def _table(file: Path, text: str) -> dict[str, Any]:
@@ -195,6 +259,7 @@ def _line(text: str, key: str) -> int:
 def _config(file: Path, table: dict[str, Any]) -> Config:
     return Config(
         folder=file.parent,
+        root=find_project_root(file),
         file=file,
         output=table.get("output", "out"),
         emit=tuple(table.get("emit", ())),

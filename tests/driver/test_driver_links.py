@@ -67,6 +67,7 @@ def test_what_is_elsewhere_stays_external(tmp_path, library, href):
 
 def test_a_project_with_a_configuration_may_be_referred_to_throughout(tmp_path, library):
     plant = model(tmp_path / "plants/plant.uml", "plant", "Plant", "../lib/my%20library.uml")
+    (tmp_path / "sysmlc.toml").touch()
     made = compiled(plant, passes=(), config=Config(folder=tmp_path))
     assert inputs(made) == ["lib/my library.uml", "plants/plant.uml"]
 
@@ -122,6 +123,7 @@ def test_files_of_an_eclipse_workspace_are_found_by_their_project(tmp_path, plac
     model(tmp_path / place, "lib", "Library")
     href = "platform:/resource/Drives/lib/drives.uml"
     plant = model(tmp_path / "work/Plant/models/plant.uml", "plant", "Plant", href)
+    (tmp_path / "work/sysmlc.toml").touch()
     made = compiled(plant, passes=None, config=Config(folder=tmp_path / "work"))
     assert len(inputs(made)) == 2
     general = made.graph.target(made.graph["plant_class"], Edge.SPECIALIZES)

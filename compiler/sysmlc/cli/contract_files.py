@@ -121,12 +121,17 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
 def _parts_beside(file: Path, formula: bytes) -> str:
     """What the ``.part`` file beside a formula says of who decides, unless the formula says it.
 
-    Raises OSError and UnicodeDecodeError.
+    A link out of the project root is not followed. Raises OSError and UnicodeDecodeError.
     """
+    from sysmlc.config import find_project_root
+    from sysmlc.sources import Roots
+
     parts = file.with_suffix(".part")
     if file.suffix != ".ltl" or re.search(rb"^\s*\.(in|out)puts\b", formula, re.MULTILINE):
         return ""
-    return "\n" + parts.read_text("utf-8-sig") if parts.is_file() else ""
+    if not parts.is_file() or not Roots((find_project_root(file),)).allows(parts):
+        return ""
+    return "\n" + parts.read_text("utf-8-sig")
 
 
 def _from_text(origin: str) -> "Subject":
@@ -137,18 +142,6 @@ def _from_text(origin: str) -> "Subject":
         return Subject()
     place = Place(found["file"], line=int(found["line"]), column=int(found["column"]))
     return Subject(place=place)
-
-
-def write(files: "Iterable[tuple[str, str]]", out: Path) -> None:
-    """Write files, each a name and a text; ends the process when one cannot be written."""
-    from sysmlc.cli.session import fail
-    from sysmlc.output import write_if_changed
-
-    try:
-        for name, text in files:
-            write_if_changed(out / name, text)
-    except OSError as problem:
-        fail(f"cannot write to '{out}': {problem.strerror}")
 
 
 def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:

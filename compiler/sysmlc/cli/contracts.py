@@ -83,7 +83,8 @@ def _checked(
     options: "Options",
     output: Path | None,
 ) -> int:
-    from sysmlc.cli.contract_files import chosen, show, write
+    from sysmlc.cli.contract_files import chosen, show
+    from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.check import check
     from sysmlc.synthesis.together import check_together
@@ -95,7 +96,7 @@ def _checked(
     together = list(check_together(composites, read.place, read.sink, options))
     if output is not None:
         runs = [*(one.witnesses for one in alone), *(one.witnesses for one in together)]
-        write(files(run for some in runs for run in some), output)
+        write_files(files(run for some in runs for run in some), output)
     show(read, settings, (*map(_line, alone), *(one.text() for one in together)))
     is_undecided = any(one.verdict.is_realizable is None for one in alone)
     found = (*read.sink, *(one.diagnostic for one in read.findings))

@@ -1,6 +1,7 @@
 """``sysmlc format``: files in KerML and SysML v2 in canonical layout."""
 
 import difflib
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -87,16 +88,25 @@ def command(
 def _expanded(files: tuple[Path, ...]) -> Iterator[Path]:
     for path in files:
         if str(path) != "-" and path.is_dir():
-            yield from _of_folder(path)
+            yield from _list_folder(path)
         else:
             yield path
 
 
-def _of_folder(folder: Path) -> list[Path]:
-    from sysmlc.cli.session import fail
+def _list_folder(folder: Path) -> list[Path]:
+    """Return the files in *folder* to lay out, sorted; hidden folders are skipped.
 
-    found = sorted(one for one in folder.rglob("*.*") if one.suffix[1:].lower() in _LANGUAGES)
-    return found or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
+    Links out of the folder are skipped too: they would rewrite a file that nobody named.
+    """
+    from sysmlc.cli.session import fail
+    from sysmlc.sources import Roots
+
+    roots, files = Roots((folder,)), []
+    for path, folders, names in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        files += [Path(path, name) for name in names if Path(name).suffix[1:].lower() in _LANGUAGES]
+    inside = sorted(file for file in files if not file.is_symlink() or roots.allows(file))
+    return inside or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
 
 
 def _read(path: Path, language: str | None) -> _Text:

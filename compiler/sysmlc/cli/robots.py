@@ -84,6 +84,7 @@ def _studied(
     chosen: "Options",
 ) -> int:
     from sysmlc.cli import session
+    from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.render import make_report
     from sysmlc.floors.outcome import studied
@@ -102,7 +103,7 @@ def _studied(
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
     outcomes = [studied(one, place, sink, chosen, has_relations, keeper) for one in known]
     if output is not None:
-        _write([file for one in outcomes for file in files(one)], output)
+        write_files([file for one in outcomes for file in files(one)], output)
     of_model = session.findings(made, only_errors=not settings.verbose)
     found = session.named(made.root, make_report(sink, made.sources).findings)
     session.show([*of_model, *found], settings)
@@ -127,15 +128,3 @@ def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:
     if any(one.controller.verdict.is_realizable is None for one in outcomes):
         return 2
     return int(has_errors or not all(one.is_good for one in outcomes))
-
-
-def _write(files: "Sequence[tuple[str, str]]", out: Path) -> None:
-    """Write the files; ends the process when one cannot be written."""
-    from sysmlc.cli.session import fail
-    from sysmlc.output import write_if_changed
-
-    try:
-        for name, text in files:
-            write_if_changed(out / name, text)
-    except OSError as problem:
-        fail(f"cannot write to '{out}': {problem.strerror}")

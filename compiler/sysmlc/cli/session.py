@@ -60,11 +60,15 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Files that are compiled together, and where their outputs go."""
+    """Files that are compiled together, and where their outputs go.
+
+    Nothing is written outside ``boundary``: the project root, or the folder that the user named.
+    """
 
     files: tuple[Path, ...]
     output: Path
     emit: tuple[str, ...]
+    boundary: Path
 
 
 def fail(message: str) -> NoReturn:
@@ -114,12 +118,13 @@ def units(
     A named file that a ``[[model]]`` lists brings the whole unit with it.
     """
     folder = config.folder or Path.cwd()
-    declared = [(unit, _expanded(folder, unit.files)) for unit in config.models]
+    declared = [(unit, _expand(config, unit.files)) for unit in config.models]
     chosen = [
         Unit(
             tuple(files),
             output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
             emit or unit.emit or config.emit,
+            boundary=output or config.root or Path.cwd(),
         )
         for unit, files in declared
         if not models or any(_same(model, file) for model in models for file in files)
@@ -128,18 +133,21 @@ def units(
     rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
     if rest:
         plain = output or (folder / config.output if config.folder else Path(config.output))
-        chosen.append(Unit(rest, plain, emit or config.emit))
+        boundary = output or config.root or Path.cwd()
+        chosen.append(Unit(rest, plain, emit or config.emit, boundary))
     if not chosen:
         raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")
     return chosen
 
 
-def _expanded(folder: Path, patterns: Iterable[str]) -> list[Path]:
-    files: list[Path] = []
-    for pattern in patterns:
-        has_wildcard = any(sign in pattern for sign in "*?[")
-        files += sorted(folder.glob(pattern)) if has_wildcard else [folder / pattern]
-    return files
+def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
+    """Return the files of a ``[[model]]``; ends with exit code 2 when one leads out of the root."""
+    from sysmlc.config import ConfigError, expand_files
+
+    try:
+        return expand_files(config, patterns)
+    except ConfigError as problem:
+        fail(str(problem))
 
 
 def _same(left: Path, right: Path) -> bool:

@@ -46,6 +46,7 @@ def command(
     Exit code 0 when they agree, 1 when they do not, 2 when the scenario cannot be run.
     """
     from sysmlc.cli import session
+    from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
     from sysmlc.simulation import run
@@ -61,7 +62,9 @@ def command(
     if result is not None:
         terminal.echo(result.text(), nl=False, err=not session.says_more(settings))
         _save(junit, result.junit())
-        _save(output and output / f"{scenario.stem}.seq.puml", result.sequence_diagram())
+        diagram = result.sequence_diagram()
+        if output is not None and diagram:
+            write_files([(f"{scenario.stem}.seq.puml", diagram)], output)
     passed = result is not None and result.passed
     code = session.exit_code([made], config, settings)
     ctx.exit(max(code, 0 if passed else 1))

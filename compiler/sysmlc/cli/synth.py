@@ -175,7 +175,8 @@ def _synthesised(
     output: Path | None,
     form: str,
 ) -> int:
-    from sysmlc.cli.contract_files import chosen, write
+    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.result_files import write_files
     from sysmlc.synthesis.files import TABLE, written
     from sysmlc.synthesis.synthesise import Form, synthesised
 
@@ -184,7 +185,7 @@ def _synthesised(
     made = [synthesised(one, read.place, read.sink, options, kind) for one in contracts]
     told = written(made, read.place, read.sink, form)
     if output is not None:
-        write((*told.files, *_counters(read, made, options)), output)
+        write_files((*told.files, *_counters(read, made, options)), output)
     return _told(read, settings, told.made)
 
 

@@ -21,14 +21,16 @@ def beside(reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
         if isinstance(found.frontend, DiagramReader)
         for name in found.frontend.companions(found.source.name)
     )
-    found = {source.name: source for name in names for source in _load(name, root, sink)}
+    found = {
+        source.name: source for name in names for source in _load(name, root, reading.roots, sink)
+    }
     return tuple(found[name] for name in sorted(found))
 
 
-def _load(name: str, root: Path, sink: Sink) -> Iterator[Source]:
-    """The file, if it is in the root, or the entries of an archive that has been read before."""
+def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:
+    """Read the file, if one of the roots holds it, or entries of an archive that was an input."""
     file, is_archive, pattern = name.partition("!")
-    if not (root / file).is_file() or not (is_archive or Roots((root,)).allows(root / file)):
+    if not (root / file).is_file() or not (is_archive or roots.allows(root / file)):
         return
     try:
         source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))

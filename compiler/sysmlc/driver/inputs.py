@@ -5,6 +5,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from sysmlc.config import find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.frontends.base import Frontend
@@ -39,6 +40,21 @@ def unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
         return preferred
     folders = [path if path.is_dir() else path.parent for path in absolute]
     return Path(os.path.commonpath(folders)) if folders else Path.cwd()
+
+
+def allowed_roots(paths: Sequence[Path], root: Path) -> Roots:
+    """Return the folders that references of a unit may lead into.
+
+    These are the project roots of what the user named, as far as they lie below *root*, the
+    folder that outputs name files relative to. *root* alone could be ``/``: it holds all models
+    that the user named.
+    """
+    projects = {find_project_root(_absolute(path)) for path in paths}
+    return Roots(tuple(sorted(max(root, project, key=_depth) for project in projects)))
+
+
+def _depth(folder: Path) -> int:
+    return len(folder.parts)
 
 
 def collect(paths: Iterable[Path], root: Path, sink: Sink) -> dict[Path, bool]:

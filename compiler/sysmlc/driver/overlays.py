@@ -34,13 +34,18 @@ def beside(model: Path) -> Path | None:
     return path if os.path.lexists(path) else None
 
 
-def load_overlay(path: Path, root: Path, sink: Sink, *, is_named: bool) -> LoadedOverlay | None:
-    """Read an overlay. What cannot be read, or leads out of the root unnamed, is reported."""
+def load_overlay(
+    path: Path, root: Path, roots: Roots, sink: Sink, *, is_named: bool
+) -> LoadedOverlay | None:
+    """Read an overlay. One that cannot be read is reported, or is a link out of the roots.
+
+    An overlay that the user named may be anywhere.
+    """
     name = name_of(path, root)
     if is_named and not path.exists():
         sink.report(faults.MISSING_FILE, faults.about_file(name), path=name)
         return None
-    if not is_named and not Roots((root,)).allows(path):
+    if not is_named and not roots.allows(path):
         sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         return None
     try:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
-from sysmlc.driver.inputs import Recognised, collect, name_of, recognise
+from sysmlc.driver.inputs import Recognised, allowed_roots, collect, name_of, recognise
 from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay, models_of
 from sysmlc.frontends.base import Frontend, Mentioning
 from sysmlc.sources import Roots, Source, SourceError, load
@@ -19,6 +19,8 @@ class Reading:
 
     recognised: tuple[Recognised, ...]
     is_complete: bool
+    roots: Roots
+    """Folders that the unit may be read from."""
     overlays: tuple[LoadedOverlay, ...] = ()
 
     def sources(self) -> tuple[Source, ...]:
@@ -34,7 +36,8 @@ def read_unit(
     overlays: Sequence[Path] = (),
 ) -> Reading:
     """The sources of the unit; what cannot be read is reported."""
-    reader = _Reader(root, frontends, sink)
+    roots = allowed_roots((*inputs, *overlays), root)
+    reader = _Reader(root, roots, frontends, sink)
     for path, named in collect(inputs, root, sink).items():
         reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED)
     for path in overlays:
@@ -42,17 +45,17 @@ def read_unit(
     reader.follow_links()
     ordered = tuple(reader.found[name] for name in sorted(reader.found))
     laid = tuple(reader.overlays[name] for name in sorted(reader.overlays))
-    return Reading(ordered, not sink.has_errors(), laid)
+    return Reading(ordered, not sink.has_errors(), roots, laid)
 
 
 class _Reader:
-    """Reads files, and then those that they refer to inside the root."""
+    """Reads files, and then those that they refer to inside the allowed roots."""
 
-    def __init__(self, root: Path, frontends: Sequence[Frontend], sink: Sink) -> None:
+    def __init__(self, root: Path, roots: Roots, frontends: Sequence[Frontend], sink: Sink) -> None:
         self.found: dict[str, Recognised] = {}
         self.overlays: dict[str, LoadedOverlay] = {}
         self._root = root
-        self._roots = Roots((root,))
+        self._roots = roots
         self._frontends = frontends
         self._sink = sink
         self._seen: set[Path] = set()
@@ -80,7 +83,7 @@ class _Reader:
             return
         self._laid.add(real)
         self._seen.add(real)
-        found = load_overlay(path, self._root, self._sink, is_named=is_named)
+        found = load_overlay(path, self._root, self._roots, self._sink, is_named=is_named)
         if found is None:
             return
         self.overlays[found.source.name] = found
