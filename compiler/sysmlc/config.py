@@ -58,6 +58,10 @@ class Config:
     suppress: tuple[Suppression, ...] = ()
     passes: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     models: tuple[ModelUnit, ...] = ()
+    time_limit: float = 0.0
+    """Seconds for a command; 0 is no limit besides that of the command line."""
+    memory_limit: float = 0.0
+    """GiB for a command; 0 is no limit besides that of the command line."""
 
 
 def find_project_root(start: Path) -> Path:
@@ -271,6 +275,8 @@ def _config(file: Path, table: dict[str, Any]) -> Config:
         suppress=tuple(Suppression(**entry) for entry in table.get("suppress", ())),
         passes=_pass_options(table),
         models=tuple(_model(entry) for entry in table.get("model", ())),
+        time_limit=float(table.get("time-limit", 0)),
+        memory_limit=float(table.get("memory-limit", 0)),
     )
 
 

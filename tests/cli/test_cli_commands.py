@@ -132,7 +132,7 @@ def test_help_and_version_import_nothing_heavy(args):
     assert "imported: []" in subprocess.run(run, capture_output=True, text=True, check=True).stdout
 
 
-def test_the_version_takes_a_tenth_of_a_second_of_cpu():
+def test_the_version_takes_at_most_0_15_s_of_cpu():
     resource = pytest.importorskip("resource")
 
     def cpu() -> float:
@@ -141,7 +141,7 @@ def test_the_version_takes_a_tenth_of_a_second_of_cpu():
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
-    assert min(cpu() for _ in range(5)) < 0.10
+    assert min(cpu() for _ in range(5)) < 0.15
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -61,7 +61,7 @@ def test_one_robot_shares_no_cell(tmp_path):
 
 
 def test_without_time_no_controller_is_made(tmp_path):
-    made = run(tmp_path, HALL, "--time-limit", "0.0001")
+    made = run(tmp_path, HALL, "--question-limit", "0.0001")
     assert made.exit_code == 2
     assert "SM531" in made.stderr
     assert made.stdout.endswith("no controller\n")

@@ -270,7 +270,9 @@ def test_a_formula_that_was_reduced_to_gr1_is_shown_as_it_was_written(here):
     assert "title n.c\\ncannot keep its contract\\nnot kept: G (go -<U+003E> F done)\n" in run
 
 
-@pytest.mark.parametrize("word", ["--time-limit=-1", "--memory=-1", "--memory=inf", "--nodes=-1"])
+@pytest.mark.parametrize(
+    "word", ["--time-limit=-1", "--memory-limit=-1", "--memory-limit=inf", "--nodes=-1"]
+)
 def test_limits_are_amounts(here, word):
     here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
     made = here.sysmlc("synth", "lamp.gr1.json", word)

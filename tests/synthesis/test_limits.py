@@ -62,7 +62,7 @@ def file(tmp_path: Path) -> Path:
     [
         (("--time-limit", "0.3"), "the limit of 0.3 s of CPU time was reached"),
         (("--nodes", "50000"), "the limit of 50,000 nodes was reached"),
-        (("--memory", "0.04"), "the limit of 0.04 GiB of memory was reached"),
+        (("--memory-limit", "0.04"), "the limit of 0.04 GiB of memory was reached"),
     ],
 )
 def test_a_limit_ends_what_runs_and_says_what_was_reached(

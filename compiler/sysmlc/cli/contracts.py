@@ -28,6 +28,7 @@ Examples:
   sysmlc contracts check cells.sysml -c Cells::Cell.turn
   sysmlc contracts check cells.sysml -o out
   sysmlc contracts check gate.contract.json
+  sysmlc contracts check plant.uml --question-limit 60 --time-limit 1800
 
 Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
 2 the work could not be done.""",
@@ -36,7 +37,7 @@ Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @options.folder("Draw the runs that break something there (PlantUML).")
 @click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
-@options.time_limit("CPU seconds for each question about a contract; 0 is no limit.")
+@options.question_limit(default=10.0)
 @options.reporting
 @options.reading
 @click.pass_context

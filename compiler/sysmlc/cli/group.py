@@ -9,6 +9,8 @@ import click
 
 from sysmlc import __version__
 from sysmlc.cli import terminal
+from sysmlc.cli.limit_reports import report_memory_limit
+from sysmlc.cli.limits import LIMITS, add_limit_options
 
 COMMANDS = (
     "build",
@@ -41,8 +43,9 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
             return None
-        found: click.Command = import_module(f"sysmlc.cli.{cmd_name}").command
-        return found
+        command: click.Command = import_module(f"sysmlc.cli.{cmd_name}").command
+        add_limit_options(command)
+        return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and args[0] not in COMMANDS and args[0] not in _OWN_OPTIONS:
@@ -96,7 +99,9 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
     except RecursionError:
         fault = "the model is nested too deeply"
     except MemoryError:
-        fault = "there is not enough memory for the model"
+        LIMITS.release_memory()
+        report_memory_limit(LIMITS.gibibytes)
+        sys.exit(2)
     except Exception as problem:
         if isinstance(problem, OSError) and terminal.find_stream_problems():
             sys.exit(2)

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 import click
 
+from sysmlc.cli.limits import check_amount, list_missing_limits
 from sysmlc.diagnostics.render.registry import FORMATS
 
 _F = TypeVar("_F", bound=Callable[..., object])
@@ -34,28 +35,26 @@ def folder(help: str) -> Callable[[_F], _F]:
     )
 
 
-def amount(_ctx: click.Context, _param: click.Parameter, value: float) -> float:
-    """Seconds or GiB, from 0 on; 0 is no limit."""
-    if not 0 <= value <= _MOST:
-        raise click.BadParameter(f"{value} is not from 0 to {_MOST:,}")
-    return value
-
-
-_MOST = 1_000_000_000
-
-
-def time_limit(help: str) -> Callable[[_F], _F]:
-    """The option ``--time-limit``: CPU seconds for each question about contracts."""
+def question_limit(default: float) -> Callable[[_F], _F]:
+    """Return the option ``--question-limit``: CPU seconds for each question about contracts."""
     return click.option(
-        "--time-limit",
+        "--question-limit",
         "seconds",
         type=float,
-        callback=amount,
-        default=10.0,
+        callback=check_amount,
+        default=default,
         show_default=True,
         metavar="S",
-        help=help,
+        help="CPU seconds for each question about a contract; 0 is no limit.",
     )
+
+
+def _note_missing_limits(_ctx: click.Context, _param: click.Parameter, value: bool) -> bool:
+    """Print which limits this system does not enforce if *value*, the option ``-v``, is given."""
+    missing = list_missing_limits()
+    if value and missing:
+        click.echo(f"note: this system does not enforce {' and '.join(missing)}", err=True)
+    return value
 
 
 def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
@@ -103,7 +102,13 @@ def reading(function: _F) -> _F:
                 metavar="PASS",
                 help="Print the graph as it is after a pass ('read': before the first).",
             ),
-            click.option("-v", "--verbose", is_flag=True, help="Say what is done."),
+            click.option(
+                "-v",
+                "--verbose",
+                is_flag=True,
+                callback=_note_missing_limits,
+                help="Say what is done.",
+            ),
         ],
         function,
     )

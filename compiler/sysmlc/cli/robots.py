@@ -36,7 +36,7 @@ Exit codes: 0 the mission is done from every start, 1 it is not,
     default=True,
     help="Decide what the thesis claims of the contracts.  [default: relations]",
 )
-@options.time_limit("CPU seconds for each question about contracts; 0 is no limit.")
+@options.question_limit(default=10.0)
 @options.reporting
 @options.reading
 @options.caching

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from sysmlc.cli import terminal
+from sysmlc.cli.limits import LIMITS
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ def load_config(models: Sequence[Path], file: Path | None) -> "Config":
         for name in chosen:
             if name not in known:
                 fail(f"{loaded.file}: unknown rule '{name}'; {did_you_mean(name, known)}")
+    LIMITS.lower(loaded.time_limit, loaded.memory_limit)
     return loaded
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options, terminal
+from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,7 +30,7 @@ Examples:
   sysmlc synth plant.uml -c Plant::Gate --realizable
   sysmlc synth plant.uml -c Plant::Gate --play
   sysmlc synth cart.gr1.json --deadline timer
-  sysmlc synth amba.tlsf --realizable --time-limit 60
+  sysmlc synth amba.tlsf --realizable --time-limit 60 --memory-limit 2
 
 Exit codes: 0 realizable, 1 unrealizable or the model has errors, 2 outside
 GR(1), beyond a limit, no machine, or the work could not be done.""",
@@ -60,23 +61,7 @@ GR(1), beyond a limit, no machine, or the work could not be done.""",
     type=click.Choice(("cudd", "autoref")),
     help="Library of decision diagrams.  [default: cudd if it is there]",
 )
-@click.option(
-    "--time-limit",
-    "seconds",
-    type=float,
-    callback=options.amount,
-    default=0.0,
-    metavar="S",
-    help="CPU seconds.  [default: no limit]",
-)
-@click.option(
-    "--memory",
-    type=float,
-    callback=options.amount,
-    default=0.0,
-    metavar="GIB",
-    help="GiB for the diagrams.  [default: 8]",
-)
+@options.question_limit(default=0.0)
 @click.option(
     "--nodes",
     type=click.IntRange(min=0),
@@ -100,7 +85,6 @@ def command(
     language: str,
     engine: str | None,
     seconds: float,
-    memory: float,
     nodes: int,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
@@ -126,7 +110,7 @@ def command(
     settings = session.Settings(**given)
     config = session.load_config((file,), settings.config)
     progress = Progress(settings.verbose)
-    limits = Limits(nodes, int(memory * _GIBIBYTE), seconds)
+    limits = Limits(nodes, int(LIMITS.gibibytes * _GIBIBYTE), seconds or LIMITS.seconds)
     read = read_contracts(file, language, config, settings)
     read = replace(read, contracts=tuple(map(unambiguous, read.contracts)))
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
@@ -220,6 +204,7 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
         return 0
     except (LimitError, OutsideGr1Error) as problem:
         fail(str(problem))
+    LIMITS.stop_timer()
     Player(environment, contracts[0], input, terminal.echo).play()
     return 1
 

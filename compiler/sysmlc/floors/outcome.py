@@ -77,9 +77,9 @@ NOT_DECIDED = rule(
     Severity.INFO,
     "on '{floor}' it is not decided whether {claim}: {reason}",
     why="Contracts of all robots together grow with the number of cells to the power of robots.",
-    help="give more time (--time-limit), or study a smaller floor",
-    wrong="sysmlc robots large.sysml --time-limit 1",
-    right="sysmlc robots large.sysml --time-limit 600",
+    help="give more time (--question-limit), or study a smaller floor",
+    wrong="sysmlc robots large.sysml --question-limit 1",
+    right="sysmlc robots large.sysml --question-limit 600",
 )
 
 

@@ -74,9 +74,9 @@ GIVEN_UP = rule(
     Severity.INFO,
     "not everything that may be suspicious in '{component}' was looked for: {reached}",
     why="Some questions about a contract take longer than its verdict.",
-    help="give more time (--time-limit), or check the contracts of parts",
-    wrong="sysmlc contracts check large.uml --time-limit 1",
-    right="sysmlc contracts check large.uml --time-limit 600",
+    help="give more time (--question-limit), or check the contracts of parts",
+    wrong="sysmlc contracts check large.uml --question-limit 1",
+    right="sysmlc contracts check large.uml --question-limit 600",
 )
 
 

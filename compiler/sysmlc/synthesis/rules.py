@@ -31,7 +31,7 @@ LIMIT = rule(
     "'{component}' is not decided: {reached} after {seconds} s, {doing}",
     why="Whether a contract can be kept takes time and memory that grow with the ranges and the "
     "number of its variables, sometimes without measure.",
-    help="give more (--time-limit, --memory, --nodes), or decide the contracts of parts",
+    help="give more (--time-limit, --memory-limit, --nodes), or decide the contracts of parts",
     wrong="sysmlc synth large.contract.json --realizable --nodes 10",
     right="sysmlc synth large.contract.json --realizable",
 )
@@ -53,7 +53,8 @@ NO_MACHINE = rule(
     "the contract of '{component}' can be kept, but no machine is written: {why}",
     why="A machine lists what is done for every input in every state; ranges and goals multiply. "
     "It is checked against its contract first, and is not written when the check fails.",
-    help="give more (--time-limit, --memory, --nodes), make ranges smaller, or synthesise parts",
+    help="give more (--time-limit, --memory-limit, --nodes), make ranges smaller, or synthesise "
+    "parts",
     wrong="sysmlc synth wide.contract.json -o out --nodes 1000",
     right="sysmlc synth wide.contract.json -o out",
 )

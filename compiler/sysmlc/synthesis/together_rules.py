@@ -152,7 +152,7 @@ NOT_COMPOSED = rule(
     "the parts of '{component}' are not put together: {reason}",
     why="Only contracts in GR(1), or that history bits bring there, are composed, within the "
     "limits of time and memory.",
-    help="give more time (--time-limit), or say it in the patterns that are known",
+    help="give more time (--question-limit), or say it in the patterns that are known",
     wrong=_cell("F G ready"),
     right=_cell("G F ready"),
 )
