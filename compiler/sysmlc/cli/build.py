@@ -26,6 +26,7 @@ Examples:
 @options.models()
 @options.output_folder
 @options.emitting
+@options.templates
 @options.reporting
 @options.reading
 @options.caching

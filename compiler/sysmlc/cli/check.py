@@ -32,7 +32,7 @@ def command(
     """Compile MODEL... in memory and report what is wrong, as 'build' would."""
     from sysmlc.cli import session
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**given, uses_shipped_templates=True)
     config = session.load_config(models, settings.config)
     units = session.units(models, config, None, settings.emit)
     made = [session.outcome_of(unit, config, settings, has_files=False) for unit in units]

@@ -151,12 +151,6 @@ def emitting(function: _F) -> _F:
                 help="Back ends instead of the default ones; +X adds one. See 'sysmlc backends'.",
             ),
             click.option(
-                "--templates",
-                type=click.Path(path_type=Path, file_okay=False),
-                metavar="DIR",
-                help="Folder whose templates come before the shipped ones.",
-            ),
-            click.option(
                 "--diagrams",
                 type=click.Choice(["derived", "author", "both"]),
                 help="Diagrams derived from the model, those of its authors, or both."
@@ -165,6 +159,16 @@ def emitting(function: _F) -> _F:
         ],
         function,
     )
+
+
+def templates(function: _F) -> _F:
+    """The option ``--templates``; ``check`` has none, for it uses the shipped templates only."""
+    return click.option(
+        "--templates",
+        type=click.Path(path_type=Path, file_okay=False),
+        metavar="DIR",
+        help="Folder whose templates come before the shipped ones.",
+    )(function)
 
 
 def output_folder(function: _F) -> _F:

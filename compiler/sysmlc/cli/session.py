@@ -46,6 +46,8 @@ class Settings:
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
+    uses_shipped_templates: bool = False
+    """Whether templates that the configuration names are ignored."""
     diagrams: str | None = None
     overlay: tuple[Path, ...] = ()
     library: str = ""
@@ -287,9 +289,16 @@ def _backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
 
 
 def _templates(config: "Config", settings: Settings) -> Path | None:
+    from sysmlc.config import find_project_root
+    from sysmlc.sources.roots import Roots
+
+    if settings.uses_shipped_templates:
+        return None
     folder = settings.templates
     if folder is None and config.templates and config.folder:
         folder = config.folder / config.templates
+        if not Roots((find_project_root(config.folder),)).allows(folder):
+            fail(f"templates = '{config.templates}' leads out of the project; use --templates")
     if folder is not None and not folder.is_dir():
         fail(f"there is no folder '{folder}' for templates")
     return folder

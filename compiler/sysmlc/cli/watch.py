@@ -41,6 +41,7 @@ Example:
     help="While the model has errors, write the files that they do not concern.",
 )
 @options.emitting
+@options.templates
 @options.reporting
 @options.reading
 @options.caching

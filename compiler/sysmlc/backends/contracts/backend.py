@@ -6,7 +6,7 @@ from functools import partial
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.trace import trace as trace_of
-from sysmlc.backends.templates import faults
+from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.ir.reads import during
@@ -36,7 +36,7 @@ BAD_TEMPLATE = rule(
     Severity.ERROR,
     "template contract.md.j2 cannot be used: {fault}",
     why="The template of the folder given by --templates replaces ours.",
-    help="correct it, or take our templates/contracts/contract.md.j2 as a start",
+    help="correct it, or start from the shipped templates/contracts/contract.md.j2",
     wrong="{% for row in %}",
     right="{% for row in rows %} ... {% endfor %}",
 )
@@ -54,37 +54,39 @@ class ContractsBackend:
     def part(self, graph: Graph, about: str, options: EmitOptions) -> list[Artefact]:
         """The files of one contract, as ``contracts`` and the id of what it comes from."""
         output, id = Output(), about.partition(" ")[2]
+        templates = Templates(self.name, options.templates)
         for contract in map(unambiguous, graph.derived(Contract)):
             if contract.origin == id:
                 name = file_names([contract.component])[contract.component]
-                _add(graph, contract, output, f"contracts/{name}", Sink(), options)
+                _add(graph, contract, output, f"contracts/{name}", Sink(), templates)
         return output.artefacts()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files a contract; their trace names every element that they tell of."""
         contracts = graph.derived(Contract)
         names = file_names(contract.component for contract in contracts)
-        for contract in contracts:
-            path = f"contracts/{names[contract.component]}"
-            for one in _files(graph, contract, path, sink, options):
-                output.add(one.path, one.text, one.trace, one.backend)
+        with Templates(self.name, options.templates) as templates:
+            for contract in contracts:
+                path = f"contracts/{names[contract.component]}"
+                for artefact in _files(graph, contract, path, sink, templates):
+                    output.add(artefact.path, artefact.text, artefact.trace, artefact.backend)
 
 
 def _files(
-    graph: Graph, contract: Contract, path: str, sink: Sink, options: EmitOptions
+    graph: Graph, contract: Contract, path: str, sink: Sink, templates: Templates
 ) -> Iterable[Artefact]:
-    about, make = f"contracts {contract.origin}", partial(_made, contract, path, options)
-    if options.templates is None:
+    about, make = f"contracts {contract.origin}", partial(_made, contract, path, templates)
+    if not templates.has_folder:
         return retold(graph, sink, about, (contract, path), make)
     with during(graph, about):
         return make(graph, sink)
 
 
 def _made(
-    contract: Contract, path: str, options: EmitOptions, graph: Graph, sink: Sink
+    contract: Contract, path: str, templates: Templates, graph: Graph, sink: Sink
 ) -> tuple[Artefact, ...]:
     output = Output()
-    _add(graph, unambiguous(contract), output, path, sink, options)
+    _add(graph, unambiguous(contract), output, path, sink, templates)
     return tuple(output.artefacts())
 
 
@@ -94,12 +96,12 @@ def _add(
     output: Output,
     path: str,
     sink: Sink,
-    options: EmitOptions,
+    templates: Templates,
 ) -> None:
     trace = tuple(trace_of(graph, contract))
     output.add(f"{path}.contract.json", text(contract), trace, "contracts")
     _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
-    _add_page(graph, contract, output, f"{path}.md", trace, sink, options)
+    _add_page(graph, contract, output, f"{path}.md", trace, sink, templates)
 
 
 def _add_spin(
@@ -124,10 +126,9 @@ def _add_page(
     path: str,
     trace: tuple[str, ...],
     sink: Sink,
-    options: EmitOptions,
+    templates: Templates,
 ) -> None:
     try:
-        output.add(path, explain(graph, contract, options.templates), trace, "contracts")
-    except faults() as error:
-        fault = f"{type(error).__name__}: {error}"
+        output.add(path, explain(graph, contract, templates), trace, "contracts")
+    except TemplateError as fault:
         sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from pathlib import Path
 
-from sysmlc.backends.templates import render_template
+from sysmlc.backends.templates import Templates
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
@@ -15,7 +14,7 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
-_FOLDER = "contracts"
+_SHIPPED = Templates("contracts", None)
 _TITLES = {
     Class.INIT: "At the start",
     Class.SAFETY: "In every step",
@@ -79,9 +78,9 @@ class Page:
     """What the author says of the component."""
 
 
-def explain(graph: Graph, contract: Contract, templates: Path | None = None) -> str:
-    """Markdown text. Raises ``jinja2.TemplateError`` when a template of the user's is wrong."""
-    return render_template(_FOLDER, "contract.md.j2", templates, page=_page(graph, contract))
+def explain(graph: Graph, contract: Contract, templates: Templates = _SHIPPED) -> str:
+    """Return the contract as Markdown. Raises TemplateError."""
+    return templates.render("contract.md.j2", page=_page(graph, contract))
 
 
 _Told = Callable[[str], tuple[str, str]]

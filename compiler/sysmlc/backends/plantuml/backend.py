@@ -19,9 +19,8 @@ from sysmlc.backends.plantuml import (
     stm,
     uc,
 )
-from sysmlc.backends.plantuml.render import Renderer
 from sysmlc.backends.plantuml.views import Diagram
-from sysmlc.backends.templates import faults
+from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
@@ -71,10 +70,10 @@ class PlantUml:
     def part(self, graph: Graph, about: str, options: EmitOptions) -> Iterator[Artefact]:
         """The diagrams of one kind about one element, as ``act`` and its id."""
         kind, _, id = about.partition(" ")
-        renderer = Renderer(options.templates)
-        with room_for(stm.depth(graph)):
+        templates = Templates(self.name, options.templates)
+        with room_for(stm.depth(graph)), templates:
             for one in _PARTS[kind](graph, id):
-                text = _text(graph, one, renderer)
+                text = _text(graph, one, templates)
                 yield Artefact(f"diagrams/{one.name}.{kind}.puml", text, _trace(one), self.name)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
@@ -112,16 +111,15 @@ def _write(
 ) -> None:
     if not found:
         return
-    renderer = Renderer(options.templates)
     found.sort(key=lambda one: one.diagram.kind)
-    for kind, group in groupby(found, lambda one: one.diagram.kind):
-        try:
-            for (diagram, trace), file in _named(list(group)):
-                text = _text(graph, diagram, renderer)
-                output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
-        except faults() as error:
-            fault = f"{type(error).__name__}: {error}"
-            sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
+    with Templates("plantuml", options.templates) as templates:
+        for kind, group in groupby(found, lambda one: one.diagram.kind):
+            try:
+                for (diagram, trace), file in _named(list(group)):
+                    text = _text(graph, diagram, templates)
+                    output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
+            except TemplateError as fault:
+                sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 
 
 def _named(found: list[_Traced]) -> Iterable[tuple[_Traced, str]]:
@@ -147,15 +145,24 @@ def _trace(diagram: Diagram) -> tuple[str, ...]:
     return _TRACES[diagram]
 
 
-def _text(graph: Graph, diagram: Diagram, renderer: Renderer) -> str:
+def _text(graph: Graph, diagram: Diagram, templates: Templates) -> str:
     about = graph.get(diagram.about)
     source = "" if about is None else about.source
-    if renderer.has_templates:
-        return renderer.text(diagram, _header(diagram, source))
+    if templates.has_folder:
+        return _render(diagram, source, templates)
     known = _TEXTS.get(diagram)
     if known is None or known[0] != source:
-        known = _TEXTS[diagram] = source, renderer.text(diagram, _header(diagram, source))
+        known = _TEXTS[diagram] = source, _render(diagram, source, templates)
     return known[1]
+
+
+def _render(diagram: Diagram, source: str, templates: Templates) -> str:
+    return templates.render(
+        f"{diagram.kind}.puml.j2",
+        diagram=diagram,
+        view=diagram.view,
+        header=_header(diagram, source),
+    )
 
 
 def _header(diagram: Diagram, source: str) -> tuple[str, ...]:

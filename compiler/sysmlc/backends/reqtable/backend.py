@@ -1,14 +1,13 @@
 """Two files for each root of the model that holds requirements, and what they leave open."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
 from sysmlc.backends.reqtable.table import Table, tables
 from sysmlc.backends.reqtable.text import csv_text, markdown, markdown_cell
 from sysmlc.backends.reqtable.unmet import report_open
-from sysmlc.backends.templates import faults, render_template
+from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
@@ -31,12 +30,13 @@ class ReqTableBackend:
         """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""
         found = {_free(table.name, number): table for number, table in _numbered(graph)}
         names = file_names(found)
-        for key, table in found.items():
-            path = f"requirements/{names[key]}.requirements"
-            output.add(f"{path}.csv", csv_text(table), table.trace(), self.name)
-            text = _markdown(table, sink, options.templates)
-            if text:
-                output.add(f"{path}.md", text, table.trace(), self.name)
+        with Templates(self.name, options.templates) as templates:
+            for key, table in found.items():
+                path = f"requirements/{names[key]}.requirements"
+                output.add(f"{path}.csv", csv_text(table), table.trace(), self.name)
+                text = _markdown(table, sink, templates)
+                if text:
+                    output.add(f"{path}.md", text, table.trace(), self.name)
         report_open(graph, [row.element for table in found.values() for row in table.rows], sink)
 
 
@@ -51,7 +51,7 @@ def _free(name: str, number: int) -> str:
     return name if number == 1 else f"{name}-{number}"
 
 
-def _markdown(table: Table, sink: Sink, templates: Path | None) -> str:
+def _markdown(table: Table, sink: Sink, templates: Templates) -> str:
     # A column in which nothing stands only makes a page wide; a CSV file keeps its columns.
     shown = [at for at, name in enumerate(table.columns) if name in _ALWAYS or _is_used(table, at)]
     page = {
@@ -60,9 +60,8 @@ def _markdown(table: Table, sink: Sink, templates: Path | None) -> str:
         "rows": [[markdown_cell(row.cells[at]) for at in shown] for row in table.rows],
     }
     try:
-        return render_template("reqtable", _TEMPLATE, templates, page=page)
-    except faults() as error:
-        fault = f"{type(error).__name__}: {error}"
+        return templates.render(_TEMPLATE, page=page)
+    except TemplateError as fault:
         sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
         return ""
 

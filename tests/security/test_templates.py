@@ -1,0 +1,237 @@
+"""Templates of a repository: they run no code, reach no file and end in time."""
+
+import os
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.contracts import BACKEND as CONTRACTS
+from sysmlc.backends.plantuml import BACKEND as PLANTUML
+from sysmlc.backends.reqtable import BACKEND as REQTABLE
+from sysmlc.backends.templates import files, process
+from sysmlc.cli import group
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import parse_text
+from sysmlc.logic.samples import arrow, machine
+from sysmlc.output import Output
+from sysmlc.passes import pipeline
+
+PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n    Port gate.in "in"\n'
+SHELL = "{{ cycler.__init__.__globals__.os.popen('touch pwned').read() }}"
+CONFIGURATIONS = {
+    "sysmlc.toml": 'templates = "t"\n',
+    "pyproject.toml": '[tool.sysmlc]\ntemplates = "t"\n',
+}
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A working folder with a model and a folder of templates."""
+    monkeypatch.setenv("SYSMLC_CACHE_DIR", str(tmp_path / "cache"))
+    folder = tmp_path / "project"
+    (folder / "t" / "plantuml").mkdir(parents=True)
+    (folder / "plant.ir").write_text(PLANT)
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(group.sysmlc, [*arguments], catch_exceptions=False)
+
+
+def draw(text: str | None, folder: Path) -> tuple[list[str], list[str]]:
+    """Return texts and messages of the block definition diagram with its template replaced."""
+    if text is not None:
+        (folder / "bdd.puml.j2").write_text(text)
+    output, sink = Output(), Sink()
+    PLANTUML.emit(parse_text(PLANT), output, sink, EmitOptions(folder))
+    texts = [one.text for one in output.artefacts() if one.path.endswith(".bdd.puml")]
+    return texts, [diagnostic.message for diagnostic in sink]
+
+
+@pytest.mark.parametrize("configuration", CONFIGURATIONS)
+def test_templates_of_a_repository_run_no_shell(project, configuration):
+    Path(configuration).write_text(CONFIGURATIONS[configuration])
+    Path("t/plantuml/bdd.puml.j2").write_text(SHELL)
+    done = run("build", "plant.ir", "--emit", "plantuml")
+    assert done.exit_code == 1
+    assert "plantuml/bdd.puml.j2:1: access to attribute '__init__'" in done.stderr
+    assert not Path("pwned").exists()
+
+
+@pytest.mark.parametrize("configuration", CONFIGURATIONS)
+def test_check_uses_the_shipped_templates_only(project, configuration):
+    Path(configuration).write_text(CONFIGURATIONS[configuration])
+    Path("t/plantuml/bdd.puml.j2").write_text("{{ 1 / 0 }}")
+    assert "SM700" in run("build", "plant.ir").stderr
+    done = run("check", "plant.ir")
+    assert (done.exit_code, "SM700" in done.stderr) == (0, False)
+    assert run("check", "plant.ir", "--templates", "t").exit_code == 2
+
+
+ESCAPES = [
+    "{{ ''.__class__.__mro__[1].__subclasses__() }}",
+    "{{ ''['__class__'] }}",
+    "{{ ''|attr('__class__') }}",
+    "{{ [''] | map(attribute='__class__') | first }}",
+    "{{ '{0.__class__}'.format(1) }}",
+    "{{ '{x.__class__}'.format_map({'x': 1}) }}",
+    "{{ ('{0.__class__}' | attr('format'))(1) }}",
+    "{{ self._TemplateReference__context }}",
+    "{{ self.__init__.__globals__ }}",
+    "{{ joiner.__init__.__globals__ }}",
+    "{{ lipsum.__globals__ }}",
+    "{{ namespace.__init__.__globals__ }}",
+    "{{ range.__init__.__globals__ }}",
+    "{% macro m() %}{% endmacro %}{{ m._func.__globals__ }}",
+    "{{ view.__class__ }}",
+    "{{ diagram.trace() }}",
+    "{{ view.lines.append(1) }}",
+    "{{ {}.update(a=1) }}",
+    "{% for a in [1] %}{{ loop._iterator.gi_frame }}{% endfor %}",
+    "{{ (view.lines | map('upper')).gi_frame }}",
+    "{{ undefined_name.__init__ }}",
+    "{% extends '/etc/hostname' %}",
+    "{% import '../secret.j2' as secret %}{{ secret.x }}",
+]
+
+
+@pytest.mark.parametrize("text", ESCAPES)
+def test_known_escapes_from_the_sandbox_are_faults(tmp_path, text):
+    texts, messages = draw(text, tmp_path)
+    assert texts == []
+    assert len(messages) == 1
+    assert "bdd.puml.j2:1: " in messages[0]
+
+
+@pytest.mark.parametrize("name", ["../secret.j2", "/etc/passwd", "sub/../../secret.j2"])
+def test_a_template_includes_nothing_from_outside_its_folder(tmp_path, name):
+    (tmp_path / "secret.j2").write_text("secret")
+    folder = tmp_path / "t"
+    folder.mkdir()
+    texts, messages = draw(f"{{% include '{name}' %}}", folder)
+    assert (texts, len(messages)) == ([], 1)
+    assert f"bdd.puml.j2:1: there is no template '{name}'" in messages[0]
+
+
+BOMBS = {
+    "{% for i in range(99999) %}{% for j in range(99999) %}{% endfor %}{% endfor %}": "takes more",
+    "{% for i in range(9**9) %}{% endfor %}": "Range too big",
+    "{{ (9**9) ** (9**9) }}": "takes more",
+    "{{ 'a' * 10**11 }}": "memory",
+    "{{ 'a' | center(10**11) }}": "memory",
+    "{{ '%99999999999d' % 1 }}": "memory",
+    "{{ '{:99999999999}'.format(1) }}": "memory",
+    "{% set a = 'a' * 10**5 %}{{ (a | replace('a', a)) | length }}": "memory",
+    "{% set a = 'a' * 10**5 %}{{ ([a] * 10**5) | join | length }}": "memory",
+    "{% set ns = namespace(a=[1, 1]) %}{% for i in range(99) %}{% set ns.a = [ns.a, ns.a] %}"
+    "{% endfor %}{{ ns.a }}": "",
+    "{% for i in range(99999) %}{{ 'a' * 10**6 }}{% endfor %}": "writes more than 10,000,000",
+    "{% macro m() %}{{ m() }}{{ m() }}{% endmacro %}{{ m() }}": "",
+    "{% include 'bdd.puml.j2' %}": "",
+}
+
+
+@pytest.mark.parametrize("text", BOMBS)
+def test_bombs_end_in_a_diagnostic(tmp_path, text, monkeypatch):
+    monkeypatch.setattr(process, "MAX_SECONDS", 1)
+    texts, messages = draw(text, tmp_path)
+    assert (texts, len(messages)) == ([], 1)
+    assert BOMBS[text] in messages[0]
+
+
+def test_one_back_end_waits_once_for_the_time_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr(process, "MAX_SECONDS", 1)
+    started = []
+    popen = process.Popen
+    monkeypatch.setattr(process, "Popen", lambda *a, **k: started.append(a) or popen(*a, **k))
+    for name in ("bdd", "ibd", "act", "stm"):
+        (tmp_path / f"{name}.puml.j2").write_text("{{ (9**9) ** (9**9) }}")
+    parts = '    Property gate.p "p" subkind="part"\n      -> typed-by gate\n'
+    output, sink = Output(), Sink()
+    PLANTUML.emit(parse_text(PLANT + parts), output, sink, EmitOptions(tmp_path))
+    assert len(started) == 1
+    assert {d.message.partition("used: ")[2] for d in sink if d.rule.code == "SM700"} == {
+        "bdd.puml.j2: takes more than 1 s"
+    }
+
+
+def test_a_link_out_of_the_folder_is_refused(tmp_path):
+    (tmp_path / "secret").write_text("secret")
+    folder = tmp_path / "t"
+    folder.mkdir()
+    (folder / "bdd.puml.j2").symlink_to(tmp_path / "secret")
+    texts, messages = draw(None, folder)
+    assert (texts, len(messages)) == ([], 1)
+    assert messages[0].endswith("used: bdd.puml.j2: is a link out of the templates folder")
+
+
+def test_a_linked_folder_of_a_back_end_is_refused(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "bdd.puml.j2").write_text("secret")
+    (tmp_path / "t").mkdir()
+    (tmp_path / "t" / "plantuml").symlink_to(tmp_path / "elsewhere")
+    texts, messages = draw(None, tmp_path / "t")
+    assert (texts, len(messages)) == ([], 1)
+    assert "is a link out of the templates folder" in messages[0]
+
+
+def test_a_fifo_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "bdd.puml.j2")
+    texts, messages = draw(None, tmp_path)
+    assert (texts, len(messages)) == ([], 1)
+    assert "bdd.puml.j2: is no regular file" in messages[0]
+
+
+def test_a_large_template_is_refused(tmp_path):
+    texts, messages = draw("a" * (files.MAX_BYTES + 1), tmp_path)
+    assert (texts, len(messages)) == ([], 1)
+    assert "larger than" in messages[0]
+
+
+def test_a_template_that_is_not_text_is_refused(tmp_path):
+    (tmp_path / "bdd.puml.j2").write_bytes(b"@startuml \xff")
+    texts, messages = draw(None, tmp_path)
+    assert (texts, len(messages)) == ([], 1)
+    assert "bdd.puml.j2: is not UTF-8: invalid byte at offset 10" in messages[0]
+
+
+@pytest.mark.parametrize("where", ["..", "../other", "link"])
+def test_a_configuration_names_no_folder_outside_the_project(project, where):
+    other = project.parent / "other"
+    other.mkdir()
+    Path("link").symlink_to(other)
+    Path("sysmlc.toml").write_text(f'templates = "{where}"\n')
+    done = run("build", "plant.ir")
+    assert done.exit_code == 2
+    assert f"templates = '{where}' leads out of the project; use --templates" in done.stderr
+    assert run("build", "plant.ir", "--templates", str(other)).exit_code == 0
+
+
+def test_modules_in_the_working_folder_are_not_imported(project):
+    """``python -m`` would import ``jinja2.py`` of the repository in the rendering process."""
+    Path("jinja2.py").write_text("open('pwned', 'w')\n")
+    Path("json.py").write_text("open('pwned', 'w')\n")
+    Path("t/plantuml/bdd.puml.j2").write_text("drawn")
+    assert run("build", "plant.ir", "--templates", "t").exit_code == 0
+    assert Path("out/diagrams/Plant.bdd.puml").read_text() == "drawn"
+    assert not Path("pwned").exists()
+
+
+@pytest.mark.parametrize(
+    ("backend", "name"), [(CONTRACTS, "contract.md.j2"), (REQTABLE, "requirements.md.j2")]
+)
+def test_other_back_ends_render_in_the_sandbox_too(tmp_path, backend, name):
+    (tmp_path / name).write_text(SHELL)
+    requirement = '  Class jam "No jam" role="requirement" req_id="R1"\n'
+    graph, output, sink = (
+        parse_text(machine(arrow("a", "b", "start")) + requirement),
+        Output(),
+        Sink(),
+    )
+    pipeline.run(graph, Sink())
+    backend.emit(graph, output, sink, EmitOptions(tmp_path))
+    (fault,) = [diagnostic.message for diagnostic in sink if diagnostic.is_error]
+    assert f"{name}:1: access to attribute '__init__'" in fault
