@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -31,11 +32,15 @@ def test_links_lead_somewhere(page):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_commands_and_options_exist(page):
+    """Commands in blocks, and those in the middle of a sentence."""
     text = page.read_text(encoding="utf-8")
-    for line in re.findall(r"^(?:    |- run: |\$ )(sysmlc [^>|#\n]*)", text, re.MULTILINE):
+    lines = re.findall(r"^(?:    |- run: |\$ )(sysmlc [^>|#\n]*)", text, re.MULTILINE)
+    for line in [*lines, *re.findall(r"`(sysmlc [^`]*)`", text)]:
         words = line.split()
-        command = words[1] if words[1] in COMMANDS else "build"
-        known = {option for p in sysmlc.get_command(None, command).params for option in p.opts}
+        command = sysmlc.get_command(None, words[1] if words[1] in COMMANDS else "build")
+        if isinstance(command, click.Group):
+            command = command.get_command(None, words[2])
+        known = {option for p in command.params for option in (*p.opts, *p.secondary_opts)}
         options = [word for word in words if re.fullmatch(r"--?[a-z][a-z-]*", word)]
         assert set(options) <= known | {"--help", "--version"}, line
 

@@ -1,8 +1,6 @@
 """What is shipped: the wheel compiles an example in an empty environment, from another folder."""
 
-import os
 import subprocess
-import sys
 import tarfile
 import zipfile
 from pathlib import Path
@@ -11,16 +9,6 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def dist(tmp_path_factory):
-    """A folder with the source distribution and the wheel that was built from it."""
-    folder = tmp_path_factory.mktemp("dist")
-    run = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)]
-    done = subprocess.run(run, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return folder
 
 
 def test_the_wheel_carries_data_licence_and_types(dist):
@@ -47,19 +35,14 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
     assert {"tests/conftest.py", "examples/lego-recipe/lego-recipe.uml"} <= names
 
 
-def test_installed_in_an_empty_environment_it_compiles_an_example(dist, tmp_path):
-    (wheel,) = dist.glob("*.whl")
-    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "env")], check=True)
-    python = next((tmp_path / "env").glob("[bS]*/python*"))
-    env = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, str(wheel)], check=True, env=env)
+def test_installed_in_an_empty_environment_it_compiles_an_example(environment, tmp_path):
     model = ROOT / "examples/lego-recipe/lego-recipe.uml"
-    run = [str(python), "-m", "sysmlc", str(model), "-o", "out"]
+    run = [environment.python, "-m", "sysmlc", str(model), "-o", "out"]
+    env = environment.variables()
     done = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path, env=env)
     assert done.returncode == 0, done.stderr
     made = {path.relative_to(tmp_path / "out").parts[0] for path in (tmp_path / "out").rglob("*")}
     assert {"contracts", "recipes", "diagrams", "manifest.json", "trace.json"} <= made
-    where = [str(python), "-c", "import sysmlc; print(sysmlc.__file__)"]
+    where = [environment.python, "-c", "import sysmlc; print(sysmlc.__file__)"]
     printed = subprocess.run(where, capture_output=True, text=True, cwd=tmp_path, env=env).stdout
-    assert str(tmp_path) in printed
+    assert str(environment.folder) in printed

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   sysmlc build plant.uml profile.profile.uml -o out/
-  sysmlc plant.mdzip --emit +graph         also graph.json
-  sysmlc plant.uml --emit plantuml         only diagrams
-  sysmlc build --check                     are the committed outputs up to date?""",
+  sysmlc plant.mdzip --emit +graph         # also graph.json
+  sysmlc plant.uml --emit plantuml         # only diagrams
+  sysmlc build                             # every [[model]] of sysmlc.toml
+  sysmlc build --check                     # are the committed outputs up to date?""",
 )
 @options.models()
 @options.output_folder

@@ -26,7 +26,7 @@ def command() -> None:
 Examples:
   sysmlc contracts check plant.uml
   sysmlc contracts check cells.sysml -c Cells::Cell.turn
-  sysmlc contracts check cells.sysml -o out
+  sysmlc contracts check cells.sysml -o out   # draws the runs that break a contract
   sysmlc contracts check gate.contract.json
   sysmlc contracts check plant.uml --question-limit 60 --time-limit 1800
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   sysmlc coverage plant.mdzip
-  sysmlc coverage models/ --elements          every element that is not wholly read
-  sysmlc coverage models/ --fail-under 99.5   for continuous integration""",
+  sysmlc coverage models/ --elements          # every element that is not wholly read
+  sysmlc coverage models/ --fail-under 99.5   # for continuous integration""",
 )
 @options.models()
 @click.option(

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   sysmlc diff old/plant.aml plant.aml
-  sysmlc diff old.uml new.uml --format markdown   for a review
-  sysmlc diff old.uml new.uml --ignore id         when the ids were given anew""",
+  sysmlc diff old.uml new.uml --format markdown   # for a review
+  sysmlc diff old.uml new.uml --ignore id         # when the ids were given anew""",
 )
 @click.argument("old", type=click.Path(path_type=Path), metavar="OLD")
 @click.argument("new", type=click.Path(path_type=Path), metavar="NEW")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Examples:
   sysmlc explain SM170
   sysmlc explain missing-file
-  sysmlc explain                 all rules, one line each""",
+  sysmlc explain                 # all rules, one line each""",
 )
 @click.argument("code", required=False, metavar="[CODE|NAME]")
 def command(code: str | None) -> None:

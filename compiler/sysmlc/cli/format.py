@@ -39,9 +39,9 @@ class _Text:
     epilog="""\b
 Examples:
   sysmlc format plant.sysml
-  sysmlc format models/ --check     for continuous integration: exit code 1 when one differs
-  sysmlc format models/ --diff      only show what would change
-  sysmlc format - < plant.sysml     from standard input to standard output""",
+  sysmlc format models/ --check     # for continuous integration: exit code 1 when one differs
+  sysmlc format models/ --diff      # only show what would change
+  sysmlc format - < plant.sysml     # from standard input to standard output""",
 )
 @click.argument(
     "files",

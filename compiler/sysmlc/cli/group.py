@@ -65,10 +65,10 @@ class _Commands(click.Group):
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="""\b
 Examples:
-  sysmlc model.uml -o out/         contracts, recipes and diagrams of a model
-  sysmlc check models/             only the findings, for continuous integration
-  sysmlc explain untyped-port      why a rule exists, a wrong and a right model
-  sysmlc watch model.uml -o out/   again at every save
+  sysmlc model.uml -o out/         # contracts, recipes and diagrams of a model
+  sysmlc check models/             # only the findings, for continuous integration
+  sysmlc explain untyped-port      # why a rule exists, a wrong and a right model
+  sysmlc watch model.uml -o out/   # again at every save
 
 Exit codes: 0 clean, 1 the model has errors (with --strict also warnings),
 2 the work could not be done. A folder named like a command is written ./check.""",

@@ -22,7 +22,7 @@ _STEP = 20
     short_help="Compile again at every save.",
     epilog="""\b
 Example:
-  sysmlc watch plant.uml -o out/           ends with Ctrl-C""",
+  sysmlc watch plant.uml -o out/           # ends with Ctrl-C""",
 )
 @options.models()
 @options.output_folder

@@ -1,0 +1,131 @@
+"""Every command of README, docs and ``--help`` works as printed after a plain installation.
+
+Each page's commands run in one folder, one after the other, by a shell, in an environment without
+extras. ``reader_files`` supplies the files that they name.
+"""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+from documented_commands import Command, find_commands
+from reader_files import supply_files
+
+from sysmlc.cli.group import COMMANDS
+
+pytestmark = pytest.mark.long
+
+NOT_RUN = {
+    r"pip install ": "the environment of this test is made by installing",
+    r"uses: ": "actions of a service for continuous integration",
+    r"make ": "targets of the Makefile, which test_packaging_docs looks up",
+    r"java -jar plantuml\.jar ": "PlantUML is a download of the reader's",
+    r"python benchmarks/(xmi|aml|cache|sysml)\.py": "takes minutes; 'make bench' runs it",
+}
+"""Commands that are not run, and why."""
+
+EXIT_CODES = {
+    r"sysmlc diff ": 1,
+    r"sysmlc contracts check .* # draws the runs that break a contract": 1,
+}
+"""Exit codes other than 0 that pages announce: models differ, a contract is broken."""
+
+PREPARATION = {"docs/check-in-ci.md": ["sysmlc build plant.uml -o out/"]}
+"""What a page takes for granted before its first command."""
+
+BOUND = 300
+COMMANDS_OF = {
+    page: [command for command in find_commands() if command.page == page]
+    for page in dict.fromkeys(command.page for command in find_commands())
+}
+
+
+def is_run(command: Command) -> bool:
+    return not any(re.match(pattern, command.text) for pattern in NOT_RUN)
+
+
+PAGES = [page for page, commands in COMMANDS_OF.items() if any(map(is_run, commands))]
+
+
+def test_commands_are_found_in_every_kind_of_page():
+    found = {(command.page, command.text) for command in find_commands()}
+    assert {
+        ("README.md", "sysmlc examples/lego-recipe/lego-recipe.uml -o out/"),
+        ("docs/check-in-ci.md", "sysmlc check models/ --format github"),
+        ("docs/simulate-a-scenario.md",
+         "sysmlc simulate examples/lego-recipe/lego-recipe.uml --scenario gripper.yaml"),
+        ("sysmlc synth --help", "sysmlc synth gate.contract.json --realizable"),
+    } <= found  # fmt: skip
+    silent = {"backends"}
+    assert {page.split()[1] for page in COMMANDS_OF if page.endswith("--help")} == {
+        "--help",
+        *COMMANDS,
+    } - silent
+
+
+def test_every_exception_concerns_a_command():
+    texts = [command.text for commands in COMMANDS_OF.values() for command in commands]
+    for pattern in (*NOT_RUN, *EXIT_CODES):
+        assert any(re.match(pattern, text) for text in texts), pattern
+    assert set(PREPARATION) <= set(COMMANDS_OF)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_commands_of_a_page_work_as_printed(page, environment, tmp_path):
+    folder = tmp_path / "repository"
+    folder.mkdir()
+    variables = {
+        **environment.variables(),
+        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "HOME": str(tmp_path / "home"),
+    }
+    variables.pop("SYSMLC_CACHE", None)
+
+    def sysmlc(*arguments):
+        subprocess.run(["sysmlc", *arguments], cwd=folder, env=variables, check=True)
+
+    supply_files(page, folder, sysmlc)
+    problems = []
+    texts = [command.text for command in COMMANDS_OF[page] if is_run(command)]
+    for text in [*PREPARATION.get(page, []), *texts]:
+        run = run_watch if text.startswith("sysmlc watch ") else run_command
+        problem = run(text, folder, variables)
+        if problem:
+            problems.append(f"{text}\n{problem}")
+    assert not problems, "\n\n".join(problems)
+
+
+def run_command(text, folder, variables):
+    """Run a line in a shell; return what is wrong with the result, or nothing."""
+    run = ["/bin/sh", "-c", text]
+    done = subprocess.run(
+        run, cwd=folder, env=variables, input="", capture_output=True, text=True, timeout=BOUND
+    )
+    expected = next((code for line, code in EXIT_CODES.items() if re.match(line, text)), 0)
+    return "" if done.returncode == expected else f"exit code {done.returncode}\n{done.stderr}"
+
+
+def run_watch(text, folder, variables):
+    """Run a line that watches until its first build is done, then interrupt it."""
+    lines, errors = folder.parent / "lines.txt", folder.parent / "errors.txt"
+    with lines.open("w") as stdout, errors.open("w") as stderr:
+        process = subprocess.Popen(
+            ["/bin/sh", "-c", f"exec {text}"],
+            cwd=folder,
+            env={**variables, "PYTHONUNBUFFERED": "1"},
+            stdout=stdout,
+            stderr=stderr,
+            start_new_session=True,
+            # A process that a shell started in the background inherits that it ignores SIGINT.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        )
+        end = time.monotonic() + BOUND
+        while not lines.read_text() and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.1)
+        os.killpg(process.pid, signal.SIGINT)
+        code = process.wait(BOUND)
+    is_built = "changed" in lines.read_text()
+    return "" if is_built and code in (0, 130) else f"exit code {code}\n{errors.read_text()}"
