@@ -1,5 +1,13 @@
 """``python -m sysmlc``: the same as the command ``sysmlc``."""
 
+import os
+import sys
+
+# Python puts the working folder first: a repository with a file jinja2.py, or with a folder that
+# looks like an installed plug-in, would run code. The command ``sysmlc`` has no such entry.
+if sys.path and sys.path[0] == os.getcwd():  # noqa: PTH109 - pathlib is not yet imported
+    del sys.path[0]
+
 from sysmlc.cli import main
 
 if __name__ == "__main__":

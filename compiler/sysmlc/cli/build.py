@@ -56,7 +56,7 @@ def command(
 
     _check_command_word(models)
     settings = session.Settings(**given)
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
     made = [session.outcome_of(unit, config, settings) for unit in units]
     session.report(made, settings)

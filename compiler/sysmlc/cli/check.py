@@ -33,7 +33,7 @@ def command(
     from sysmlc.cli import session
 
     settings = session.Settings(**given, uses_shipped_templates=True)
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     units = session.units(models, config, None, settings.emit)
     made = [session.outcome_of(unit, config, settings, has_files=False) for unit in units]
     session.report(made, settings)

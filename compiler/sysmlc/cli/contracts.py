@@ -65,7 +65,7 @@ def check_command(
     from sysmlc.synthesis.decide import Options
 
     settings = session.Settings(**given)
-    config = session.load_config((file,), settings.config)
+    config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
     read = read_contracts(file, language, config, settings)
     limits = Limits(seconds=seconds)

@@ -41,12 +41,7 @@ Examples:
     metavar="PERCENT",
     help="Exit with 1 when less of what means something is covered.",
 )
-@click.option(
-    "--config",
-    type=click.Path(path_type=Path, dir_okay=False),
-    metavar="FILE",
-    help="Configuration, instead of the nearest sysmlc.toml.",
-)
+@options.configuration
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -56,6 +51,7 @@ def command(
     every: bool,
     fail_under: float | None,
     config: Path | None,
+    isolated: bool,
 ) -> None:
     """Count what became of every element of MODEL..., by type, the worst first.
 
@@ -64,7 +60,7 @@ def command(
     """
     from sysmlc.cli import session
 
-    loaded = session.load_config(models, config)
+    loaded = session.load_config(models, session.Settings(config, isolated))
     units = session.units(models, loaded, None, ())
     made = [_cover(unit.files, loaded) for unit in units]
     code = max(_report_errors(one) for one in made)

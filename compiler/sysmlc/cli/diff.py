@@ -71,7 +71,7 @@ def command(
 def _read(path: Path, settings: "Settings") -> "Compilation":
     from sysmlc.cli import session
 
-    return session.read_unit((path,), session.load_config([path], settings.config), settings)
+    return session.read_unit((path,), session.load_config([path], settings), settings)
 
 
 def _is_unread(made: "Compilation") -> bool:

@@ -63,8 +63,8 @@ def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
     return function
 
 
-def reading(function: _F) -> _F:
-    """Options on how models are read and refined."""
+def configuration(function: _F) -> _F:
+    """The options ``--config`` and ``--isolated``."""
     return _apply(
         [
             click.option(
@@ -73,6 +73,21 @@ def reading(function: _F) -> _F:
                 metavar="FILE",
                 help="Configuration, instead of the nearest sysmlc.toml.",
             ),
+            click.option(
+                "--isolated",
+                is_flag=True,
+                help="Ignore every configuration file, and the templates and limits in it.",
+            ),
+        ],
+        function,
+    )
+
+
+def reading(function: _F) -> _F:
+    """Options on how models are read and refined."""
+    return _apply(
+        [
+            configuration,
             click.option(
                 "--overlay",
                 multiple=True,

@@ -63,7 +63,7 @@ def command(
     from sysmlc.synthesis.decide import Options
 
     settings = session.Settings(**given)
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     made = session.compile_unit(models, config, settings)
     progress = Progress(settings.verbose)
     chosen = Options("", Limits(seconds=seconds), progress.note, is_explained=True)

@@ -36,6 +36,7 @@ class Settings:
     """The options of the command line that concern reading, emitting and reporting."""
 
     config: Path | None = None
+    isolated: bool = False
     strict_input: bool = False
     schema: Path | None = None
     verify_each: bool = False
@@ -87,13 +88,20 @@ def known_rules() -> "dict[str, Rule]":
     return full_catalogue(lambda note: terminal.echo(f"sysmlc: note: {note}", err=True))
 
 
-def load_config(models: Sequence[Path], file: Path | None) -> "Config":
-    """The configuration for these models; ends with exit code 2 when it is wrong."""
+def load_config(models: Sequence[Path], settings: Settings) -> "Config":
+    """Return the configuration for these models; end with exit code 2 if it is wrong.
+
+    An isolated command reads no configuration file.
+    """
     from sysmlc import config
     from sysmlc.suggest import did_you_mean
 
+    if settings.isolated:
+        if settings.config is not None:
+            raise click.UsageError("--isolated and --config exclude each other")
+        return config.Config()
     try:
-        loaded = config.load(file or config.find(_start(models)))
+        loaded = config.load(settings.config or config.find(_start(models)))
     except config.ConfigError as problem:
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
@@ -289,16 +297,11 @@ def _backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
 
 
 def _templates(config: "Config", settings: Settings) -> Path | None:
-    from sysmlc.config import find_project_root
-    from sysmlc.sources.roots import Roots
-
     if settings.uses_shipped_templates:
         return None
     folder = settings.templates
     if folder is None and config.templates and config.folder:
         folder = config.folder / config.templates
-        if not Roots((find_project_root(config.folder),)).allows(folder):
-            fail(f"templates = '{config.templates}' leads out of the project; use --templates")
     if folder is not None and not folder.is_dir():
         fail(f"there is no folder '{folder}' for templates")
     return folder

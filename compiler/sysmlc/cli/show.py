@@ -36,7 +36,7 @@ def command(
     from sysmlc.ir.text import print_text
 
     settings = session.Settings(**given)
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     made = session.compile_unit(models, config, settings)
     session.show(session.findings(made, only_errors=not settings.verbose), settings)
     if made.exit_code() < 2:

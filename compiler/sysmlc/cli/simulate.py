@@ -52,7 +52,7 @@ def command(
     from sysmlc.simulation import run
 
     settings = session.Settings(**given)
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     made = session.compile_unit(models, config, settings)
     source = _read(scenario)
     sink = Sink(config.rules)

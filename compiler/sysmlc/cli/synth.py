@@ -108,7 +108,7 @@ def command(
         word = "--deadline" if timers else "--realizable"
         session.fail(f"{word} decides only: nothing can be written to a folder")
     settings = session.Settings(**given)
-    config = session.load_config((file,), settings.config)
+    config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, int(LIMITS.gibibytes * _GIBIBYTE), seconds or LIMITS.seconds)
     read = read_contracts(file, language, config, settings)

@@ -169,7 +169,7 @@ class Watch:
 
         if not made:
             return True
-        config = session.load_config(self._models, self._settings.config)
+        config = session.load_config(self._models, self._settings)
         units = session.units(self._models, config, self._output, self._settings.emit)
         now = [session.inputs_of(one, config, self._settings) for one in units]
         return now == [one.outcome.inputs for one in made]
@@ -192,7 +192,7 @@ def compiled(
 
     # Front ends freeze the graphs that they made; those of earlier compilations may go now.
     gc.unfreeze()
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
     return [Compiled(unit, *session.unkept(unit, config, settings)) for unit in units]
 
@@ -206,7 +206,7 @@ def prepare(made: "Iterable[Compiled]", models: tuple[Path, ...], settings: "Set
     from sysmlc.driver import registry
     from sysmlc.frontends.base import Valued
 
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     names = {one.name for one in registry.frontends() if isinstance(one, Valued)}
     for one in made:
         if not names.isdisjoint(file.language for file in one.outcome.inputs):
@@ -253,6 +253,6 @@ def _unit_files(
 ) -> "tuple[Config, tuple[Path, ...]]":
     from sysmlc.cli import session
 
-    config = session.load_config(models, settings.config)
+    config = session.load_config(models, settings)
     units = session.units(models, config, None, ())
     return config, tuple(file for unit in units for file in unit.files)

@@ -1,0 +1,79 @@
+"""``--isolated`` reads no configuration, and no command imports code of the working folder."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.cli import group
+
+PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
+WRONG = {
+    "sysmlc.toml": "no = such-key",
+    "pyproject.toml": '[tool.sysmlc]\noutput = "../elsewhere"\n',
+}
+COMMANDS = {
+    "build": ["build", "plant.ir", "-o", "out"],
+    "check": ["check", "plant.ir"],
+    "show": ["show", "plant.ir"],
+    "diff": ["diff", "plant.ir", "plant.ir"],
+    "coverage": ["coverage", "plant.ir"],
+    "contracts": ["contracts", "check", "plant.ir"],
+    "simulate": ["simulate", "plant.ir", "--scenario", "none.yaml"],
+    "synth": ["synth", "plant.ir"],
+    "robots": ["robots", "plant.ir"],
+}
+
+
+@pytest.fixture(autouse=True)
+def project(tmp_path, monkeypatch):
+    """A working folder with a model."""
+    (tmp_path / "plant.ir").write_text(PLANT)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(arguments):
+    return CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
+
+
+@pytest.mark.parametrize("configuration", WRONG)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_isolated_commands_read_no_configuration(command, configuration):
+    expected = run(COMMANDS[command])
+    Path(configuration).write_text(WRONG[configuration])
+    assert configuration in run(COMMANDS[command]).stderr
+    done = run([*COMMANDS[command], "--isolated"])
+    assert (done.exit_code, done.stderr) == (expected.exit_code, expected.stderr)
+
+
+def test_isolated_and_a_configuration_exclude_each_other():
+    done = run(["check", "plant.ir", "--isolated", "--config", "sysmlc.toml"])
+    assert done.exit_code == 2
+    assert "--isolated and --config exclude each other" in done.stderr
+
+
+@pytest.mark.parametrize("module", ["click.py", "json.py", "jinja2.py", "lxml/__init__.py"])
+def test_python_m_imports_no_module_of_the_working_folder(module, project):
+    Path(module).parent.mkdir(exist_ok=True)
+    Path(module).write_text("open('pwned', 'w')\n")
+    done = run_module(project)
+    assert (done.returncode, Path("pwned").exists()) == (0, False), done.stderr
+
+
+def test_a_plug_in_of_the_working_folder_is_not_loaded(project):
+    Path("evil-1.dist-info").mkdir()
+    Path("evil-1.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: evil\nVersion: 1\n")
+    Path("evil-1.dist-info/entry_points.txt").write_text("[sysmlc.passes]\nevil = evil:PASS\n")
+    Path("evil.py").write_text("open('pwned', 'w')\n")
+    done = run_module(project)
+    assert (done.returncode, Path("pwned").exists()) == (0, False), done.stderr
+
+
+def run_module(project):
+    environment = {**os.environ, "SYSMLC_CACHE": "off"}
+    command = [sys.executable, "-m", "sysmlc", "build", "plant.ir", "-o", "out"]
+    return subprocess.run(command, cwd=project, env=environment, capture_output=True, text=True)
