@@ -10,10 +10,11 @@ _INVISIBLE = frozenset(["Cc", "Cf", "Cs", "Zl", "Zp"])
 _BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
 """Letters and marks that take part in names but are displayed as nothing."""
 
-_MARKDOWN = pattern(r"[\\`*\[\]<>|~]|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)")
-"""Characters that CommonMark interprets within a line; '_' between letters is plain text."""
-_BLOCK = pattern(r"([0-9]*)([#=+\-.)])")
-"""The start of a line that CommonMark reads as a heading, list item or rule."""
+_MARKDOWN = pattern(r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)")
+"""Characters that CommonMark interprets within a line: '<' where a tag can start, ']' where the
+target of a link can follow, '_' unless it stands between letters."""
+_BLOCK = pattern(r"[#=+>\[-]|([0-9]+)[.)](?=\s|$)")
+"""The start of a line that CommonMark reads as a heading, rule, quotation, list item or target."""
 _SURROGATE = pattern("[\ud800-\udfff]")
 
 
@@ -39,7 +40,7 @@ def escape_markdown(text: str) -> str:
     line = escape_invisible(" ".join(text.split()))
     escaped = _MARKDOWN.sub(_escape_markup, line)
     start = _BLOCK.match(escaped)
-    return f"{start[1]}\\{escaped[start.start(2) :]}" if start else escaped
+    return f"{start[1] or ''}\\{escaped[start.end() - 1 :]}" if start else escaped
 
 
 def escape_code(text: str, *, in_table: bool = False) -> str:

@@ -6,6 +6,7 @@ import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
 
+from sysmlc.escapes import escape_invisible
 from sysmlc.patterns import pattern
 
 WIDTH = 36
@@ -78,8 +79,14 @@ def padded(text: str) -> str:
 
 
 def comment(text: str) -> str:
-    """Text of a line comment: neither a line end nor the start of a block comment is left."""
-    return " ".join(_visible(_shortened(text)).split()).replace("/'", "/ '").replace("'/", "' /")
+    """Return the text for a line comment that ends with its line.
+
+    PlantUML joins a line that ends with a backslash with the next one, and starts a block comment
+    at a slash with a quote.
+    """
+    line = escape_invisible(" ".join(_shortened(text).split()))
+    line = line.replace("/'", "/ '").replace("'/", "' /")
+    return f"{line} ." if line.endswith("\\") else line
 
 
 def _shortened(text: str) -> str:

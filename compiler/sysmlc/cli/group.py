@@ -106,7 +106,8 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
         if isinstance(problem, OSError) and terminal.find_stream_problems():
             sys.exit(2)
         fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
-    terminal.echo(f"sysmlc: {fault}\nPlease report it with the command and the model.", err=True)
+    terminal.echo(f"sysmlc: {fault}", err=True)
+    click.echo("Please report it with the command and the model.", err=True)
     sys.exit(2)
 
 

@@ -60,7 +60,7 @@ class Progress(Observer):
             from sysmlc.ir.text import print_text
 
             self.clear()
-            terminal.echo(f"// after {what}\n{print_text(graph)}", nl=False)
+            terminal.echo_text(f"// after {what}\n{print_text(graph)}", nl=False)
 
     def _show_libraries(self, graph: "Graph") -> None:
         from sysmlc.language.names import Model
@@ -73,7 +73,7 @@ class Progress(Observer):
     def fault(self, where: str, trace: str) -> None:
         """With ``-v`` show where a fault of ours happened."""
         if self._verbose:
-            terminal.echo(f"{where}:\n{trace}", err=True, nl=False)
+            terminal.echo_text(f"{where}:\n{trace}", err=True, nl=False)
 
     def clear(self) -> None:
         """Take the bar away before anything else is printed."""

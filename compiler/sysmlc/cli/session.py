@@ -75,9 +75,11 @@ class Unit:
     boundary: Path
 
 
-def fail(message: str) -> NoReturn:
-    """End with one sentence and exit code 2."""
+def fail(message: str, *details: str) -> NoReturn:
+    """End with a sentence, each detail on a line below it, and exit code 2."""
     terminal.echo(f"sysmlc: {message}", err=True)
+    for detail in details:
+        terminal.echo(f"  {detail}", err=True)
     sys.exit(2)
 
 

@@ -41,7 +41,7 @@ def command(
     session.show(session.findings(made, only_errors=not settings.verbose), settings)
     if made.exit_code() < 2:
         text = print_text(made.graph) if element is None else _one(made.graph, element)
-        terminal.echo(text, nl=False)
+        terminal.echo_text(text, nl=False)
     ctx.exit(session.exit_code([made], config, settings))
 
 
@@ -65,8 +65,8 @@ def _found(graph: "Graph", wanted: str) -> "Element":
     if not found:
         fail(f"no element '{wanted}'; {did_you_mean(wanted, _spellings(graph, names))}")
     if len(found) > 1:
-        listed = "".join(f"\n  {names[e.id]} ({e.kind}, id {e.id})" for e in found[:20])
-        fail(f"{len(found)} elements are called '{wanted}', name one:{listed}")
+        details = [f"{names[e.id]} ({e.kind}, id {e.id})" for e in found[:20]]
+        fail(f"{len(found)} elements are called '{wanted}', name one:", *details)
     return found[0]
 
 

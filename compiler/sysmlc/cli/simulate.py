@@ -60,7 +60,7 @@ def command(
     of_model = session.findings(made, only_errors=not settings.verbose)
     session.show([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
-        terminal.echo(result.text(), nl=False, err=not session.says_more(settings))
+        terminal.echo_text(result.text(), nl=False, err=not session.says_more(settings))
         _save(junit, result.junit())
         diagram = result.sequence_diagram()
         if output is not None and diagram:

@@ -205,7 +205,7 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     except (LimitError, OutsideGr1Error) as problem:
         fail(str(problem))
     LIMITS.stop_timer()
-    Player(environment, contracts[0], input, terminal.echo).play()
+    Player(environment, contracts[0], input, terminal.echo_text).play()
     return 1
 
 

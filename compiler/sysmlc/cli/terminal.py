@@ -17,8 +17,17 @@ _FAILED = 2
 _NAMES = ("standard output", "standard error")
 
 
-def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
-    """Print text that may quote models or file names, invisible characters as escapes."""
+def echo(line: str, *, err: bool = False) -> None:
+    """Print a line that may quote models or file names.
+
+    Invisible characters are printed as escapes. That holds for line ends, too: a name must not
+    start a line of its own, which a continuous integration service may read as a command.
+    """
+    click.echo(escape_invisible(line), err=err)
+
+
+def echo_text(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Print text of several lines, whose names have no line ends; escape as ``echo`` does."""
     click.echo(escape_invisible(text, "\n\t"), err=err, nl=nl)
 
 

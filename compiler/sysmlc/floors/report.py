@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from sysmlc.escapes import escape_markdown
 from sysmlc.floors.mission import mission_contract
 from sysmlc.floors.outcome import Outcome, told_steps
 from sysmlc.floors.schedule import Schedule
@@ -12,6 +13,7 @@ from sysmlc.logic.formats import write
 from sysmlc.naming import file_names
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.files import files_of
+from sysmlc.values import replace
 
 
 def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
@@ -58,8 +60,9 @@ def _count(number: int, what: str) -> str:
 
 
 def markdown(outcome: Outcome) -> str:
-    """All of it, to be read."""
-    study = outcome.study
+    """Return the report on one study, names of the model escaped."""
+    study = _escape_names(outcome.study)
+    outcome = replace(outcome, study=study)
     text = [f"# {study.component}", "", f"{summary(outcome)}.", "", *_floor(study)]
     text += _controller(outcome)
     if study.targets and outcome.travel.steps:
@@ -69,6 +72,15 @@ def markdown(outcome: Outcome) -> str:
     if outcome.run:
         text += ["", "## One run", "", *(f"- {one}" for one in lines(study, outcome.run))]
     return "\n".join((*text, ""))
+
+
+def _escape_names(study: Study) -> Study:
+    return replace(
+        study,
+        component=escape_markdown(study.component),
+        robots=tuple(replace(one, name=escape_markdown(one.name)) for one in study.robots),
+        targets=tuple(replace(one, name=escape_markdown(one.name)) for one in study.targets),
+    )
 
 
 def _floor(study: Study) -> Iterator[str]:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import field
 from xml.etree import ElementTree
 
+from sysmlc.escapes import escape_invisible
 from sysmlc.logic.formula import Literal
 from sysmlc.plantuml import plain
 from sysmlc.values import dataclass
@@ -63,14 +64,15 @@ class Report:
         return "\n".join([*lines, f"{passed} of {len(self.results)} scenarios passed"]) + "\n"
 
     def _lines(self, result: Result) -> Iterator[str]:
-        what = f"{result.component}: {result.name}"
+        what = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
             yield f"passed  {what} ({_steps(len(result.trace))})"
         elif result.difference is None:
             yield f"invalid {what}"
         else:
             yield f"FAILED  {what}"
-            yield f"        {self.file}:{result.difference.line}: {result.difference}"
+            difference = escape_invisible(str(result.difference))
+            yield f"        {self.file}:{result.difference.line}: {difference}"
 
     def junit(self) -> str:
         """JUnit XML without times, so that the same run gives the same bytes."""

@@ -147,8 +147,8 @@ def test_no_cell_is_a_formula(start):
     ("text", "shown"),
     [
         ("a | b", "a \\| b"),
-        ("<script>", "\\<script\\>"),
-        ("*a* `b` [c]", "\\*a\\* \\`b\\` \\[c\\]"),
+        ("<script>", "\\<script>"),
+        ("*a* `b` [c](d) [e]", "\\*a\\* \\`b\\` [c\\](d) [e]"),
         ("a &lt; b & c", "a &amp;lt; b & c"),
         ("one\n\n two ", "one<br>two"),
         ("back\\slash", "back\\\\slash"),

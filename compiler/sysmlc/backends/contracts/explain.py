@@ -1,4 +1,7 @@
-"""A contract told to a person: variables, assumptions, guarantees, each with its element."""
+"""The contract page: variables, assumptions and guarantees, each with its element.
+
+All text that comes from the model is escaped here, so that templates need not do it.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 
 from sysmlc.backends.templates import Templates
+from sysmlc.escapes import escape_code, escape_markdown
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
@@ -44,7 +48,10 @@ _MARKUP = pattern(r"[<>`|\[\]]")
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One variable or conjunct as the template shows it."""
+    """One variable or conjunct as the template shows it, as Markdown.
+
+    ``formula`` is the content of a code span between single backticks.
+    """
 
     formula: str
     text: str
@@ -89,16 +96,16 @@ _Told = Callable[[str], tuple[str, str]]
 
 def _page(graph: Graph, contract: Contract) -> Page:
     owned = {owner: [v for v in contract.variables if v.owner == owner] for owner in ("env", "sys")}
-    told = cache(lambda id: (_name(graph, id), _place(graph, id)))
+    told = cache(lambda id: (escape_markdown(_name(graph, id)), escape_code(_place(graph, id))))
     return Page(
-        contract.component,
+        escape_markdown(contract.component),
         *told(contract.origin),
         tuple(_variable(told, one) for one in owned["env"]),
         tuple(_variable(told, one) for one in owned["sys"]),
         _sections(graph, told, contract.assumptions),
         _sections(graph, told, contract.guarantees),
         "; ".join(_words(contract)),
-        _about(graph, contract),
+        escape_markdown(_about(graph, contract)),
     )
 
 
@@ -134,7 +141,8 @@ def _words(contract: Contract) -> Iterator[str]:
 
 
 def _variable(told: _Told, variable: Variable) -> Row:
-    return Row(variable.name, describe(variable.domain), *told(variable.origin))
+    name = escape_code(variable.name, in_table=True)
+    return Row(name, escape_markdown(describe(variable.domain)), *told(variable.origin))
 
 
 def _sections(graph: Graph, told: _Told, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
@@ -146,16 +154,16 @@ def _sections(graph: Graph, told: _Told, conjuncts: Iterable[Conjunct]) -> tuple
 
 def _row(graph: Graph, told: _Told, one: Conjunct) -> Row:
     """A conjunct; what a constraint demands has the author's name for it, where it has one."""
-    formula, (element, place) = print_formula(one.formula), told(one.origin)
+    formula, (element, place) = escape_code(print_formula(one.formula)), told(one.origin)
     said = graph.get(one.origin)
     is_named = said is not None and said.kind is _CONSTRAINT and bool(said.name)
     if said is None or not is_named or one.text.partition("' ")[0] != f"'{said.name}":
-        return Row(formula, one.text, element, place)
+        return Row(formula, escape_markdown(one.text), element, place)
     text = f"{said.name[:1].upper()}{said.name[1:]}."
     owner = graph.owner(said)
     where = one.viewpoint or ("" if owner is None else owner.name)
     kind = "requirement" if one.viewpoint else "constraint of"
-    return Row(formula, text, f"{kind} '{where}'", place)
+    return Row(formula, escape_markdown(text), escape_markdown(f"{kind} '{where}'"), place)
 
 
 def _section(class_: Class, rows: list[Row]) -> Section:

@@ -5,10 +5,11 @@ from collections.abc import Iterator
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
 from sysmlc.backends.reqtable.table import Table, tables
-from sysmlc.backends.reqtable.text import csv_text, markdown, markdown_cell
+from sysmlc.backends.reqtable.text import csv_text, markdown_cell
 from sysmlc.backends.reqtable.unmet import report_open
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Sink, Subject
+from sysmlc.escapes import escape_markdown
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
@@ -55,8 +56,8 @@ def _markdown(table: Table, sink: Sink, templates: Templates) -> str:
     # A column in which nothing stands only makes a page wide; a CSV file keeps its columns.
     shown = [at for at, name in enumerate(table.columns) if name in _ALWAYS or _is_used(table, at)]
     page = {
-        "title": markdown(table.name),
-        "columns": [markdown(table.columns[at]) for at in shown],
+        "title": escape_markdown(table.name),
+        "columns": [escape_markdown(table.columns[at]) for at in shown],
         "rows": [[markdown_cell(row.cells[at]) for at in shown] for row in table.rows],
     }
     try:

@@ -2,14 +2,12 @@
 
 import csv
 import io
-import re
 
 from sysmlc.backends.reqtable.table import Cell, Table
+from sysmlc.escapes import escape_markdown
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
 """First characters that make a spreadsheet calculate (OWASP, CSV injection)."""
-_MARKUP = re.compile(r"([\\`*_\[\]<>|~#])")
-_ENTITY = re.compile(r"&(?=#?\w+;)")
 
 
 def csv_text(table: Table) -> str:
@@ -24,16 +22,10 @@ def csv_text(table: Table) -> str:
 
 def _plain(cell: Cell) -> str:
     text = "\n".join("\n".join(value.splitlines()) for value in cell.values)
-    return f"'{text}" if text.startswith(_FORMULA) else text
+    return f"'{text}" if text.startswith(_FORMULA) or text.lstrip().startswith(_FORMULA) else text
 
 
 def markdown_cell(cell: Cell) -> str:
     """The values on lines of their own; what Markdown or HTML would read is escaped."""
     rows = (row for value in cell.values for row in value.splitlines())
-    return "<br>".join(markdown(row) for row in rows if row.strip())
-
-
-def markdown(text: str) -> str:
-    """One line of text as Markdown that shows it as it is."""
-    line = _MARKUP.sub(r"\\\1", " ".join(text.split()))
-    return _ENTITY.sub("&amp;", line)
+    return "<br>".join(escape_markdown(row) for row in rows if row.strip())

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import PurePath
 
 from sysmlc.depth import room_for
+from sysmlc.escapes import escape_invisible
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, Owner
 from sysmlc.logic.formats import rules
@@ -237,7 +238,7 @@ def plain(contract: Contract, form: str) -> Contract:
 def write(contract: Contract, form: str) -> str:
     """The contract over bits, with the semantics of games (strict implication)."""
     made = plain(contract, form)
-    title = contract.component.replace("\\", "").replace('"', "")
+    title = escape_invisible(contract.component).replace("\\", "").replace('"', "")
     parts = [
         "INFO {",
         f'  TITLE:       "{title}"',
