@@ -24,6 +24,7 @@ def test_the_wheel_carries_data_licence_and_types(dist):
         assert f"sysmlc/language/text/generated/{language}.tables" in names
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not [name for name in names if name.startswith(("tests", "compiler"))]
+    assert not [name for name in names if name.endswith(".pth")]
 
 
 def test_the_source_distribution_has_what_the_tests_need(dist):
