@@ -1,12 +1,11 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from sysmlc import cache, resources
+from sysmlc import resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.sources import Roots
@@ -180,27 +179,11 @@ def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
 
 
 def _table(file: Path, text: str) -> dict[str, Any]:
-    """The settings of a file. Raises ConfigError.
-
-    Those that were right before are kept: to parse TOML takes 8 ms, and jsonschema imports for
-    0.1 s.
-    """
-    import json
-    from hashlib import sha256
-
-    schema = resources.text("metamodels", "sysmlc-config.schema.json")
-    store = cache.default()
-    key = sha256(f"table {len(schema)}:{schema}{file.name}:{text}".encode()).hexdigest()
-    kept = None if store is None else store.get(key)
-    if kept is not None:
-        return cast("dict[str, Any]", json.loads(kept))
+    """Return the settings of a file. Raises ConfigError."""
     table = _parsed(file, text)
     if file.name == "pyproject.toml":
         table = _tool_table(table) or {}
-    _validate(file, text, table, schema)
-    if store is not None:
-        with suppress(TypeError):  # an option of a plug-in may be a date
-            store.put(key, json.dumps(table).encode())
+    _validate(file, text, table)
     return table
 
 
@@ -224,11 +207,12 @@ def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
     return table if isinstance(table, dict) else None
 
 
-def _validate(file: Path, text: str, table: object, schema: str) -> None:
+def _validate(file: Path, text: str, table: object) -> None:
     import json
 
     from jsonschema import Draft202012Validator
 
+    schema = resources.text("metamodels", "sysmlc-config.schema.json")
     validator = Draft202012Validator(json.loads(schema))
     errors = sorted(validator.iter_errors(table), key=lambda e: list(e.path))
     if errors:

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
-from sysmlc.output import Artefact, Output
+from sysmlc.output import Output
 from sysmlc.values import dataclass
 
 
@@ -40,20 +40,6 @@ class EmitOptions:
     inputs: tuple[InputFile, ...] = ()
     locate: Locate = _as_they_are
     diagrams: str = DERIVED
-
-
-@runtime_checkable
-class InParts(Protocol):
-    """A back end that makes files about one thing after the other.
-
-    While it is at one it says so (``ir.reads.during``). Of what the pass ``follows`` derived for
-    an element it makes the part that is called as the pass, with the id.
-    """
-
-    follows: str
-
-    def part(self, graph: Graph, about: str, options: EmitOptions) -> Iterable[Artefact]:
-        """The files about one thing; only their names may be others than among all."""
 
 
 class Backend(Protocol):

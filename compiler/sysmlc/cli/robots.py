@@ -116,11 +116,11 @@ def _studied(
 def _keeper(has_cache: bool) -> "Keeper | None":
     """Where what is known of floors is kept; None when nothing is to be."""
     from sysmlc import cache
-    from sysmlc.driver.dependencies import tool_digest
+    from sysmlc.driver.cache_key import compute_tool_digest
     from sysmlc.floors.keeping import Keeper
 
     store = cache.default() if has_cache else None
-    return None if store is None else Keeper(store, tool_digest())
+    return None if store is None else Keeper(store, compute_tool_digest())
 
 
 def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:

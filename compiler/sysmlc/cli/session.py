@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -25,10 +25,6 @@ _AS_WRITTEN = frozenset({"resolve", "kept"})
 _SHOWN = 1_000
 """Findings that a reader is shown unless all are asked for: nobody reads more at once."""
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
-
-
-Keep = Callable[[], None]
-"""Puts an outcome into the cache."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,42 +185,43 @@ def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> 
 def outcome_of(
     unit: Unit, config: "Config", settings: Settings, has_files: bool = True
 ) -> "Outcome":
-    """What compiling the unit comes to, from the cache when nothing changed since.
+    """Return the outcome of the unit, from the cache if nothing has changed since it was stored.
 
-    Without ``has_files`` the findings are enough.
+    Without *has_files* the outcome holds diagnostics only.
     """
-    found, keep, _ = unkept(unit, config, settings, has_files)
-    keep()
-    return found
+    from sysmlc import cache
 
-
-def unkept(
-    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
-) -> "tuple[Outcome, Keep, bool]":
-    """The same, what puts it into the cache, for which outputs need not wait, and if it is new.
-
-    What is not new was there, or was made of something that was there.
-    """
-    from sysmlc.driver import STILL, depends_on, keep, kept, open_unit, outcome
+    store = cache.default() if settings.is_plain else None
+    if store is None:
+        return compute_outcome(unit, config, settings, has_files)
+    from sysmlc.driver import open_unit
+    from sysmlc.driver.cache_key import compute_outcome_key
+    from sysmlc.driver.outcome_cache import load_outcome, store_outcome
 
     request = _request(unit.files, config, settings)
-    store = request.cache
-    if store is None:
-        made = _compile(_with_backends(request, unit.emit), settings)
-        return outcome(made, has_files), _nothing, True
     opened = open_unit(request)
-    on = depends_on(opened, request, unit.emit, has_files)
-    known = kept(store, on, opened, request)
-    if known is not None:
-        found, recorded = known
-        if recorded is None:
-            return found, _nothing, False
-        return found, lambda: keep(store, on, opened, found, STILL, recorded), False
-    request = _with_backends(request, unit.emit)
-    made = _compile(request, settings, opened)
-    found = outcome(made, has_files)
-    names = [backend.name for backend in request.backends]
-    return found, lambda: keep(store, on, opened, found, names, made.recorded()), True
+    key = compute_outcome_key(opened, request, unit.emit, has_files)
+    outcome = load_outcome(store, key, opened.root)
+    if outcome is None:
+        outcome = _outcome(_with_backends(request, unit.emit), settings, has_files, opened)
+        store_outcome(store, key, outcome)
+    return outcome
+
+
+def compute_outcome(
+    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
+) -> "Outcome":
+    """Compile the unit in this process and return the outcome; the cache is not used."""
+    request = _request(unit.files, config, settings)
+    return _outcome(_with_backends(request, unit.emit), settings, has_files)
+
+
+def _outcome(
+    request: "Request", settings: Settings, has_files: bool, opened: "Opened | None" = None
+) -> "Outcome":
+    from sysmlc.driver import outcome
+
+    return outcome(_compile(request, settings, opened), has_files)
 
 
 def inputs_of(unit: Unit, config: "Config", settings: Settings) -> "tuple[InputFile, ...]":
@@ -234,12 +231,7 @@ def inputs_of(unit: Unit, config: "Config", settings: Settings) -> "tuple[InputF
     return open_unit(_request(unit.files, config, settings)).inputs()
 
 
-def _nothing() -> None:
-    """There is nothing to keep."""
-
-
 def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
-    from sysmlc import cache
     from sysmlc.driver import Request
 
     return Request(
@@ -252,7 +244,6 @@ def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "
         verify_each=settings.verify_each,
         schemas=_schemas(settings),
         library=settings.library,
-        cache=cache.default() if settings.is_plain else None,
     )
 
 

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sysmlc.cli import terminal
-from sysmlc.ir import seen
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
-    from sysmlc.cli.session import Keep, Settings, Unit
+    from sysmlc.cli.session import Settings, Unit
     from sysmlc.cli.settling import Stamps
     from sysmlc.config import Config
     from sysmlc.driver import Outcome
@@ -27,13 +26,10 @@ _MOST = 8
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """What a unit comes to, and what puts that into the cache."""
+    """A unit and the outcome of compiling it."""
 
     unit: "Unit"
     outcome: "Outcome"
-    keep: "Keep"
-    is_new: bool
-    """Whether this process compiled it, and so remembers what may be used again."""
 
 
 class Watch:
@@ -60,13 +56,10 @@ class Watch:
         """Findings of what was compiled last."""
         self._blank: frozenset[Path] = frozenset()
         """Files that were empty or not there then."""
-        self._known: Sequence[Compiled] | None = None
-        """What the cache knew, until it is compiled; nothing once this process has compiled."""
         self._left = 0
         """Compilations whose graphs and trees are still in memory."""
         self._early: Sequence[Compiled] = ()
         """What was compiled before anybody told of saves."""
-        seen.stay()
 
     def folders(self) -> list[Path]:
         """Folders whose files are inputs; ends with exit code 2 when one is not there."""
@@ -103,25 +96,14 @@ class Watch:
             if stamp is None and path not in self._named:
                 del self._paths[path]
         self._built = {path: self._built.get(path) for path in self._paths}
-        # Whoever saved waits for the outputs, and not for what a later process finds in the cache.
         for one in made:
             publish(one, self._settings, self._keep_going)
-        for one in made:
-            one.keep()
-        if any(one.is_new for one in made):
-            self._known = ()
-        elif self._known is None:
-            self._known = made
         self._left += 1
         if self._left >= _MOST:
             self._collect()
 
     def rest(self) -> None:
         """Do what nobody has to wait for: nothing is saved just now."""
-        if self._known:
-            known, self._known = self._known, ()
-            prepare(known, self._models, self._settings)
-            self._left += 1
         if self._left:
             self._collect()
 
@@ -187,30 +169,18 @@ class Watch:
 def compiled(
     models: tuple[Path, ...], output: Path | None, settings: "Settings"
 ) -> "list[Compiled]":
-    """What each unit comes to; keeping it in the cache is left to do."""
+    """Compile every unit in this process.
+
+    The cache is not used: after an edit it has no entry, and a first outcome from the cache would
+    leave the standard library unread when the first edit comes.
+    """
     from sysmlc.cli import session
 
     # Front ends freeze the graphs that they made; those of earlier compilations may go now.
     gc.unfreeze()
     config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
-    return [Compiled(unit, *session.unkept(unit, config, settings)) for unit in units]
-
-
-def prepare(made: "Iterable[Compiled]", models: tuple[Path, ...], settings: "Settings") -> None:
-    """Compile units that the cache knew, so that an edit finds in memory what it cannot change.
-
-    Only front ends that know the literals of their texts have that remembered.
-    """
-    from sysmlc.cli import session
-    from sysmlc.driver import registry
-    from sysmlc.frontends.base import Valued
-
-    config = session.load_config(models, settings)
-    names = {one.name for one in registry.frontends() if isinstance(one, Valued)}
-    for one in made:
-        if not names.isdisjoint(file.language for file in one.outcome.inputs):
-            session.compile_unit(one.unit.files, config, settings, one.unit.emit)
+    return [Compiled(unit, session.compute_outcome(unit, config, settings)) for unit in units]
 
 
 def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> bool:

@@ -21,11 +21,6 @@ class Sink:
         self._severities = dict(severities or {})
         self._settled: dict[str, Mapping[str, Severity | None]] = {}
         self._found: dict[tuple[str, str, Subject], Diagnostic] = {}
-        self._heard: list[Diagnostic] | None = None
-
-    def listen(self, heard: list[Diagnostic] | None) -> None:
-        """From now on, note there whatever is reported, also what is silent or was told before."""
-        self._heard = heard
 
     def settle(self, files: Iterable[str], severities: Mapping[str, Severity | None]) -> None:
         """Say by code how much rules matter in files whose language rules otherwise.
@@ -45,7 +40,7 @@ class Sink:
     ) -> None:
         """Report ``rule`` about ``subject``; ``facts`` fill the rule's phrase and its help."""
         severity = self._severity(rule, subject)
-        if severity is None and self._heard is None:
+        if severity is None:
             return
         message = rule.phrase.format(**facts)
         if len(message) > _LONG:
@@ -53,11 +48,8 @@ class Sink:
             message = rule.phrase.format(**facts)
         advice = (help or rule.help).format(**facts)
         told = tuple(f"{note[:_LONG]}..." if len(note) > _LONG else note for note in notes)
-        found = Diagnostic(rule, severity or rule.severity, message, subject, told, advice)
-        if self._heard is not None:
-            self._heard.append(found)
-        if severity is not None:
-            self._found.setdefault((rule.code, message, subject), found)
+        found = Diagnostic(rule, severity, message, subject, told, advice)
+        self._found.setdefault((rule.code, message, subject), found)
 
     def relate(self, found: Diagnostic, id: str) -> None:
         """Say which element of the graph a finding is about that only knew its place."""

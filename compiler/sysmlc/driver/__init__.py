@@ -8,8 +8,6 @@ from sysmlc.driver.compilation import (
     compile_model,
     open_unit,
 )
-from sysmlc.driver.dependencies import depends_on
-from sysmlc.driver.keeping import STILL, keep, kept
 from sysmlc.driver.manifest import manifest_text
 from sysmlc.driver.outcome import Outcome, outcome
 from sysmlc.driver.publish import OutputError, Plan, apply, plan
@@ -23,7 +21,6 @@ from sysmlc.driver.registry import (
 from sysmlc.driver.tracing import trace_text
 
 __all__ = [
-    "STILL",
     "BackendError",
     "Compilation",
     "Observer",
@@ -35,10 +32,7 @@ __all__ = [
     "apply",
     "backend_names",
     "compile_model",
-    "depends_on",
     "full_catalogue",
-    "keep",
-    "kept",
     "load_backends",
     "manifest_text",
     "open_unit",

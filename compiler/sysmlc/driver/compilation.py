@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
-from sysmlc.cache import Cache
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.suppress import suppress
@@ -15,14 +14,12 @@ from sysmlc.driver.inputs import unit_root
 from sysmlc.driver.overlays import store_all
 from sysmlc.driver.places import Locator
 from sysmlc.driver.reading import Reading, read_unit
-from sysmlc.driver.recording import Recorded, Recording
 from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.output import Artefact, Output
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
-from sysmlc.passes.pipeline import DERIVING
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
 from sysmlc.values import dataclass
@@ -67,8 +64,6 @@ class Request:
     """Schemas that the inputs are validated against; None: they are not."""
     library: str = ""
     """Where the model library of SysML v2 is; empty where it is usually found."""
-    cache: Cache | None = None
-    """Where front ends keep what they parsed; None: nowhere."""
 
     def pipeline(self) -> tuple[Pass, ...]:
         """The passes in order. Raises ConfigError for options that no pass has."""
@@ -91,15 +86,10 @@ class Compilation:
     sources: tuple[Source, ...] = ()
     is_complete: bool = True
     """Whether every input could be read; if not, nothing old is removed."""
-    recording: Recording | None = None
 
     def written(self) -> list[Artefact]:
         """The artefacts that are not withheld, sorted by path."""
         return [artefact for artefact in self.artefacts if artefact.path not in self.withheld]
-
-    def recorded(self) -> Recorded | None:
-        """What it takes to do parts of it again; None where that is not possible."""
-        return self.recording.recorded() if self.recording else None
 
     def exit_code(self, strict: bool = False) -> int:
         """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
@@ -130,7 +120,7 @@ class Opened:
 def open_unit(request: Request) -> Opened:
     """Read the inputs of a request, and what they refer to; parse nothing."""
     sink = Sink(request.config.rules)
-    frontends = request.frontends or tuple(registry.frontends(request.cache, request.library))
+    frontends = request.frontends or tuple(registry.frontends(request.library))
     root = unit_root((*request.inputs, *request.overlays), request.config.folder)
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     laid = [path for path in request.inputs if path.name.endswith(SUFFIX)]
@@ -166,7 +156,6 @@ class _Run:
         self._sink = opened.sink
         self._coverage = Coverage()
         self._graph = Graph()
-        self._recording = Recording(self._graph, self._sink) if request.cache else None
         self._output = Output()
         self._frontends = opened.frontends
         self._passes = request.pipeline()
@@ -183,13 +172,10 @@ class _Run:
         store_all(reading.overlays, self._graph)
         broken = not all(self._refine(step) for step in self._passes) or broken
         emitted = [] if broken else self._emit(inputs, reading)
-        self._record("driver", False)
         if self._request.strict_input:
             self._report_unsupported()
         diagnostics = self._findings()
         withheld = withheld_artefacts(emitted, self._graph, diagnostics)
-        if self._recording is not None:
-            self._recording.end(emitted)
         return Compilation(
             root=self._root,
             graph=self._graph,
@@ -199,7 +185,6 @@ class _Run:
             artefacts=tuple(emitted),
             withheld=withheld,
             sources=self._sources(reading),
-            recording=self._recording,
             is_complete=reading.is_complete
             and not broken
             and not any(map(_cuts_short, diagnostics)),
@@ -235,7 +220,6 @@ class _Run:
 
     def _refine(self, step: Pass) -> bool:
         self._step(f"pass {step.name}")
-        self._record(f"pass {step.name}", step.name in DERIVING)
         done = self._guarded(f"pass {step.name}", lambda: step.run(self._graph, self._sink))
         return self._settled(step.name) and done
 
@@ -250,10 +234,6 @@ class _Run:
             self._sink.report(faults.INVALID_GRAPH, Subject(), where=what, problem=problem)
         return not problems
 
-    def _record(self, reader: str, is_repeatable: bool) -> None:
-        if self._recording is not None:
-            self._recording.begin(reader, is_repeatable)
-
     def _sources(self, reading: Reading) -> tuple[Source, ...]:
         """Everything that findings and traces may point into."""
         laid = (one.source for one in reading.overlays)
@@ -266,7 +246,6 @@ class _Run:
         failed: set[str] = set()
         for backend in self._request.backends:
             self._step(f"emit {backend.name}")
-            self._record(f"emit {backend.name}", True)
             before = {artefact.path for artefact in self._output.artefacts()}
             if not self._guarded(
                 f"back end {backend.name}",

@@ -26,7 +26,7 @@ def cover(request: Request) -> Covered:
     opened = open_unit(request)
     coverage, graph = Coverage(is_detailed=True), Graph()
     sources = opened.reading.sources()
-    for frontend in request.frontends or registry.frontends(request.cache, request.library):
+    for frontend in request.frontends or registry.frontends(request.library):
         ours = [r.source for r in opened.reading.recognised if r.frontend is frontend]
         try:
             if ours:

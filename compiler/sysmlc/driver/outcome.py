@@ -1,7 +1,6 @@
 """What a compilation means to its user: findings with places, files, exit code. No graph."""
 
 import hashlib
-from abc import abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -12,9 +11,6 @@ from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.tracing import COVERAGE, TRACE, coverage_text, trace_text
 from sysmlc.values import dataclass
-
-_last: dict[str, tuple[str, str]] = {}
-"""The texts of the last outcome of this process by path, and their digests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,14 +28,6 @@ class Withheld:
 
     path: str
     because: tuple[Diagnostic, ...]
-
-
-class Packed(Mapping[str, str]):
-    """Texts by path, some of which are there as the cache keeps them."""
-
-    @abstractmethod
-    def packed(self, path: str) -> memoryview | None:
-        """The text at the path as the cache keeps it; None where it is not there so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +63,8 @@ def outcome(compilation: Compilation, has_files: bool = True) -> Outcome:
         inputs=compilation.inputs,
         findings=make_report(compilation.diagnostics, compilation.sources).findings,
         files=tuple(
-            OutputFile(path, backends.get(path, ""), digest)
-            for path, digest in _digests(texts).items()
+            OutputFile(path, backends.get(path, ""), digest_of(text))
+            for path, text in texts.items()
         ),
         texts=texts,
         withheld=tuple(Withheld(path, why) for path, why in sorted(compilation.withheld.items())),
@@ -87,17 +75,6 @@ def outcome(compilation: Compilation, has_files: bool = True) -> Outcome:
 def _texts(compilation: Compilation) -> dict[str, str]:
     texts = {artefact.path: artefact.text for artefact in compilation.written()}
     return texts | {COVERAGE: coverage_text(compilation), TRACE: trace_text(compilation)}
-
-
-def _digests(texts: Mapping[str, str]) -> dict[str, str]:
-    """The digest of each text; a text that is what it was at its path has the same."""
-    found = {}
-    for path, text in texts.items():
-        known, digest = _last.get(path, ("", ""))
-        found[path] = digest if digest and known == text else digest_of(text)
-    _last.clear()
-    _last.update((path, (text, found[path])) for path, text in texts.items())
-    return found
 
 
 def digest_of(text: str) -> str:

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 
 from sysmlc.driver.manifest import MANIFEST, manifest_text
-from sysmlc.driver.outcome import Outcome, Packed, digest_of
+from sysmlc.driver.outcome import Outcome, digest_of
 from sysmlc.output import write
 from sysmlc.values import dataclass
 
@@ -56,8 +56,8 @@ class Plan:
             return frozenset()
 
     def _holds(self, path: str, digest: str) -> bool:
-        """Whether the file at the path is as it should be; a text that is packed stays packed."""
-        if path in self.texts and not isinstance(self.texts, Packed):
+        """Whether the file at the path is as it should be."""
+        if path in self.texts:
             wanted = self.texts[path].encode("utf-8")
             return _content(self.place(path), len(wanted)) == wanted
         found = _content(self.place(path))

@@ -7,11 +7,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
 from sysmlc.backends.base import Backend
-from sysmlc.cache import Cache
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
 from sysmlc.driver.distributions import may_be_named
-from sysmlc.frontends.base import Caching, Frontend, Libraried
+from sysmlc.frontends.base import Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.suggest import did_you_mean
@@ -70,17 +69,15 @@ class BackendError(Exception):
     """A back end is unknown, twice there, or cannot be loaded."""
 
 
-def frontends(cache: Cache | None = None, library: str = "") -> list[Frontend]:
-    """The front ends, in the order in which they are asked; those that can use the cache do.
+def frontends(library: str = "") -> list[Frontend]:
+    """Return the front ends in the order in which they are asked.
 
     ``library`` is where the model library of SysML v2 is; empty where it is usually found.
     """
     found = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
-    if library:
-        found = [one.with_library(library) if isinstance(one, Libraried) else one for one in found]
-    if cache is None:
+    if not library:
         return found
-    return [one.with_cache(cache) if isinstance(one, Caching) else one for one in found]
+    return [one.with_library(library) if isinstance(one, Libraried) else one for one in found]
 
 
 def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
@@ -94,11 +91,6 @@ def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
             raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
-
-
-def one_pass(name: str, options: Mapping[str, Mapping[str, object]]) -> Pass:
-    """One pass with its options. Raises ConfigError, and KeyError for a name that is none."""
-    return _with_options(pipeline.load(name), options.get(name, {}))
 
 
 def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:

@@ -1,12 +1,10 @@
 """What a front end is: it recognises its files and reads them into the graph."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Place, Sink
-from sysmlc.ir import AttrValue, Graph
-from sysmlc.ir.reads import Literal, Value
+from sysmlc.ir import Graph
 from sysmlc.sources import Source
 
 
@@ -33,14 +31,6 @@ class Frontend(Protocol):
 
 
 @runtime_checkable
-class Caching(Protocol):
-    """A front end that can keep what it parsed."""
-
-    def with_cache(self, cache: Cache) -> Frontend:
-        """The same front end, with a cache to keep it in."""
-
-
-@runtime_checkable
 class Libraried(Protocol):
     """A front end whose models refer to a library of models."""
 
@@ -54,34 +44,6 @@ class Mentioning(Protocol):
 
     def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
         """Paths of such files, as the source writes them, each with its place."""
-
-
-@runtime_checkable
-class Worded(Protocol):
-    """A front end of texts (in UTF-8) that mean the same wherever their words stand."""
-
-    def wording(self, source: Source) -> str:
-        """Digest of all that the text says; empty where more than its words matters."""
-
-    def words(self, source: Source) -> Sequence[tuple[int, int]]:
-        """Where its words start and end, in characters; the last one is the end of the text."""
-
-
-@runtime_checkable
-class Valued(Worded, Protocol):
-    """A front end that can say what other literals in a text change (``Graph.reads``)."""
-
-    def shape(self, source: Source) -> str:
-        """As ``wording``, but for the values of literals."""
-
-    def values(
-        self, old: Source, new: Source, found: Sequence[Literal], asked: Container[int]
-    ) -> Mapping[Value, AttrValue] | None:
-        """What attributes become where two texts of one shape have other literals.
-
-        ``found`` are the attributes that were literals of the old one, ``asked`` the places of
-        literals that mean more. None where a literal is another one that is no such attribute.
-        """
 
 
 @runtime_checkable

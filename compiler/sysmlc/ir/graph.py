@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TypeVar, cast
 
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element
@@ -18,13 +18,9 @@ from sysmlc.ir.neighbours import (
     put_new,
     together,
 )
-from sysmlc.ir.reads import Reads
 from sysmlc.ir.reference import End, Reference, References
 from sysmlc.ir.shared import NOTHING, Shared
 from sysmlc.ir.tables import large_table
-
-if TYPE_CHECKING:
-    from sysmlc.ir.seen import Seen
 
 _T = TypeVar("_T")
 
@@ -48,12 +44,6 @@ class Graph:
         self._drawn: dict[Edge, list[Element]] = {edge: [] for edge in Edge}
         self._derived: dict[type, tuple[object, ...]] = {}
         self.pending = References()
-        self.reads: Reads | None = None
-        """Who asks for values of the text; None: nobody wants to know."""
-        self.seen: Seen | None = None
-        """What was made of the graph before this one; None: nothing is remembered."""
-        self.changes = 0
-        """How often it was changed, but by new elements and their first edges."""
 
     # -- reading -------------------------------------------------------------------------------
 
@@ -122,10 +112,6 @@ class Graph:
     def has_several(self, edge: Edge) -> bool:
         """Whether any element has more than one edge of this kind."""
         return not {Element}.issuperset(map(type, self._out[edge].values()))
-
-    def ordinals(self, elements: Iterable[Element]) -> list[int]:
-        """Where elements stand, for who compares them with one another and asks no more."""
-        return [one.ordinal for one in elements]
 
     def edges(self, *kinds: Edge) -> Iterator[tuple[Edge, str, str]]:
         """All edges of these kinds (of every kind when none is given) as (kind, from, to)."""
@@ -263,7 +249,6 @@ class Graph:
         self, edges: Iterable[Edge], sources: Iterable[End], targets: Iterable[Element | None]
     ) -> None:
         """Add many edges; those without a target, or from an element that is not there, are not."""
-        self.changes += 1
         last: Edge | None = None
         for edge, source, target in zip(edges, self.find_all(sources), targets, strict=True):
             if source is None or target is None:
@@ -280,7 +265,6 @@ class Graph:
         self, edge: Edge, sources: Sequence[Element | None], targets: Sequence[Element | None]
     ) -> None:
         """Add edges of one kind; those without source or target are not added."""
-        self.changes += 1
         out, drawn = self._out[edge], self._drawn.get(edge)
         if drawn is not None and put_each_new(out, sources, targets):
             ends = cast("Iterable[tuple[Element, Element]]", zip(sources, targets, strict=True))
@@ -313,7 +297,6 @@ class Graph:
 
     def move(self, element: Element, owner: Element | None) -> None:
         """Give the element another owner, or none."""
-        self.changes += 1
         if owner is not None and any(a is element for a in (owner, *self.ancestors(owner))):
             raise ValueError(f"{element!r} cannot own itself")
         if element.owner is not None:
@@ -324,7 +307,6 @@ class Graph:
 
     def remove(self, element: Element) -> None:
         """Remove the element, what it owns, and all their edges."""
-        self.changes += 1
         self.pending.forget_elements()
         for doomed in reversed(list(self.subtree(element))):
             self._cut(doomed)
@@ -333,12 +315,10 @@ class Graph:
 
     def rename(self, element: Element, name: str) -> None:
         """Give the element another name."""
-        self.changes += 1
         element.name = name
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Set attributes; ``_`` in a keyword is kept. None removes the attribute."""
-        self.changes += 1
         if isinstance(element.attrs, Shared):
             element.attrs = {**element.attrs}
         for key, value in attrs.items():
@@ -356,46 +336,14 @@ class Graph:
     def store(self, type_: type[_T], values: Iterable[_T]) -> None:
         """Keep derived values (recipes, contracts, token graphs), replacing earlier ones."""
         self._derived[type_] = tuple(values)
-        if self.reads is not None:
-            self.reads.store(type_.__module__)
 
     def derived(self, type_: type[_T]) -> Sequence[_T]:
         """The derived values of a type, in the order in which the pass stored them."""
-        if self.reads is not None:
-            self.reads.use(type_.__module__)
         return cast("Sequence[_T]", self._derived.get(type_, ()))
 
     def has_derived(self, module: str) -> bool:
         """Whether there are derived values of a type of this module, which need not be imported."""
-        if self.reads is not None:
-            self.reads.use(module)
         return any(type_.__module__ == module for type_, values in self._derived.items() if values)
-
-    # -- as rows -------------------------------------------------------------------------------
-
-    def index(self, edge: Edge, *, backwards: bool = False) -> Index:
-        """Neighbours by edges of one kind, for who keeps a whole graph; not to be changed.
-
-        Owners are not there backwards: elements name them.
-        """
-        if not backwards:
-            return self._out[edge]
-        return {} if edge is Edge.OWNS else self._incoming(edge)
-
-    def fill(self, edge: Edge, forwards: Index, backwards: Index) -> None:
-        """Take all edges of one kind, as ``index`` gave them of an equal graph."""
-        self.changes += 1
-        self._out[edge] = forwards
-        if edge is Edge.OWNS:
-            self._owned = forwards
-        else:
-            self._in[edge] = backwards
-            self._drawn.pop(edge, None)
-
-    def add_loose(self, element: Element) -> None:
-        """Add an element whose owner and edges are filled in afterwards."""
-        self._elements[element.id] = element
-        self._fresh.append(element)
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -430,7 +378,6 @@ class Graph:
     def _link(self, edge: Edge, source: Element, target: Element) -> None:
         if not put(self._out[edge], source.id, target):
             return
-        self.changes += 1
         known = self._in.get(edge)
         if known is None:
             self._drawn[edge] += (source, target)
@@ -439,7 +386,6 @@ class Graph:
 
     def _unlink(self, edge: Edge, source: Element, target: Element) -> None:
         if drop(self._out[edge], source.id, target):
-            self.changes += 1
             drop(self._incoming(edge), target.id, source)
 
     def _cut(self, element: Element) -> None:

@@ -1,14 +1,13 @@
 """The model libraries that a model refers to: where they are, and their files, read when needed."""
 
-import json
 import os
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from sysmlc.cache import Cache
+from sysmlc import resources
 from sysmlc.diagnostics import Sink
-from sysmlc.language.stored import read
+from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
 from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
 
@@ -22,117 +21,97 @@ _DISTRIBUTION = "sysml"
 
 
 class Library:
-    """Files of a library and their root members, each file read when a name of it is asked for.
+    """Files of a library and their root members, each file parsed when a name of it is asked for.
 
     ``label`` names the library and how it was found, for users. ``is_core`` marks the core that is
     bundled with sysmlc, which has only the names that production models use.
     """
 
     def __init__(
-        self,
-        sources: Iterable[Source],
-        cache: Cache | None = None,
-        *,
-        label: str = "",
-        is_core: bool = False,
+        self, sources: Iterable[Source], *, label: str = "", is_core: bool = False
     ) -> None:
         self._sources = {source.name: source for source in sources}
-        self._cache = cache
-        self._documents: dict[str, Document] = {}
-        self._indexing: dict[str, Document] = {}
-        self._speaking: dict[str, list[str]] = {}
+        self._parsed: dict[str, Document] = {}
+        self._loaded: set[str] = set()
         self._stems: dict[str, list[str]] = {}
         for path in self._sources:
             self._stems.setdefault(_stem(path), []).append(path)
-        self._index: dict[str, list[str]] | None = None
         self.label = label
         self.is_core = is_core
 
     def roots(self, name: str) -> list[Node]:
-        """Root members with that name: a file named like it is asked first, then the index."""
-        found = self._named(self._stems.get(name, ()), name)
-        if found or not self._sources:
-            return found
-        if self._index is None:
-            self._index = self._indexed()
-        return self._named(self._index.get(name, ()), name)
+        """Return the root members with that name.
+
+        Files that are named like it are searched first, then those whose text mentions it.
+        """
+        members = self._find_roots(self._stems.get(name, ()), name)
+        return members or self._find_roots(self._paths_mentioning(name), name)
 
     def names(self) -> list[str]:
-        """The names of the root members of all files, sorted."""
-        if self._index is None:
-            self._index = self._indexed()
-        return sorted(self._index)
+        """Return the names of the root members of all files, sorted."""
+        documents = map(self._parse, self.paths())
+        members = (member for document in documents for member in document.root.members)
+        names = {name for member in members for name in (member.name, member.short)}
+        return sorted(name for name in names if name is not None)
 
     def packages(self, name: str) -> list[Node]:
-        """The root members of the files whose text has a name, whether they were read or not."""
-        known = self._speaking.get(name)
-        if known is None:
-            said = name.encode()
-            known = [path for path in self.paths() if said in self._sources[path].data]
-            self._speaking[name] = known
-        for path in known:
-            self._indexing[path] = self._read(path)
-        return [member for path in known for member in self._indexing[path].root.members]
-
-    def is_same(self, other: "Library") -> bool:
-        """Whether the files of both say the same."""
-        return self.is_core is other.is_core and self._sources == other._sources
-
-    def _named(self, paths: Iterable[str], name: str) -> list[Node]:
-        members = (member for path in paths for member in self.document(path).root.members)
-        return [member for member in members if name in (member.name, member.short)]
+        """Return the root members of the files whose text mentions a name."""
+        documents = map(self._parse, self._paths_mentioning(name))
+        return [member for document in documents for member in document.root.members]
 
     def document(self, path: str) -> Document:
-        """One file of the library. Raises KeyError for one that it has not."""
-        document = self._documents.get(path)
-        if document is None:
-            document = self._documents[path] = self._read(path)
-        return document
-
-    def _read(self, path: str) -> Document:
-        document = self._documents.get(path) or self._indexing.get(path)
-        if document is None:
-            source = self._sources[path]
-            document = read(source, path, _SUFFIXES[_suffix(path)], Sink(), self._cache)
+        """Return one file of the library. Raises KeyError if there is no such file."""
+        document = self._parse(path)
+        self._loaded.add(path)
         return document
 
     def paths(self) -> list[str]:
-        """Names of all files, sorted."""
+        """Return the names of all files, sorted."""
         return sorted(self._sources)
 
     def loaded(self) -> list[Document]:
-        """The documents that were asked for so far, by path.
+        """Return the documents that the model refers to so far, by path.
 
-        Those that only the index was made of are not among them: it may have come from the cache.
+        Files that were only searched in vain are not among them.
         """
-        return [self._documents[path] for path in sorted(self._documents)]
+        return [self._parsed[path] for path in sorted(self._loaded)]
 
-    def _indexed(self) -> dict[str, list[str]]:
-        """Which files have which root members; kept in the cache under the files' digests."""
-        key = f"{self._digest()}-library-names" if self._cache else ""
-        kept = self._cache.get(key) if self._cache else None
-        if kept is not None:
-            return _index_of(kept)
-        index: dict[str, list[str]] = {}
-        for path in self.paths():
-            document = self._indexing[path] = self._read(path)
-            for member in document.root.members:
-                for name in {member.name, member.short} - {None}:
-                    index.setdefault(str(name), []).append(path)
-        if self._cache:
-            self._cache.put(key, json.dumps(index, sort_keys=True).encode())
-        return index
+    def forget_targets(self) -> None:
+        """Remove what references were resolved to, so that another model can use the library.
 
-    def _digest(self) -> str:
-        from hashlib import sha256
+        A model may have a package of the same name as one of the library, and names in the library
+        then lead to that package.
+        """
+        self._loaded.clear()
+        for document in self._parsed.values():
+            for node in document.root.walk():
+                for relation in node.relations:
+                    relation.reference.forget_targets()
 
-        parts = [f"{path} {self._sources[path].sha256}" for path in self.paths()]
-        return sha256("\n".join(parts).encode()).hexdigest()
+    def _parse(self, path: str) -> Document:
+        document = self._parsed.get(path)
+        if document is None:
+            source = self._sources[path]
+            text = source.data.decode("utf-8-sig", "replace")
+            document = parse(text, path, _SUFFIXES[_suffix(path)], Sink(), source)
+            self._parsed[path] = document
+        return document
 
+    def _find_roots(self, paths: Iterable[str], name: str) -> list[Node]:
+        roots: list[Node] = []
+        for path in paths:
+            members = self._parse(path).root.members
+            named = [member for member in members if name in (member.name, member.short)]
+            if named:
+                self._loaded.add(path)
+                roots += named
+        return roots
 
-def _index_of(kept: bytes) -> dict[str, list[str]]:
-    index: dict[str, list[str]] = json.loads(kept)
-    return index
+    def _paths_mentioning(self, name: str) -> list[str]:
+        """Return the files whose text has the name; all files for a name that texts escape."""
+        if not name.isprintable() or "'" in name or "\\" in name:
+            return self.paths()
+        return [path for path in self.paths() if name.encode() in self._sources[path].data]
 
 
 def _stem(path: str) -> str:
@@ -143,11 +122,7 @@ def _suffix(path: str) -> str:
     return path[path.rfind(".") :]
 
 
-def find(
-    path: str | Path | None = None,
-    environment: Mapping[str, str] = os.environ,
-    cache: Cache | None = None,
-) -> Library:
+def find(path: str | Path | None = None, environment: Mapping[str, str] = os.environ) -> Library:
     """The library at ``path``, else of the environment, of the installed distribution, our own.
 
     ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar.
@@ -160,11 +135,12 @@ def find(
         sources = _read(Path(asked))
         if not sources:
             raise SourceError("has no .sysml or .kerml files", asked, fault=Fault.MISSING)
-        return Library(sources, cache, label=f"{asked} ({'--library' if path else VARIABLE})")
+        origin = "--library" if path else VARIABLE
+        return _reuse_library(tuple(sources), f"{asked} ({origin})")
     installed = _installed()
     if installed is not None:
-        return Library(_read(installed), cache, label=_label_of_installed(installed))
-    return core(cache)
+        return _reuse_library(tuple(_read(installed)), _label_of_installed(installed))
+    return core()
 
 
 def asked_for(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> str:
@@ -178,12 +154,22 @@ def place(path: str | Path | None, environment: Mapping[str, str] = os.environ) 
     return Path(asked) if asked else _installed()
 
 
-def core(cache: Cache | None = None) -> Library:
+def core() -> Library:
     """The core that is bundled with sysmlc."""
-    from sysmlc import resources
+    sources = _read(resources.path("metamodels", "core"))
+    return _reuse_library(tuple(sources), "core of sysmlc (bundled)", is_core=True)
 
-    files = _read(resources.path("metamodels", "core"))
-    return Library(files, cache, label="core of sysmlc (bundled)", is_core=True)
+
+def _reuse_library(sources: tuple[Source, ...], label: str, *, is_core: bool = False) -> Library:
+    """Return the library of these files with what this process has parsed of it before."""
+    library = _make_library(sources, label, is_core)
+    library.forget_targets()
+    return library
+
+
+@lru_cache(maxsize=4)
+def _make_library(sources: tuple[Source, ...], label: str, is_core: bool) -> Library:
+    return Library(sources, label=label, is_core=is_core)
 
 
 def _installed() -> Path | None:

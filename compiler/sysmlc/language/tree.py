@@ -40,6 +40,10 @@ class Reference:
         self.targets = targets
         self.target = targets[-1] if targets and len(targets) == len(self.chain) else None
 
+    def forget_targets(self) -> None:
+        """Make the reference unresolved again."""
+        self.target = self.targets = None
+
     def __str__(self) -> str:
         return ".".join("::".join(names) for names in self.chain)
 

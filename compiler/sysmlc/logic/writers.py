@@ -4,33 +4,24 @@ import re
 from collections.abc import Iterable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.asking import Named, indexed, look_up
 from sysmlc.logic.expressions.context import VALUES, named_values
 from sysmlc.logic.written import last_of, mentioned, written_names
 
 _STEP = re.compile(r"::|\.")
 _NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
 """What has a value, and what others are in."""
-_INDEX = "what may write features of the name"
 
 
 class Writers:
     """The actions and effects of a graph by the features that they write.
 
-    Nothing is looked for before somebody asks, unless answers of the graph before are compared
-    with those of this one (``ir.asking``). The graph must stay as it is.
+    The index is built at the first question. The graph must not change while it is in use.
     """
 
-    def __init__(self, graph: Graph, writing: Named | None = None) -> None:
+    def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._writing = writing
-        if writing is None and graph.seen is not None:
-            self._writing = indexed(graph, _INDEX, _writing)
+        self._writing: dict[str, list[Element]] | None = None
         self._named: dict[str, dict[str, Element]] = {}
-
-    def through(self, graph: Graph) -> "Writers":
-        """The same for who asks the graph in a way of his own, which may be noted."""
-        return self if graph is self._graph else Writers(graph, self._writing)
 
     def beside(self, feature: Element, behaviour: Element) -> Element | None:
         """What writes the feature and does not stand inside of the behaviour; the first of all.
@@ -65,7 +56,7 @@ class Writers:
         """What may write a feature of the name: to read all texts would take ten times as long."""
         if self._writing is None:
             self._writing = _writing(self._graph)
-        return look_up(self._graph, _INDEX, self._writing, name)
+        return self._writing.get(name, [])
 
     def _written(self, writer: Element, last: str) -> Iterator[Element | None]:
         """The features that something writes by names that end with this one."""

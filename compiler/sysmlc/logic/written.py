@@ -8,7 +8,6 @@ is bound to it (SysML 2.0, 7.16: ``out x = level``).
 from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.reads import unnoted
 from sysmlc.logic.expressions.expression import (
     Assignment,
     Expression,
@@ -53,11 +52,8 @@ def assigned(graph: Graph, action: Element) -> Iterator[Assigned]:
 
 
 def written_names(graph: Graph, action: Element) -> Iterator[str]:
-    """The names of what an action writes but for a write action, which refers to its feature.
-
-    Literals in its text may change without changing them: nobody notes this as a question.
-    """
-    body = unnoted(action, "body")
+    """Yield the names that an action writes; a write action refers to its feature instead."""
+    body = action.attrs.get("body")
     if action.subkind in ("opaque", "function") and isinstance(body, str) and ":=" in body:
         yield from (one.name for one in _said(action, body))
     yield from bound(graph, action)
@@ -67,7 +63,7 @@ def mentioned(graph: Graph, action: Element) -> Iterator[str]:
     """The last names of what an action may write, found without reading its text."""
     if action.subkind == "write":
         yield from (one.name for one in graph.targets(action, Edge.CALLS))
-    body = unnoted(action, "body")
+    body = action.attrs.get("body")
     if isinstance(body, str) and ":=" in body:
         if "'" in body:
             yield from (last_of(name) for name in written_names(graph, action))
@@ -85,7 +81,7 @@ def bound(graph: Graph, action: Element) -> Iterator[str]:
     """The names of features that are outputs of what an action calls."""
     for pin in graph.owned(action) if action.kind is Kind.ACTION else ():
         if pin.attrs.get("direction") in ("out", "inout", "return"):
-            text = unnoted(pin, "value")
+            text = pin.attrs.get("value")
             name = _name(text) if isinstance(text, str) else None
             if name:
                 yield name

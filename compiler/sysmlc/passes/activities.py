@@ -6,12 +6,10 @@ stays as it is. An activity of a library is played by each operation that it is 
 """
 
 from collections.abc import Iterator
-from functools import partial
 from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.retold import retold
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.logic.writers import Writers
@@ -37,10 +35,6 @@ class _Others:
     raising: Raising
     writers: Writers
 
-    def through(self, graph: Graph) -> "_Others":
-        """The same for who asks the graph in a way of his own."""
-        return replace(self, writers=self.writers.through(graph))
-
 
 @dataclass(frozen=True, slots=True)
 class Activities:
@@ -57,7 +51,6 @@ class Activities:
 
     name: ClassVar[str] = "activities"
     after: ClassVar[tuple[str, ...]] = ("classify", "flows")
-    follows: ClassVar[str] = ""
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a TokenGraph for each activity that can be played."""
@@ -67,21 +60,9 @@ class Activities:
         others = _others(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
             for one in _played(graph, activity):
-                make = partial(self._part, one.id, others)
-                found = retold(graph, sink, one.id, (self, others.raising), make)
+                found = self._found(graph, one, others, sink)
                 if found is not None:
                     yield found
-
-    def is_apart(self, graph: Graph, about: Element) -> bool:
-        """Activities are derived one by one."""
-        return about.kind is Kind.ACTIVITY and not _is_drawn_elsewhere(about)
-
-    def part(self, graph: Graph, about: Element, sink: Sink) -> object:
-        """The token graph of an activity, or of an operation by one of a library; or None."""
-        return self._part(about.id, _others(graph), graph, sink)
-
-    def _part(self, id: str, others: _Others, graph: Graph, sink: Sink) -> TokenGraph | None:
-        return self._found(graph, graph[id], others.through(graph), sink)
 
     def _found(
         self, graph: Graph, activity: Element, others: _Others, sink: Sink

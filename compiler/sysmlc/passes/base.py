@@ -1,26 +1,9 @@
 """What a pass is: options as fields, a name, its predecessors, and ``run``."""
 
-from typing import ClassVar, Protocol, runtime_checkable
+from typing import ClassVar, Protocol
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Element, Graph
-
-
-@runtime_checkable
-class InParts(Protocol):
-    """A pass that does for one element after the other what no other one concerns.
-
-    While it is at one it says so (``ir.reads.during``). ``follows`` is the pass whose derived
-    value of an element it may make its own of; empty for the first.
-    """
-
-    follows: ClassVar[str]
-
-    def is_apart(self, graph: Graph, about: Element) -> bool:
-        """Whether what is derived for one element is all that comes of it: nothing is joined."""
-
-    def part(self, graph: Graph, about: Element, sink: Sink) -> object:
-        """What is derived for one element; equal values have equal consequences."""
+from sysmlc.ir import Graph
 
 
 class Pass(Protocol):

@@ -7,20 +7,16 @@ demand of a subject is a contract of its own, and so are the pre- and postcondit
 
 from collections import Counter
 from collections.abc import Iterator
-from functools import partial
 from typing import ClassVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.retold import retold
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.tokens import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
 from sysmlc.logic.requirements import derivation as requirements
-from sysmlc.logic.requirements.statements import statements
-from sysmlc.logic.services import conditions
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.writers import Writers
 from sysmlc.passes.contract_formulas import add_formulas, report_general
@@ -59,7 +55,6 @@ class Contracts:
 
     name: ClassVar[str] = "contracts"
     after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
-    follows: ClassVar[str] = "activities"
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a Contract for each behaviour that is derived and for subjects of requirements."""
@@ -76,33 +71,9 @@ class Contracts:
     def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
         writers = Writers(graph)
         for element in graph.of_kind(Kind.STATE_MACHINE):
-            make = partial(self._part, element.id, writers)
-            contract = retold(graph, sink, element.id, self, make)
+            contract = self._of_machine(graph, element, writers, sink)
             if contract is not None:
                 yield contract
-
-    def _part(self, id: str, writers: Writers, graph: Graph, sink: Sink) -> Contract | None:
-        return self._of_machine(graph, graph[id], writers.through(graph), sink)
-
-    def is_apart(self, graph: Graph, about: Element) -> bool:
-        """Whether no constraint adds to contracts, and no other behaviour has the name."""
-        if graph.of_kind(Kind.CONSTRAINT) and (
-            any(map(_is_formula, graph.of_kind(Kind.CONSTRAINT)))
-            or statements(graph)
-            or any(conditions.services(graph, (self.assumed_low, self.assumed_high), Sink()))
-        ):
-            return False
-        name = query.component_name(graph, about)
-        behaviours = graph.of_kind(Kind.ACTIVITY, Kind.STATE_MACHINE)
-        return [query.component_name(graph, one) for one in behaviours].count(name) == 1
-
-    def part(self, graph: Graph, about: Element, sink: Sink) -> Contract | None:
-        """The contract of an activity, or of a state machine that says what a component does."""
-        if about.kind is Kind.ACTIVITY:
-            found = (one for one in graph.derived(TokenGraph) if one.activity == about.id)
-            tokens = next(found, None)
-            return None if tokens is None else activity_contract.derive(tokens)
-        return self._part(about.id, Writers(graph), graph, sink)
 
     def _of_machine(
         self, graph: Graph, about: Element, writers: Writers, sink: Sink
@@ -128,15 +99,6 @@ def _is_submachine(graph: Graph, machine: Element) -> bool:
     is_called = any(one.kind is Kind.STATE for one in graph.sources(machine, Edge.CALLS))
     own = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
     return is_called and not any(graph.sources(machine, edge) for edge in own)
-
-
-def _is_formula(constraint: Element) -> bool:
-    body, language = (str(constraint.attrs.get(key, "")) for key in ("body", "language"))
-    if not language:
-        return False
-    from sysmlc.logic.texts.formal import is_formal
-
-    return is_formal(language, body)
 
 
 def _of_activities(graph: Graph) -> Iterator[Contract]:

@@ -30,14 +30,6 @@ NAMES = (
 """Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""
 
 
-DERIVING = frozenset({"activities", "recipe", "platform", "contracts"})
-"""Passes that leave the graph as it is: they store derived values, and report.
-
-``floors`` leaves it, too, but puts contracts in the place of those that ``contracts`` stored: one
-that is made again alone would not be the one of the model. So a model with floors is compiled.
-"""
-
-
 class InvalidGraphError(RuntimeError):
     """A front end or a pass left a graph that ``verify`` rejects: our fault, not the model's."""
 

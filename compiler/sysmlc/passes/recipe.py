@@ -41,7 +41,6 @@ class Recipe:
         # Most models have no recipes: what makes and checks them takes 0.03 s to import.
         from sysmlc.passes.recipe_derived import tell, with_derived
         from sysmlc.passes.recipe_model import recipe_model
-        from sysmlc.passes.recipe_refined import as_a_whole
         from sysmlc.passes.recipe_remarks import remark
         from sysmlc.passes.recipe_tags import check_tags
         from sysmlc.recipe.model import Model
@@ -55,8 +54,6 @@ class Recipe:
         for model in models:
             remark(context, model, sink)
             validate(model, sink, lambda id: _subject(context.graph, id), self.tolerance)
-        if context.graph.reads is not None:
-            as_a_whole(context.graph.reads)
         context.graph.store(Model, models)
 
 

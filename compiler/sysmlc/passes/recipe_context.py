@@ -1,11 +1,10 @@
 """What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.seen import again
 from sysmlc.passes.recipe_levels import followers, said, stereotypes, subjects
 from sysmlc.passes.recipe_regions import contents
 from sysmlc.values import dataclass, replace
@@ -13,8 +12,6 @@ from sysmlc.values import dataclass, replace
 if TYPE_CHECKING:
     from sysmlc.passes.recipe_refined import Refined
     from sysmlc.recipe.model import Parameter, Range, ValueType
-
-_T = TypeVar("_T")
 
 SERVICES = ("machine service", "infrastructure service")
 NODES = frozenset(
@@ -32,22 +29,6 @@ MATERIAL_USES = ("consumed", "produced", "carried")
 
 
 @dataclass(frozen=True, slots=True)
-class Whole:
-    """What no part of a graph can tell alone, all of it texts."""
-
-    said: Mapping[str, str]
-    """Levels by id that elements have themselves: said of them, or derived."""
-    roots: Mapping[str, str]
-    """Of what nothing owns: the part in qualified names, by id."""
-    literals: Mapping[str, str]
-    """Ids of enumeration literals by ``Enumeration::literal``; empty where two are called so."""
-    machines: tuple[str, ...]
-    """Ids of what is a machine or stands for one, in the order of the graph."""
-    has_functions: bool
-    """Whether anything is a machine function."""
-
-
-@dataclass(frozen=True, slots=True)
 class Context:
     """The graph with what the user said about levels; it remembers what it has computed."""
 
@@ -55,17 +36,17 @@ class Context:
     levels: Mapping[str, str] = field(default_factory=dict)
     said: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that elements have themselves: said of them, or derived."""
-    able: frozenset[str] | None = frozenset()
-    """Ids of what may have a level, for most of a model has none; None: nobody knows."""
+    able: frozenset[str] = frozenset()
+    """Ids of elements that may have a level; most elements of a model have none."""
     derived: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that follow from others; what is said wins over them."""
-    subjects: frozenset[str] | None = frozenset()
-    """Ids of what stereotypes are applied to; None: nobody knows."""
+    subjects: frozenset[str] = frozenset()
+    """Ids of elements that stereotypes are applied to."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
     _of_level: dict[str, list[Element]] = field(default_factory=dict)
-    _whole: list[Whole] = field(default_factory=list)
+    _literals: list[dict[str, str]] = field(default_factory=list)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     _nodes: dict[str, list[Element]] = field(default_factory=dict)
     types: dict[str, "ValueType"] = field(default_factory=dict)
@@ -89,35 +70,6 @@ class Context:
         able = frozenset(followers(graph, own))
         return replace(bare, said=own, able=able, subjects=frozenset(subjects(graph)))
 
-    @classmethod
-    def part(cls, graph: Graph, whole: Whole) -> "Context":
-        """The context of a part of a graph: all but the ``whole`` is asked of the graph."""
-        made = cls(graph, said=whole.said, able=None, subjects=None, _whole=[whole])
-        made._segments.update(whole.roots)
-        return made
-
-    def whole(self) -> Whole:
-        """What no part of the graph can tell."""
-        if not self._whole:
-            roots = {one.id: self._segment(one) for one in self.graph.roots()}
-            machines = tuple(one.id for one in self.of_level("machine"))
-            has_functions = bool(self.of_level("machine function"))
-            found = Whole(self.said, roots, _literals(self.graph), machines, has_functions)
-            self._whole.append(found)
-        return self._whole[0]
-
-    def in_part(
-        self, about: str, given: object, make: Callable[["Context"], Iterable[_T]]
-    ) -> tuple[_T, ...]:
-        """What is made of a part of the graph, as of the last graph where it is the same.
-
-        It depends on the context that ``make`` is handed, and on what is ``given``, alone.
-        """
-        whole = self.whole()
-        return again(
-            self.graph, about, (whole, given), lambda graph: make(Context.part(graph, whole))
-        )
-
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
@@ -126,7 +78,7 @@ class Context:
 
     def level(self, element: Element | None) -> str:
         """Level of an element: its own, or that of its type, of what it calls or specialises."""
-        if element is None or (self.able is not None and element.id not in self.able):
+        if element is None or element.id not in self.able:
             return ""
         found = self._levels.get(element.id)
         if found is None:
@@ -141,11 +93,10 @@ class Context:
         return replace(
             self,
             said={**derived, **self.said},
-            able=(self.able or frozenset()) | changed,
+            able=self.able | changed,
             derived=derived,
             _levels=known,
             _of_level={},
-            _whole=[],
             types={},
             parameters={},
             kinds={},
@@ -154,16 +105,17 @@ class Context:
 
     def of_level(self, level: str) -> list[Element]:
         """All elements of a level, in the order of the graph."""
-        able = self.able
-        if able and not self._of_level:
-            for element in (one for one in self.graph if one.id in able):
+        if self.able and not self._of_level:
+            for element in (one for one in self.graph if one.id in self.able):
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
 
     def literal(self, name: str) -> Element | None:
         """The enumeration literal ``Enumeration::literal``; None where two are called so."""
-        found = self.whole().literals.get(_last_two(name))
-        return self.graph.get(found) if found else None
+        if not self._literals:
+            self._literals.append(_index_literals(self.graph))
+        id = self._literals[0].get(_last_two(name))
+        return self.graph.get(id) if id else None
 
     def _level(self, element: Element) -> str:
         own = self.own_level(element)
@@ -212,7 +164,7 @@ class Context:
 
     def may_have_stereotype(self, element: Element) -> bool:
         """Whether a stereotype may be applied to the element: most have none."""
-        return self.subjects is None or element.id in self.subjects
+        return element.id in self.subjects
 
     def tags(self, element: Element, stereotype: str) -> "Tags":
         """Tagged values of one stereotype of the profile; empty when it is not applied."""
@@ -317,8 +269,11 @@ def number(text: str) -> int | float | None:
     return int(value) if value == int(value) else value
 
 
-def _literals(graph: Graph) -> dict[str, str]:
-    """Ids of enumeration literals by the last two parts of their names, empty for one of two."""
+def _index_literals(graph: Graph) -> dict[str, str]:
+    """Return ids of enumeration literals by the last two parts of their names.
+
+    The id is empty if two literals share these parts.
+    """
     found: dict[str, str] = {}
     for one in graph.of_kind(Kind.ENUMERATION_LITERAL):
         name = _last_two(graph.qualified_name(one))

@@ -112,7 +112,7 @@ def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
 
 
 def _machines_like(context: Context, owner: Element) -> Iterator[Element]:
-    for one in map(context.graph.__getitem__, context.whole().machines):
+    for one in context.of_level("machine"):
         is_class = one.kind in (Kind.CLASS, Kind.COMPONENT) and not one.attrs.get("abstract")
         if is_class and query.conforms(context.graph, one, owner):
             yield one

@@ -1,6 +1,6 @@
 """One recipe with the closure of what it refers to."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import field
 from typing import Protocol, TypeVar
 
@@ -51,8 +51,8 @@ def recipe_model(context: Context, activity: Element) -> Model:
         if step.refinement is not None:
             _refine(context, step.refinement, "task", closure)
     recipe = _recipe(context, activity, found, closure)
-    services = [_made(context, service, *one) for one in closure.services.values()]
-    functions = [_made(context, function, *one) for one in closure.functions.values()]
+    services = [service(context, *one) for one in closure.services.values()]
+    functions = [function(context, *one) for one in closure.functions.values()]
     named = {m for one in recipe.tasks for mode in one.equipment for m in mode.machines}
     named |= {provider.machine for one in services for provider in one.providers}
     model = Model(
@@ -65,21 +65,6 @@ def recipe_model(context: Context, activity: Element) -> Model:
         _sorted(closure.function_graphs.values()),
     )
     return derive(with_variables(context, model))
-
-
-def _made(
-    context: Context,
-    make: Callable[[Context, Element, list[Element]], _T],
-    definition: Element,
-    callers: list[Element],
-) -> _T:
-    """What a definition is in a recipe, as of the last graph where nothing of it is another."""
-    ids = tuple(one.id for one in callers)
-
-    def once(part: Context) -> Iterator[_T]:
-        yield make(part, part.graph[definition.id], [part.graph[id] for id in ids])
-
-    return context.in_part(f"{make.__name__} {definition.id}", ids, once)[0]
 
 
 def _recipe(context: Context, activity: Element, found: list[Step], closure: _Closure) -> Recipe:

@@ -1,10 +1,8 @@
 """What refines a task or a service: its graph, what that calls, and what is to be said of it."""
 
 from collections.abc import Iterator
-from functools import partial
 
 from sysmlc.ir import Element, Kind
-from sysmlc.ir.reads import Reads
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_regions import is_inlined
@@ -38,20 +36,14 @@ class Refined:
 
 
 def refined(context: Context, activity: Element, inside: str) -> Refined:
-    """What an activity says of a task or a service, as of the last graph where it is the same."""
-    found = context.refinements.get((inside, activity.id))
-    if found is None:
-        make = partial(_refined, id=activity.id, inside=inside)
-        (found,) = context.in_part(f"graph of {inside} {activity.id}", (), make)
-        context.refinements[inside, activity.id] = found
-    return found
-
-
-def _refined(context: Context, id: str, inside: str) -> Iterator[Refined]:
-    activity = context.graph[id]
-    made = flow_graph(context, activity, inside)
-    calls = tuple(_calls(context, activity, inside))
-    yield Refined(made, calls, tuple(_remarks(context, activity, inside)))
+    """Return what an activity that refines a task or a service (*inside*) consists of."""
+    refinement = context.refinements.get((inside, activity.id))
+    if refinement is None:
+        graph = flow_graph(context, activity, inside)
+        calls = tuple(_calls(context, activity, inside))
+        refinement = Refined(graph, calls, tuple(_remarks(context, activity, inside)))
+        context.refinements[inside, activity.id] = refinement
+    return refinement
 
 
 def _calls(context: Context, activity: Element, inside: str) -> Iterator[Called]:
@@ -69,12 +61,3 @@ def _remarks(context: Context, activity: Element, inside: str) -> Iterator[tuple
             yield node.id, ""
         elif by_position(context, node, kind):
             yield (context.definition(node) or node).id, _LEVELS[kind]
-
-
-def as_a_whole(reads: Reads) -> None:
-    """Who asked for a value in a part of the work asked in the whole: parts do not run alone."""
-    parts = f"{reads.reader} "
-    for readers in reads.readers.values():
-        for one in [one for one in readers if one.startswith(parts)]:
-            del readers[one]
-            readers[reads.reader] = None

@@ -61,7 +61,7 @@ def is_helper(context: Context, called: Element) -> bool:
 
     In a model that says which behaviours are machine functions, no other is one.
     """
-    return refinement(context, called) is not None or context.whole().has_functions
+    return refinement(context, called) is not None or bool(context.of_level("machine function"))
 
 
 def refinement(context: Context, definition: Element | None) -> Element | None:

@@ -6,13 +6,12 @@ from collections.abc import Iterable, Iterator
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import value, value_type
-from sysmlc.passes.recipe_machines import machine, opcua_node
+from sysmlc.passes.recipe_machines import opcua_node
 from sysmlc.passes.recipe_paths import member
 from sysmlc.patterns import pattern
 from sysmlc.recipe.checks import graphs
 from sysmlc.recipe.expression import Expr, variables
 from sysmlc.recipe.model import (
-    Machine,
     MachineVariable,
     Model,
     Parameter,
@@ -33,18 +32,11 @@ def with_variables(context: Context, model: Model) -> Model:
             head, _, rest = name.partition(".")
             if rest and head in machines:
                 spoken.setdefault(machines[head], set()).add(rest)
-    found = [_found(context, one, tuple(sorted(spoken.get(one.id, ())))) for one in model.machines]
-    return replace(model, machines=tuple(found))
-
-
-def _found(context: Context, one: Machine, names: tuple[str, ...]) -> Machine:
-    """The machine with these variables, as of the last graph where nothing of it is another."""
-
-    def once(part: Context) -> Iterator[Machine]:
-        made = machine(part, part.graph[one.element])
-        yield replace(made, variables=_variables(part, one.element, names))
-
-    return context.in_part(f"machine {one.element}", names, once)[0]
+    machines_of_model = tuple(
+        replace(one, variables=_variables(context, one.element, sorted(spoken.get(one.id, ()))))
+        for one in model.machines
+    )
+    return replace(model, machines=machines_of_model)
 
 
 def _machines(parameters: Iterable[Parameter]) -> Iterator[tuple[str, str]]:

@@ -1,22 +1,17 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
-from collections.abc import Iterable
-from functools import partial
-
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.trace import trace as trace_of
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
-from sysmlc.ir.reads import during
-from sysmlc.ir.retold import retold
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.document_text import text
 from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.naming import file_names
-from sysmlc.output import Artefact, Output
+from sysmlc.output import Output
 from sysmlc.values import dataclass
 
 TOO_LARGE = rule(
@@ -49,17 +44,6 @@ class ContractsBackend:
     name: str = "contracts"
     summary: str = "assume/guarantee contracts as JSON, SPIN formula and explanation"
     is_default: bool = True
-    follows: str = "contracts"
-
-    def part(self, graph: Graph, about: str, options: EmitOptions) -> list[Artefact]:
-        """The files of one contract, as ``contracts`` and the id of what it comes from."""
-        output, id = Output(), about.partition(" ")[2]
-        templates = Templates(self.name, options.templates)
-        for contract in map(unambiguous, graph.derived(Contract)):
-            if contract.origin == id:
-                name = file_names([contract.component])[contract.component]
-                _add(graph, contract, output, f"contracts/{name}", Sink(), templates)
-        return output.artefacts()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files a contract; their trace names every element that they tell of."""
@@ -68,26 +52,7 @@ class ContractsBackend:
         with Templates(self.name, options.templates) as templates:
             for contract in contracts:
                 path = f"contracts/{names[contract.component]}"
-                for artefact in _files(graph, contract, path, sink, templates):
-                    output.add(artefact.path, artefact.text, artefact.trace, artefact.backend)
-
-
-def _files(
-    graph: Graph, contract: Contract, path: str, sink: Sink, templates: Templates
-) -> Iterable[Artefact]:
-    about, make = f"contracts {contract.origin}", partial(_made, contract, path, templates)
-    if not templates.has_folder:
-        return retold(graph, sink, about, (contract, path), make)
-    with during(graph, about):
-        return make(graph, sink)
-
-
-def _made(
-    contract: Contract, path: str, templates: Templates, graph: Graph, sink: Sink
-) -> tuple[Artefact, ...]:
-    output = Output()
-    _add(graph, unambiguous(contract), output, path, sink, templates)
-    return tuple(output.artefacts())
+                _add(graph, unambiguous(contract), output, path, sink, templates)
 
 
 def _add(

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import field
-from functools import partial
 
 from sysmlc.backends.plantuml import actions, labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -12,7 +11,6 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.stm import divided, guard_text
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.seen import again
 from sysmlc.plantuml import label, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -26,17 +24,14 @@ _LABEL = 30
 _FRAME = 60
 
 
-def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
-    """All activity diagrams, in the order of the model; ``only`` those of one activity."""
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All activity diagrams, in the order of the model."""
     for activity in graph.of_kind(Kind.ACTIVITY):
-        if activity.attrs.get("external") or only not in ("", activity.id):
-            continue
-        make = partial(_of_activity, id=activity.id)
-        yield from again(graph, f"act {activity.id}", (), make)
+        if not activity.attrs.get("external"):
+            yield from _of_activity(graph, activity)
 
 
-def _of_activity(graph: Graph, id: str) -> Iterator[Diagram]:
-    activity = graph[id]
+def _of_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
     inside = list(graph.subtree(activity))
     if not any(item.kind in _DRAWN for item in inside):
         return

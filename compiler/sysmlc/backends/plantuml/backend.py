@@ -3,7 +3,6 @@
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
@@ -24,7 +23,7 @@ from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
-from sysmlc.output import Artefact, Output
+from sysmlc.output import Output
 from sysmlc.plantuml import comment
 from sysmlc.values import dataclass
 
@@ -49,8 +48,6 @@ KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
     sd.diagrams,
     uc.diagrams,
 )
-_PARTS = {"act": act.diagrams, "bdd": bdd.diagrams, "ibd": ibd.diagrams, "stm": stm.diagrams}
-"""Kinds of diagrams that can be made of one element alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,38 +57,23 @@ class PlantUml:
     name: str = "plantuml"
     summary: str = "block, internal block, activity, state machine, requirement, sequence, use case"
     is_default: bool = True
-    follows: str = ""
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""
         with room_for(stm.depth(graph)):
             self._emit(graph, output, sink, options)
 
-    def part(self, graph: Graph, about: str, options: EmitOptions) -> Iterator[Artefact]:
-        """The diagrams of one kind about one element, as ``act`` and its id."""
-        kind, _, id = about.partition(" ")
-        templates = Templates(self.name, options.templates)
-        with room_for(stm.depth(graph)), templates:
-            for one in _PARTS[kind](graph, id):
-                text = _text(graph, one, templates)
-                yield Artefact(f"diagrams/{one.name}.{kind}.puml", text, _trace(one), self.name)
-
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
-            found = [_Traced(one, _trace(one)) for kind in KINDS for one in kind(graph)]
+            found = [_Traced(one, one.trace()) for kind in KINDS for one in kind(graph)]
             missing.report(graph, {id for one in found for id in one.trace}, sink)
             sd_remarks.report(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
             from sysmlc.backends.plantuml import author
 
-            drawn = [_Traced(one, _trace(one)) for one in author.diagrams(graph, sink)]
+            drawn = [_Traced(one, one.trace()) for one in author.diagrams(graph, sink)]
             _write(graph, drawn, author.FOLDER, output, sink, options)
-
-
-_TRACES: WeakKeyDictionary[Diagram, tuple[str, ...]] = WeakKeyDictionary()
-_TEXTS: WeakKeyDictionary[Diagram, tuple[str, str]] = WeakKeyDictionary()
-"""Source and text of each diagram that is still there, as our own templates write it."""
 
 
 class _Traced(NamedTuple):
@@ -116,7 +98,7 @@ def _write(
         for kind, group in groupby(found, lambda one: one.diagram.kind):
             try:
                 for (diagram, trace), file in _named(list(group)):
-                    text = _text(graph, diagram, templates)
+                    text = _render(graph, diagram, templates)
                     output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
             except TemplateError as fault:
                 sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
@@ -139,24 +121,9 @@ def _free(name: str, taken: Collection[str]) -> str:
     return key
 
 
-def _trace(diagram: Diagram) -> tuple[str, ...]:
-    if diagram not in _TRACES:
-        _TRACES[diagram] = diagram.trace()
-    return _TRACES[diagram]
-
-
-def _text(graph: Graph, diagram: Diagram, templates: Templates) -> str:
+def _render(graph: Graph, diagram: Diagram, templates: Templates) -> str:
     about = graph.get(diagram.about)
     source = "" if about is None else about.source
-    if templates.has_folder:
-        return _render(diagram, source, templates)
-    known = _TEXTS.get(diagram)
-    if known is None or known[0] != source:
-        known = _TEXTS[diagram] = source, _render(diagram, source, templates)
-    return known[1]
-
-
-def _render(diagram: Diagram, source: str, templates: Templates) -> str:
     return templates.render(
         f"{diagram.kind}.puml.j2",
         diagram=diagram,

@@ -1,7 +1,6 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from functools import partial
 
 from sysmlc.backends.plantuml import foreign, labels, split, uc
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -10,7 +9,6 @@ from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import BoxView, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.seen import again
 from sysmlc.plantuml import keyword_label, padded, plain
 
 CLASSIFIERS = (
@@ -39,20 +37,15 @@ _UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 
-def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
-    """All block definition diagrams, in the order of the packages; ``only`` those of one."""
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All block definition diagrams, in the order of the packages."""
     every = [relation for relation in relations(graph) if _is_between_boxes(graph, relation)]
     homes = _homes(graph)
     drawn = {item.id for items in homes.values() for item in items}
     for package, classifiers in homes.items():
-        if only not in ("", package):
-            continue
         own = tuple(item.id for item in classifiers)
         ours = tuple(relation for relation in every if _is_ours(relation, set(own), drawn))
-        make = partial(_of_package, package=package, ids=own, found=ours)
-        yield from (
-            make(graph) if package is None else again(graph, f"bdd {package}", (own, ours), make)
-        )
+        yield from _of_package(graph, package, own, ours)
 
 
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:

@@ -5,7 +5,6 @@ An instance, and a hierarchy of AutomationML whose instances are linked, have on
 
 from collections.abc import Iterator
 from dataclasses import field
-from functools import partial
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -23,7 +22,6 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
-from sysmlc.ir.seen import again
 from sysmlc.plantuml import label, lines, plain, small, stack
 from sysmlc.values import dataclass
 
@@ -36,19 +34,15 @@ _TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
 """What leads from a part to its type, and from an instance that is drawn like one."""
 
 
-def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
-    """All internal block diagrams, in the order of the model; ``only`` those of one block."""
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All internal block diagrams, in the order of the model."""
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
     flows = free_flows(graph)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        if only not in ("", block.id):
-            continue
-        own = flows.get(block.id, ())
-        yield from again(graph, f"ibd {block.id}", own, partial(_of_block, id=block.id, flows=own))
+        yield from _of_block(graph, block, flows.get(block.id, ()))
 
 
-def _of_block(graph: Graph, id: str, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
-    block = graph[id]
+def _of_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
     found = connections(graph, block, flows)
     if not found or block.attrs.get("external"):
         return

@@ -1,7 +1,6 @@
 """State machine diagrams: one for each state machine with states."""
 
 from collections.abc import Iterator
-from functools import partial
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -9,7 +8,6 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.pieces import pieces
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.seen import again
 from sysmlc.plantuml import label, lines, plain, small, stack
 
 VERTICES = (Kind.STATE, Kind.PSEUDOSTATE, Kind.FINAL_STATE)
@@ -30,21 +28,14 @@ _REFERENCE = "connection-point"
 _ROW = 44
 
 
-def diagrams(graph: Graph, only: str = "") -> Iterator[Diagram]:
-    """All state machine diagrams, in the order of the model; ``only`` those of one machine."""
+def diagrams(graph: Graph) -> Iterator[Diagram]:
+    """All state machine diagrams, in the order of the model."""
     for machine in graph.of_kind(Kind.STATE_MACHINE):
-        if only in ("", machine.id):
-            make = partial(_of_machine, id=machine.id)
-            yield from again(graph, f"stm {machine.id}", (), make)
-
-
-def _of_machine(graph: Graph, id: str) -> Iterator[Diagram]:
-    machine = graph[id]
-    view = whole(graph, machine)
-    if view.nodes:
-        regions = tuple(item.id for item in _regions(graph, machine))
-        title = "State machine diagram"
-        yield from divided(graph, machine, view, "stm", title, details=regions)
+        view = whole(graph, machine)
+        if view.nodes:
+            regions = tuple(item.id for item in _regions(graph, machine))
+            title = "State machine diagram"
+            yield from divided(graph, machine, view, "stm", title, details=regions)
 
 
 def divided(

@@ -1,12 +1,11 @@
 """Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
 
 from collections.abc import Sequence
-from functools import cache, lru_cache, partial
+from functools import partial
 from os import environ
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
-from sysmlc.cache import default
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.language.exchange import Files, interchange_path, write
@@ -38,8 +37,7 @@ class SysmlxBackend:
             said = _said(graph, sink, options)
             models = [] if said is None else [said]
         for model in models:
-            library = _files(model.library)
-            library.add(model.library.loaded())
+            library = Files(model.library.loaded())
             known = Files(model.documents, library, partial(implied_redefinitions, model))
             for document in model.documents:
                 path = f"sysmlx/{interchange_path(document)}"
@@ -84,7 +82,7 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
         else:
             _report(graph, documents, first, sink)
         return None
-    return resolve(documents, _library(environ.get(VARIABLE, "")), unseen)
+    return resolve(documents, _find_library(environ.get(VARIABLE, "")), unseen)
 
 
 def _report(graph: Graph, documents: Sequence[Document], first: Diagnostic, sink: Sink) -> None:
@@ -116,20 +114,12 @@ def _deepest(graph: Graph) -> Element:
     return level[0]
 
 
-@lru_cache(maxsize=1)
-def _files(_library: Library) -> Files:
-    """The files of a library that references lead to, unfolded once for models in succession."""
-    return Files(())
-
-
-@cache
-def _library(asked: str) -> Library:
-    """The standard library, read once for all models of a process; the small one if it is gone."""
-    store = default()
+def _find_library(asked: str) -> Library:
+    """Return the library at *asked*, else the installed one; the small one if it is missing."""
     try:
-        return find(asked or None, cache=store)
+        return find(asked or None)
     except SourceError:
-        return core(store)
+        return core()
 
 
 BACKEND = SysmlxBackend()

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, expressions, forms, nodes, statements, values
+from sysmlc.frontends.sysml import annotations, expressions, nodes, statements, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import visibility
 from sysmlc.frontends.sysml.events import trigger
@@ -182,12 +182,10 @@ def _inside(low: "Lowering", node: Node, made: Element) -> None:
 
 def assign(low: "Lowering", node: Node, owner: Element) -> Element:
     """An assignment: an opaque action with the text of it."""
-    with low.literals.unnoted():
-        said = _assigned(node)
+    said = _assigned(node)
     made = _start(low, node, owner, "opaque")
     if said:
         low.set(made, body=said)
-        low.literals.give(low, made, "body", node, lambda one: forms.text(one, _assigned))
     elif (document := low.document(node)) is not None and node.end > node.start >= 0:
         low.set(made, body=nodes.quoted(node, document.text))
     _inside(low, node, made)

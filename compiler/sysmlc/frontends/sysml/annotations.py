@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import forms, kept, nodes, values
+from sysmlc.frontends.sysml import kept, nodes, values
 from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -53,11 +53,8 @@ def comment(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _comment(low: "Lowering", node: Node, owner: Element | None) -> Element:
-    with low.literals.unnoted():
-        body = str(node.facts.get("body", "")).strip()
-    made = low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
-    low.literals.give_body(low, made, node)
-    return made
+    body = str(node.facts.get("body", "")).strip()
+    return low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
 
 
 def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
@@ -181,11 +178,9 @@ def _instance_of(low: "Lowering", made: Element, definition: Node) -> None:
 
 def _tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
     name = f"tag.{key}"
-    with low.literals.unnoted():
-        found = values.constant(value)
+    found = values.constant(value)
     if found is not None:
         low.graph.set(made, **{name: _tagged(low, found)})
-        low.literals.give(low, made, name, value, forms.tag)
         return
     known = low.element(nodes.target(value, "Membership"))
     low.graph.set(made, **{name: known.id if known is not None else values.texts(value, low)})

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.frontends.sysml import nodes, stubs
-from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.naming import Names
 from sysmlc.frontends.sysml.places import Home
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
@@ -56,7 +55,6 @@ class Lowering(Verdicts):
         """Identities of nodes that were lowered, or that an element was made for."""
         self.skipped: set[int] = set()
         """Identities of members that are read with something else."""
-        self.literals: Literals = UNWATCHED
         self._handlers = handlers
         self.homes = homes
         self._homes: dict[int, Home] = {}

@@ -53,13 +53,10 @@ def held(node: Node, *memberships: str) -> Iterator[Node]:
 
 
 def quoted(node: Node, text: str) -> str:
-    """What the text of a document says of a node, in one line, without notes."""
-    from sysmlc.language.text.words import said
+    """Return the source text of a node in one line, without notes."""
+    from sysmlc.language.text.scan import join_tokens
 
-    for one in node.walk():
-        # Whoever asks for literals is told of, and a text that is quoted has them all.
-        one.facts.get("value" if one.kind.startswith("Literal") else "body")
-    return said(text, node.start, node.end) if 0 <= node.start < node.end else ""
+    return join_tokens(text, node.start, node.end) if 0 <= node.start < node.end else ""
 
 
 def arguments(node: Node) -> list[Node]:

@@ -11,7 +11,6 @@ from sysmlc.frontends.sysml.blame import blame
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.libraries import SHIPPED
-from sysmlc.frontends.sysml.literals import UNWATCHED, Literals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.places import Home
@@ -31,12 +30,10 @@ def lower(
     graph: Graph,
     sink: Sink,
     coverage: Coverage,
-    literals: Literals = UNWATCHED,
 ) -> None:
     """Add the elements of all documents to the graph and account for every node of them."""
     homes = [Home(one) for one in documents]
     low = Lowering(homes, model, graph, sink, HANDLERS)
-    low.literals = literals
     each, depth = [], 0
     for home in homes:
         ours, levels = by_kind(home.document.root)
@@ -54,7 +51,6 @@ def lower(
         low.finish()
     low.end_branches()
     _say_pins(graph)
-    literals.finish(graph)
     tell(low)
     blame(low)
     for home, ours in zip(homes, each, strict=True):

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import expressions, forms, nodes
+from sysmlc.frontends.sysml import expressions, nodes
 from sysmlc.ir import AttrValue, Edge, Element
 from sysmlc.language.tree import Node
 
@@ -16,11 +16,9 @@ def give(low: "Lowering", element: Element, key: str, node: Node) -> None:
     Enumeration values have the attribute ``<key>_instance``, other expressions
     ``<key>_language``.
     """
-    with low.literals.unnoted():
-        literal = constant(node)
+    literal = constant(node)
     if literal is not None:
         low.graph.set(element, **{key: literal})
-        low.literals.give(low, element, key, node)
         return
     low.last(lambda: _refer(low, element, key, node))
 
@@ -31,23 +29,13 @@ def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
     if target is not None and target.kind == "EnumerationUsage" and known is not None:
         _literal(low, element, key, known)
         return
-    with low.literals.unnoted():
-        written = _written(node, low)
+    written = _written(node, low)
     low.graph.set(element, **{key: written, f"{key}_language": ""})
-    low.literals.give(low, element, key, node, _form)
 
 
 def say(low: "Lowering", element: Element, key: str, node: Node) -> None:
     """Set the attribute ``key`` to a condition, or another expression, as text."""
-    with low.literals.unnoted():
-        said = texts(node, low)
-    low.set(element, **{key: said})
-    low.literals.give(low, element, key, node, _form)
-
-
-def _form(node: Node) -> AttrValue:
-    """How literals become the text of an expression; what is quoted has no form."""
-    return forms.text(node, lambda one: expressions.text(one, " "))
+    low.set(element, **{key: texts(node, low)})
 
 
 def _written(node: Node, low: "Lowering") -> str:

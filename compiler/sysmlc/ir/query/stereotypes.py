@@ -45,8 +45,7 @@ def tag(graph: Graph, element: Element, name: str) -> AttrValue:
         if f"tag.{name}" in application.attrs:
             return application.attrs[f"tag.{name}"]
     for application in found:
-        # Who asks for all values at once is noted as a reader of each (``ir.reads``).
-        for key in application.attrs:
+        for key, value in application.attrs.items():
             if key.lower() == f"tag.{name.lower()}":
-                return application.attrs[key]
+                return value
     return element.attrs.get(f"tag.{name}")

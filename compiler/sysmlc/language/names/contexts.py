@@ -73,7 +73,7 @@ class Start(NamedTuple):
     which may have the same name. ``importing`` are the namespaces that the name is imported into:
     what they import is looked at last, for it may depend on where the name leads. For the same
     reason the type of metadata (``is_metadata``) is not looked for in what the annotated element
-    implicitly specialises. The search ends where it comes to ``beyond``.
+    implicitly specialises.
     """
 
     scope: Node | None
@@ -86,7 +86,6 @@ class Start(NamedTuple):
     past_subjects: bool = False
     importing: tuple[Node, ...] = ()
     is_metadata: bool = False
-    beyond: Node | None = None
 
 
 def start(node: Node, relation: Relation) -> Start:

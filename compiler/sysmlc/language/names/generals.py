@@ -27,8 +27,6 @@ class Generals(ABC):
         self._by_role = by_role
         self.cuts = 0
         self.cycles: list[Node] = []
-        self.doubtful: set[Node] = set()
-        """Elements of which something was found while a question was cut."""
         self._active: set[Reference] = set()
         self.abandoned: set[Reference] = set()
         self._cyclic: set[Node] = set()

@@ -1,7 +1,6 @@
 """What namespaces import (KerML 8.2.3.5.3 and 7.2.5.4)."""
 
 from collections.abc import Callable
-from collections.abc import Set as AbstractSet
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.contents import NAMESPACES
@@ -31,12 +30,6 @@ class Imports(Members):
         """Give up what is being looked for, after an error in the midst of it."""
         super().abandon()
         self._seen.clear()
-
-    def forget_names(self, names: AbstractSet[str]) -> None:
-        """Forget which members by these names are inherited and imported anywhere."""
-        for memo in (*self._inherited.values(), *self._imported.values()):
-            for name in names & memo.keys():
-                del memo[name]
 
     def imports(self, scope: Node) -> list[Node]:
         """The imports that a namespace owns."""

@@ -52,8 +52,6 @@ class Lookup(Imports):
         is_whole, cuts = len(targets) == len(reference.chain), self.cuts - before
         if not is_whole and cuts > _MOST:
             self.given_up.add(reference)
-        if cuts:
-            self.doubtful.add(node)
         if is_whole or not self._active or not 0 < cuts <= _MOST:
             reference.lead(targets)
         return targets[-1] if is_whole else None
@@ -84,15 +82,6 @@ class Lookup(Imports):
             found.append(element)
         return found
 
-    def is_within(self, node: Node, relation: Relation, beyond: Node) -> bool:
-        """Whether the first link of a relation is found before the search comes to a scope."""
-        first, start = relation.reference.chain[0], contexts.start(node, relation)
-        if start.scope is None or first[0] == "$":
-            return start.scope is None
-        is_last = len(relation.reference.chain) == 1
-        kinds = contexts.WANTED.get(relation.kind if is_last else "Subsetting")
-        return self.search(start._replace(beyond=beyond), first, kinds) is not None
-
     def _link(self, node: Node, relation: Relation | None) -> Node | None:
         return self.target(node, relation) if relation is not None else None
 
@@ -109,7 +98,7 @@ class Lookup(Imports):
         first, scope = names[0], start.scope
         if first == "$" and len(names) > 1 and not self._is_quoted(start):
             return self.among(self._roots(names[1]), names, 1, kinds)
-        while scope is not start.beyond and scope is not None:
+        while scope is not None:
             for hits in self._stages_of(start, scope, first):
                 if start.past_subjects:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
@@ -120,8 +109,6 @@ class Lookup(Imports):
                     if len(names) > 1 and any(map(self._is_namespace, hits)):
                         return None
             scope = contexts.outer(scope)
-        if start.beyond is not None:
-            return None
         found = self.among(self._roots(first), names, 0, kinds)
         for importing in start.importing if found is None else ():
             hits = self.imported(importing, first, inside=True)

@@ -1,7 +1,6 @@
 """Documents and their library, and the questions that others ask about their names."""
 
 from collections.abc import Sequence
-from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
 from sysmlc.language.library import Library
@@ -9,7 +8,6 @@ from sysmlc.language.names import implied, semantic
 from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
 from sysmlc.language.names.classified import Types
 from sysmlc.language.names.contents import TYPES, naming, payload_of
-from sysmlc.language.names.forgetting import forget
 from sysmlc.language.names.listing import members
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
@@ -30,7 +28,13 @@ class Model:
         self.library = library
         self.lookup = Lookup(self._roots, self.implied_generals, self._by_role, self._text)
         self._nodes: dict[Node, list[Node]] = {}
-        self._take(documents)
+        self.documents = sorted(documents, key=lambda document: document.path)
+        self._by_root = {document.root: document for document in self.documents}
+        self._named: dict[str, list[Node]] = {}
+        for document in self.documents:
+            for member in document.root.members:
+                for name in {member.name, member.short} - {None}:
+                    self._named.setdefault(str(name), []).append(member)
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
         self._likes: dict[tuple[object, ...], _Alike] = {}
@@ -44,38 +48,6 @@ class Model:
         """The same about all that is above several generals."""
         self.annotating: dict[tuple[Node, ...], list[str]] = {}
         """What metadata of several definitions is for, as the checks found out."""
-        self.sound: set[Node] = set()
-        """Nodes in which the checks found nothing."""
-
-    def _take(self, documents: Sequence[Document]) -> None:
-        self.documents = sorted(documents, key=lambda document: document.path)
-        self._by_root = {document.root: document for document in self.documents}
-        self._named: dict[str, list[Node]] = {}
-        for document in self.documents:
-            for member in document.root.members:
-                for name in {member.name, member.short} - {None}:
-                    self._named.setdefault(str(name), []).append(member)
-
-    def take(
-        self, documents: Sequence[Document], stale: AbstractSet[Node], names: AbstractSet[str]
-    ) -> None:
-        """Take these documents instead; what is known of stale nodes and of names is forgotten.
-
-        All else that is known must be as it would be found in the new documents.
-        """
-        own = self._named.keys()
-        for asked in [one for one in self._found if one.partition("::")[0] in own]:
-            del self._found[asked]
-        for about in [key for key in self._needed if not stale.isdisjoint((*key[0], *key[1]))]:
-            del self._needed[about]
-        for holder in (self, self.lookup, self._types):
-            forget(holder, stale)
-        self.lookup.forget_names(names)
-        self._take(documents)
-
-    def asks(self) -> set[str]:
-        """Names of packages that were asked for though no text says them."""
-        return {asked.partition("::")[0] for asked in self._found}
 
     def _roots(self, name: str) -> Hits:
         return (*self._named.get(name, ()), *self.library.roots(name))

@@ -66,15 +66,12 @@ def _settle(document: Document, model: Model) -> None:
     """Find out what leads through many elements while Python may still call itself that deep."""
     lookup = model.lookup
     for node in model.nodes(document):
-        before = lookup.cuts
         try:
             if node.relations:
                 lookup.generals(node)
             lookup.by_position(node)
         except RecursionError:
             lookup.abandon()
-        if lookup.cuts != before:
-            lookup.doubtful.add(node)
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:

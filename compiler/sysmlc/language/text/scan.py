@@ -168,6 +168,21 @@ def _check_names(tokens: Tokens, types: Types) -> None:
                 tokens.faults.append(Fault("character", start, char))
 
 
+def join_tokens(text: str, start: int, end: int) -> str:
+    """Return part of a text in one line, without notes: one blank where tokens are apart."""
+    pieces: list[str] = []
+    last_end = -1
+    for match in TOKEN.finditer(text, start, end):
+        group = match.lastindex or 0
+        if not group:
+            break
+        if last_end >= 0 and match.start(group) > last_end:
+            pieces.append(" ")
+        pieces.append(match[group])
+        last_end = match.end(group)
+    return "".join(pieces)
+
+
 def body_text(written: str) -> str:
     """The body of a comment as KerML 8.2.3.3.2, note 1, takes it from the text."""
     inner = written[2:-2]

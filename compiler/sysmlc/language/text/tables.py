@@ -1,15 +1,16 @@
-"""The parser's tables: found in the package or in the user's cache, made where they are nowhere."""
+"""The parser's tables: read from the package, or generated where the package has none."""
 
 import hashlib
 import marshal
+from contextlib import suppress
 from functools import cache
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
-from sysmlc import cache as caches
 from sysmlc import resources
 from sysmlc.language.text.scan import Types
+from sysmlc.output import write as write_file
 from sysmlc.values import dataclass
 
 SHIPPED = Path(__file__).with_name("generated")
@@ -54,19 +55,23 @@ def digest(language: str) -> bytes:
 
 
 def write(language: str, folder: Path) -> Path:
-    """Make the tables of a language and write them into a folder of the package."""
+    """Generate the tables of a language and write them into a folder of the package."""
     from sysmlc.language.text.generate import tables
 
-    folder.mkdir(exist_ok=True)
-    path = folder / f"{language}.tables"
-    path.write_bytes(digest(language) + tables(grammar(language)))
-    return path
+    return _store(language, folder, tables(grammar(language)))
 
 
 @cache
 def load(language: str) -> Tables:
-    """The tables of a language."""
-    return _opened(marshal.loads(_shipped(language) or _kept(language)))
+    """Return the tables of a language.
+
+    A checkout whose grammar was edited has stale tables. They are generated once, beside the code
+    that reads them: never in the cache, because these tables are code.
+    """
+    data = _shipped(language)
+    if data is None:
+        data = _generate(language)
+    return _opened(marshal.loads(data))
 
 
 def _shipped(language: str) -> bytes | None:
@@ -79,20 +84,21 @@ def _shipped(language: str) -> bytes | None:
     return data[len(wanted) :] if data.startswith(wanted) else None
 
 
-def _kept(language: str) -> bytes:
-    """The tables in the user's cache; they are made where it has none."""
-    from importlib.metadata import version
+def _generate(language: str) -> bytes:
+    """Generate the tables, and store them in the package unless its folder is read-only."""
+    from sysmlc.language.text.generate import tables
 
-    store = caches.default()
-    key = hashlib.sha256(digest(language) + version("lark").encode()).hexdigest()
-    found = store.get(key) if store else None
-    if found is None:
-        from sysmlc.language.text.generate import tables
+    data = tables(grammar(language))
+    with suppress(OSError):
+        _store(language, SHIPPED, data)
+    return data
 
-        found = tables(grammar(language))
-        if store:
-            store.put(key, found)
-    return found
+
+def _store(language: str, folder: Path, data: bytes) -> Path:
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{language}.tables"
+    write_file(path, digest(language) + data)
+    return path
 
 
 def _opened(raw: dict[str, Any]) -> Tables:

@@ -113,6 +113,5 @@ class Features(Mapping[str, Feature]):
 
 def variables(graph: Graph, named: Mapping[str, Element]) -> dict[str, str]:
     """The variables that names stand for, in the order of the document."""
-    placed = sorted(zip(graph.ordinals(named.values()), named, strict=True))
-    names = [name for _, name in placed]
+    names = sorted(named, key=lambda name: (named[name].ordinal, name))
     return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
