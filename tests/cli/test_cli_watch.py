@@ -349,28 +349,12 @@ def test_what_was_compiled_is_let_go(saves, pauses, tmp_path, monkeypatch):
     assert gc.collect() < 50
 
 
-def test_what_the_cache_knew_is_compiled_while_nothing_is_saved(tmp_path, monkeypatch):
-    """So the first edit is compiled as fast as the next ones: what it cannot change is known."""
-    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
-    path = tmp_path / "cell.sysml"
-    path.write_text("package P { part def Cell; }")
-    Watch((path,), tmp_path / "out", Settings(), 0).build()
-    compiled = []
-    monkeypatch.setattr(session, "_compile", spied(session._compile, compiled))
-    watched = Watch((path,), tmp_path / "out", Settings(), 0)
-    watched.build()
-    assert compiled == []
-    watched.rest()
-    watched.rest()
-    assert compiled == [(path,)]
-
-
 def test_what_is_saved_during_the_first_compilation_is_not_lost(tmp_path, monkeypatch):
     """What a folder holds is not known before it was read: nobody looked at the files then."""
     path, more = tmp_path / "a.sysml", tmp_path / "b.sysml"
     path.write_text("package A;")
     saves = {path: "package Edited;", more: "package More;"}
-    real = session.unkept
+    real = session.compute_outcome
 
     def saving(*args):
         made = real(*args)
@@ -379,7 +363,7 @@ def test_what_is_saved_during_the_first_compilation_is_not_lost(tmp_path, monkey
             path.write_text(text)
         return made
 
-    monkeypatch.setattr(session, "unkept", saving)
+    monkeypatch.setattr(session, "compute_outcome", saving)
     settings = Settings(emit=("graph",), has_cache=False)
     Watch((tmp_path,), tmp_path / "out", settings, 0).build()
     written = (tmp_path / "out" / "graph.json").read_text()

@@ -11,7 +11,6 @@ import pytest
 from plants import baygate
 
 from sysmlc.backends.sysml.document import document
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.sysml import FRONTEND
@@ -44,24 +43,23 @@ def text_of(graph):
     return document(graph, Sink())[0]
 
 
-def read(front, text):
+def read(text):
     graph = Graph()
-    front.read([Source("model.sysml", text.encode())], graph, Sink(), Coverage())
+    FRONTEND.read([Source("model.sysml", text.encode())], graph, Sink(), Coverage())
     pipeline.pipeline(PASSES).run(graph, Sink())
     return graph
 
 
-def differences(front, files):
+def differences(files):
     """What is another in the text of the text of a model."""
     gc.unfreeze()
     made = compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
-    once = read(front, text_of(made.graph))
-    again = read(front, text_of(once))
+    once = read(text_of(made.graph))
+    again = read(text_of(once))
     return [str(one) for one in compare(once, again, ("id",))]
 
 
-def test_text_that_is_read_and_written_again_is_the_same_model(corpus, tmp_path):
-    front = FRONTEND.with_cache(Cache(tmp_path))
-    found = {name: differences(front, files) for name, files in units(corpus).items()}
+def test_text_that_is_read_and_written_again_is_the_same_model(corpus):
+    found = {name: differences(files) for name, files in units(corpus).items()}
     assert len(found) == 64
     assert {name: told for name, told in found.items() if told} == {}

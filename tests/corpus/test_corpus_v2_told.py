@@ -13,7 +13,6 @@ from told_losses import untold
 
 from sysmlc.backends.sysml.document import written
 from sysmlc.backends.sysml.printing import printed
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.sysml import FRONTEND
@@ -77,34 +76,32 @@ def made(files):
     return compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
 
 
-def test_every_difference_is_told_as_a_loss_of_its_element(corpus, tmp_path):
-    front = FRONTEND.with_cache(Cache(tmp_path))
+def test_every_difference_is_told_as_a_loss_of_its_element(corpus):
     found = {}
     for name, files in units(corpus).items():
         graph = made(files).graph
         book, lines = written(graph)
-        changes = compare(graph, read(front, printed(lines)), ("id",))
+        changes = compare(graph, read(printed(lines)), ("id",))
         found[name] = len(untold(graph, book.losses.told, changes))
     assert {name: count for name, count in found.items() if count > NOT_TOLD.get(name, 0)} == {}
     assert sum(found.values()) == sum(NOT_TOLD.values())
 
 
-def rules_of(front, text):
+def rules_of(text):
     """Codes of errors and warnings about a text."""
     graph, sink = Graph(), Sink()
-    front.read([Source("model.sysml", text.encode())], graph, sink, Coverage())
+    FRONTEND.read([Source("model.sysml", text.encode())], graph, sink, Coverage())
     pipeline.pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, sink)
     return {one.rule.code for one in sink if one.severity is not Severity.INFO}
 
 
-def test_our_own_text_keeps_the_rules_of_sysml_v2(corpus, tmp_path):
+def test_our_own_text_keeps_the_rules_of_sysml_v2(corpus):
     """What the model itself is told of, by rules of SysML v1, is no fault of the text."""
-    front = FRONTEND.with_cache(Cache(tmp_path))
     found = {}
     for name, files in units(corpus).items():
         model = made(files)
         _, lines = written(model.graph)
-        codes = rules_of(front, printed(lines)) - {one.rule.code for one in model.diagnostics}
+        codes = rules_of(printed(lines)) - {one.rule.code for one in model.diagnostics}
         if codes:
             found[name] = codes
     assert found == {name: codes for name, (codes, _) in KNOWN_RULES.items()}

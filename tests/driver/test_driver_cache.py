@@ -11,7 +11,7 @@ from driver_fakes import FAULTY, PLANT
 from sysmlc import cache
 from sysmlc.cache import Cache
 from sysmlc.cli import group
-from sysmlc.driver import compilation, dependencies
+from sysmlc.driver import cache_key, compilation
 
 
 @pytest.fixture
@@ -20,8 +20,8 @@ def runs(monkeypatch, tmp_path):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
     happened = []
-    monkeypatch.setattr(dependencies, "_tool_files", lambda: [str(tmp_path / "tool.py")])
-    dependencies.tool_digest.cache_clear()
+    monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "tool")
+    cache_key.compute_tool_digest.cache_clear()
     real = compilation._Run.compilation
 
     def counted(run):
@@ -30,7 +30,7 @@ def runs(monkeypatch, tmp_path):
 
     monkeypatch.setattr(compilation._Run, "compilation", counted)
     yield happened
-    dependencies.tool_digest.cache_clear()
+    cache_key.compute_tool_digest.cache_clear()
 
 
 def sysmlc(*arguments):
@@ -62,18 +62,32 @@ def test_a_changed_file_is_compiled_again(runs):
 
 def test_another_tool_compiles_again(runs):
     Path("plant.ir").write_text(PLANT)
+    Path("tool").mkdir()
+    Path("tool/pass.py").write_text("first")
     sysmlc("plant.ir")
-    Path("tool.py").write_text("a correction")
-    dependencies.tool_digest.cache_clear()  # what another process does
+    Path("tool/pass.py").write_text("a correction")
+    cache_key.compute_tool_digest.cache_clear()  # as another process does
     sysmlc("plant.ir")
     assert len(runs) == 2
 
 
-def test_the_tool_is_all_that_is_shipped_and_what_plug_ins_bring():
-    files = [Path(path) for path in dependencies._tool_files()]
-    names = {path.name for path in files}
-    assert {"graph.py", "ir.ecore", "expression.lark", "act.puml.j2"} <= names
-    assert all(path.is_file() for path in files)
+def test_the_digest_of_an_installed_tool_is_that_of_its_record(tmp_path, monkeypatch):
+    """Times of files differ between installations of the same wheel, as in CI."""
+    monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "sysmlc")
+    record = tmp_path / "sysmlc-1.0.dist-info" / "RECORD"
+    record.parent.mkdir()
+    record.write_text("sysmlc/graph.py,sha256=one,1")
+    first = list(cache_key._digest_own_files())
+    os.utime(record, (1, 1))
+    assert list(cache_key._digest_own_files()) == first
+    record.write_text("sysmlc/graph.py,sha256=two,1")
+    assert list(cache_key._digest_own_files()) != first
+
+
+def test_the_digest_of_a_checkout_covers_all_files():
+    digested = " ".join(cache_key._digest_own_files())
+    for name in ("graph.py", "ir.ecore", "expression.lark", "act.puml.j2"):
+        assert f"{name} " in digested
 
 
 def test_files_that_are_gone_are_written_again_from_the_cache(runs):
@@ -149,54 +163,6 @@ def test_a_cache_that_cannot_be_written_costs_time_only(runs, tmp_path, monkeypa
     assert sysmlc("plant.ir")[0] == 0
     assert sysmlc("plant.ir")[0] == 0
     assert len(runs) == 2
-
-
-@pytest.fixture
-def watched(monkeypatch):
-    """``sysmlc watch`` of a model that is built, saved once and built again."""
-    import watchfiles
-
-    def saves(*_folders, **_options):
-        Path("plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-        yield {(1, "plant.ir")}
-
-    monkeypatch.setattr(watchfiles, "watch", saves)
-    Path("plant.ir").write_text(PLANT)
-    return lambda: sysmlc("watch", "plant.ir")
-
-
-def test_what_is_watched_is_written_before_it_is_kept_and_then_found(runs, watched, monkeypatch):
-    put, seen = Cache.put, []
-
-    def noted(store, *parts):
-        seen.append("Arm" in Path("out/trace.json").read_text())
-        put(store, *parts)
-
-    monkeypatch.setattr(Cache, "put", noted)
-    assert watched()[0] == 0
-    assert not seen[0]
-    assert seen[-1]
-    sysmlc("plant.ir")
-    assert len(runs) == 2
-
-
-@pytest.mark.parametrize("at", ["open", "replace"])
-def test_an_entry_that_is_interrupted_leaves_nothing(runs, watched, tmp_path, monkeypatch, at):
-    real = getattr(os, at)
-
-    def interrupted(path, *others):
-        if ".entry." in str(path):
-            raise KeyboardInterrupt
-        return real(path, *others)
-
-    monkeypatch.setattr(os, at, interrupted)
-    assert watched()[0] == 130
-    assert "Robot" in Path("out/trace.json").read_text()
-    assert not [path for path in (tmp_path / "cache").rglob("*") if path.is_file()]
-    monkeypatch.undo()
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
-    assert sysmlc("plant.ir", "--check")[0] == 0
 
 
 def test_a_missing_file_is_reported_every_time(runs):

@@ -66,8 +66,6 @@ def uml_modules(tmp_path_factory):
 NOT_IN_A_RUN_OF_SYSML = [
     "sysmlc.backends.plantuml.uc_relations",
     "sysmlc.driver.drawings",
-    "sysmlc.driver.restating",
-    "sysmlc.driver.restoring",
     "sysmlc.frontends.sysml.interactions",
     "sysmlc.frontends.sysml.requirements",
     "sysmlc.frontends.sysml.usecases",
@@ -101,16 +99,6 @@ def test_a_model_with_them_brings_them(tmp_path):
     model.write_text(LAMP.replace("part", "requirement def Lit; use case def Read; part", 1))
     found = imported(model, tmp_path / "out")
     assert {"sysmlc.frontends.sysml.requirements", "sysmlc.frontends.sysml.usecases"} <= found
-
-
-def test_settings_that_were_right_before_are_not_parsed(tmp_path, monkeypatch):
-    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
-    (tmp_path / "sysmlc.toml").write_text('output = "made"\n')
-    model = tmp_path / "lamp.sysml"
-    model.write_text(LAMP, encoding="utf-8")
-    first, then = (imported(model, tmp_path / "out") for _ in range(2))
-    assert {"tomllib", "jsonschema"} <= first
-    assert then.isdisjoint({"tomllib", "jsonschema"})
 
 
 def test_a_plant_with_an_overlay_brings_both_readers(tmp_path):

@@ -4,9 +4,11 @@ import shutil
 from pathlib import Path
 
 import pytest
-from edited_units import files, sysmlc
+from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
+from sysmlc.cli import group
 
 CELLS = {
     "cells.sysml": """\
@@ -89,5 +91,7 @@ def _compiled(named, texts):
     for name in named:
         Path("unit", name).write_text(texts[name])
     paths = [f"unit/{name}" for name in named]
-    said = sysmlc(*paths, "-o", "out", "--emit", "+ir", "--no-cache", "--format", "json")
-    return files("out"), said
+    options = ["-o", "out", "--emit", "+ir", "--no-cache", "--format", "json"]
+    result = CliRunner().invoke(group.sysmlc, [*paths, *options])
+    files = {file.as_posix(): file.read_text() for file in Path("out").rglob("*.*")}
+    return files, (result.exit_code, result.stdout, result.stderr)

@@ -171,13 +171,7 @@ def _warm_up() -> None:
 
 
 def _keep_library() -> None:
-    """Keep what is the same for all models of SysML v2: parse tables, the library's files.
-
-    Commands have no cache, so that models are read; the library is known, as in any second run.
-    Nothing of it is resolved here: its names may mean something else beside another model.
-    """
-    from sysmlc.backends.sysmlx import backend
-    from sysmlc.cache import Cache
+    """Parse what is the same for all models of SysML v2: parse tables, the library's files."""
     from sysmlc.driver import Request, compile_model
     from sysmlc.language import library
 
@@ -186,16 +180,8 @@ def _keep_library() -> None:
             model = Path(folder, f"m.{language}")
             model.write_text("package P { private import ScalarValues::*; }")
             compile_model(Request((model,)))
-        for _ in range(2):
-            found = library.find(cache=Cache(Path(folder)))
-            documents = {path: found.document(path) for path in found.paths()}
-    found.roots("no such name")
+    library.find().names()
     library._read = cache(library._read)
-    read, index = library.read, found._index
-    library.read = lambda source, path, *more: documents.get(path) or read(source, path, *more)
-    library.Library._indexed = lambda _: index
-    backend._library.cache_clear()
-    backend._files.cache_clear()
 
 
 _MODEL = """<?xml version="1.0" encoding="UTF-8"?>

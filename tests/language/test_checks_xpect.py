@@ -14,7 +14,6 @@ from sysmlc.diagnostics import Severity, Sink, catalogue
 from sysmlc.language.checks import check
 from sysmlc.language.library import Library, find
 from sysmlc.language.names import resolve
-from sysmlc.language.stored import read
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
 
@@ -52,7 +51,13 @@ def test_no_real_model_breaks_a_constraint(folder):
     root = _FOLDER / folder
     paths = [path for path in sorted(root.rglob("*")) if path.suffix in (".sysml", ".kerml")]
     documents = [
-        read(Source(path.name, path.read_bytes()), path.name, path.suffix[1:], Sink(), None)
+        parse(
+            path.read_text("utf-8-sig"),
+            path.name,
+            path.suffix[1:],
+            Sink(),
+            Source(path.name, path.read_bytes()),
+        )
         for path in paths
     ]
     sink = Sink()

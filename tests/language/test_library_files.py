@@ -1,4 +1,4 @@
-"""Where the library is found, that it is read lazily, and what the cache keeps of it."""
+"""Where the library is found, that it is read lazily, and what a process reuses of it."""
 
 import importlib.metadata
 import sys
@@ -6,11 +6,9 @@ import zipfile
 
 import pytest
 
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library, core, find
 from sysmlc.language.names import resolve
-from sysmlc.language.stored import StoredNode, pack, unpack
 from sysmlc.language.text import parse
 from sysmlc.sources import Source, SourceError
 
@@ -135,56 +133,46 @@ def test_every_name_of_the_core_is_known_in_it():
     assert sum(1 for document in documents for _ in document.root.walk()) > 500
 
 
-def test_a_second_run_takes_trees_from_the_cache(folder, tmp_path, monkeypatch):
-    cache = Cache(tmp_path / "cache")
-    first = find(folder, cache=cache)
-    assert first.roots("Nobody") == []
-    monkeypatch.setattr("sysmlc.language.text.parse", None)
-    second = find(folder, cache=cache)
-    gate = second.roots("Doors")[0].members[0]
-    assert isinstance(gate, StoredNode)
-    assert (gate.kind, gate.name, gate.owner.name) == ("PartDefinition", "Gate", "Doors")
-    assert names(second.roots("Halls")) == [("Package", "Halls")]
-    assert second.roots("Nobody") == []
+def test_a_file_that_does_not_mention_a_name_is_not_parsed(folder):
+    (folder / "broken.sysml").write_text("package Roofs { part def Tile; }")
+    library = find(folder)
+    library.roots("Halls")
+    assert sorted(library._parsed) == ["deep/other.sysml"]
 
 
-def test_another_text_is_read_anew(folder, tmp_path):
-    cache = Cache(tmp_path / "cache")
-    find(folder, cache=cache).roots("Doors")
+@pytest.mark.parametrize("text", ["package 'Doors \\'n\\' gates';", "package 'A\\tB';"])
+def test_a_name_with_escapes_is_found(tmp_path, text):
+    (tmp_path / "any.sysml").write_text(text)
+    library = find(tmp_path)
+    (name,) = library.names()
+    assert [node.name for node in library.roots(name)] == [name]
+
+
+def test_a_second_model_of_a_process_uses_the_parsed_library(folder, monkeypatch):
+    first = find(folder)
+    first.roots("Doors")
+    monkeypatch.setattr("sysmlc.language.library.parse", None)
+    assert names(find(folder).roots("Doors")) == [("Package", "Doors")]
+
+
+def test_a_changed_library_file_is_parsed_again(folder):
+    find(folder).roots("Doors")
     (folder / "Doors.sysml").write_text("package Doors { part def Flap; }")
-    members = find(folder, cache=cache).roots("Doors")[0].members
+    members = find(folder).roots("Doors")[0].members
     assert [member.name for member in members] == ["Flap"]
 
 
-def described(node):
-    relations = [(r.kind, str(r.reference), r.reference.start) for r in node.relations]
-    own = [getattr(node, name) for name in ("kind", "name", "short", "membership", "role")]
-    return [*own, node.visibility, node.facts, relations, node.start, node.end, node.name_start]
+def test_a_package_of_one_model_is_not_seen_by_the_next_model(folder):
+    """The library's ``Halls`` is the model's own in the first model, and the library's again."""
+    (folder / "Doors.sysml").write_text("package Doors { part hall : Halls::Hall; }")
+    text = "package Cell { part p :> Doors::hall; }"
+    own = "package Halls { part def Hall { part lamp; } }"
+    first = resolve([parse(text + own, "a.sysml", "sysml", Sink())], find(folder), Sink())
+    assert [node.owner.owner.members[0].name for node in hall_types(first)] == ["Cell"]
+    second = resolve([parse(text, "a.sysml", "sysml", Sink())], find(folder), Sink())
+    assert [node.owner.members[0].name for node in hall_types(second)] == ["Hall"]
+    assert [len(node.members) for node in hall_types(second)] == [0]
 
 
-def test_a_stored_tree_is_the_tree():
-    text = """
-        package Doors {
-            private import ScalarValues::*;
-            abstract part def <G> Gate :> Door { attribute width : Real[1] = 2 * (3 + x.y); }
-            alias Flap for Gate;
-        }
-    """
-    root = parse(text, "a.sysml", "sysml", Sink()).root
-    again = unpack(pack(root))
-    assert [described(n) for n in again.walk()] == [described(n) for n in root.walk()]
-
-
-def test_damaged_entries_are_not_used():
-    assert unpack(b"") is None
-    assert unpack(b"no tree") is None
-    assert unpack(pack(parse("part a;", "a.sysml", "sysml", Sink()).root)[:-4]) is None
-
-
-def test_names_with_line_ends_and_tabs_are_kept_in_the_index(folder, tmp_path):
-    (folder / "odd.sysml").write_text(r"package 'Halls\nand\tdoors' { part def Both; }")
-    cache = Cache(tmp_path / "cache")
-    for _ in range(2):
-        library = find(folder, cache=cache)
-        assert names(library.roots("Halls\nand\tdoors")) == [("Package", "Halls\nand\tdoors")]
-        assert library.roots("Halls\nand") == []
+def hall_types(model):
+    return model.types(model.find("Doors::hall"))

@@ -11,7 +11,7 @@ from sysmlc.language.exchange import link
 from sysmlc.language.exchange import read as read_interchange
 from sysmlc.language.library import Library, find
 from sysmlc.language.names import Model, resolve
-from sysmlc.language.stored import read
+from sysmlc.language.text import parse
 from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
@@ -31,7 +31,10 @@ def documents(folder):
     paths = sorted(path for path in folder.rglob("*") if path.suffix in (".sysml", ".kerml"))
     names = [path.relative_to(folder).as_posix() for path in paths]
     sources = [Source(name, path.read_bytes()) for name, path in zip(names, paths, strict=True)]
-    return [read(s, s.name, Path(s.name).suffix[1:], Sink(), None) for s in sources]
+    return [
+        parse(s.data.decode("utf-8-sig"), s.name, Path(s.name).suffix[1:], Sink(), s)
+        for s in sources
+    ]
 
 
 def unresolved(folder, beside):

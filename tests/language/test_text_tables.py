@@ -58,13 +58,17 @@ def test_shipped_tables_of_another_grammar_are_not_taken(tmp_path, monkeypatch):
     assert tables._shipped("sysml") is None
 
 
-def test_without_shipped_tables_the_cache_keeps_them(tmp_path, monkeypatch):
-    monkeypatch.setattr(tables, "SHIPPED", tmp_path / "nowhere")
-    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
-    made = tables._kept("kerml")
-    (entry,) = (tmp_path / "cache").glob("*/*.entry")
-    assert made in entry.read_bytes()
-    assert tables._kept("kerml") == made
+def test_missing_tables_are_generated_beside_the_code(tmp_path, monkeypatch):
+    monkeypatch.setattr(tables, "SHIPPED", tmp_path / "generated")
+    generated = tables._generate("kerml")
+    assert tables._shipped("kerml") == generated
+
+
+def test_tables_are_generated_in_a_read_only_package(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(tables, "SHIPPED", tmp_path / "file" / "generated")
+    assert tables._generate("kerml")
+    assert tables._shipped("kerml") is None
 
 
 def test_a_process_that_has_tables_does_not_import_lark(tmp_path):

@@ -1,9 +1,5 @@
 """Reads small texts of SysML v2 for the tests of the front end."""
 
-import tempfile
-from pathlib import Path
-
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
@@ -11,9 +7,6 @@ from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
-_FOLDER = tempfile.TemporaryDirectory(prefix="sysmlc-v2-")
-FRONT = FRONTEND.with_cache(Cache(Path(_FOLDER.name)))
-"""The front end with a cache of its own: the standard library is parsed once in a run."""
 PASSES = ("resolve", "inherit", "classify", "ports")
 
 
@@ -24,7 +17,7 @@ class Reading:
         self.graph, self.sink, self.coverage = Graph(), Sink(), Coverage()
         named = zip([*names, *(f"m{n}.sysml" for n in range(9))], texts, strict=False)
         sources = [Source(name, text.encode()) for name, text in named]
-        FRONT.read(sources, self.graph, self.sink, self.coverage)
+        FRONTEND.read(sources, self.graph, self.sink, self.coverage)
         assert verify(self.graph) == []
         pipeline.pipeline(passes).run(self.graph, self.sink, verify_each=True)
 

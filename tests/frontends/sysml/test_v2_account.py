@@ -1,9 +1,10 @@
 """What is lost of a text is told and listed, and what follows from an unknown name is not told."""
 
 import pytest
-from reading_v2 import FRONT, PASSES, read
+from reading_v2 import PASSES, read
 
 from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Edge, Graph
 from sysmlc.sources import Source
 
@@ -23,7 +24,7 @@ def told(text):
 def listed(text):
     """What the report lists: type, verdict, elements, reason."""
     coverage = Coverage(is_detailed=True)
-    FRONT.read([Source("m.sysml", text.encode())], Graph(), Sink(), coverage)
+    FRONTEND.read([Source("m.sysml", text.encode())], Graph(), Sink(), coverage)
     (file,) = coverage.files()
     lost = [(one.type, str(one.verdict), one.elements, one.reason) for one in file.losses]
     unmapped = file.elements - file.totals()["mapped"]

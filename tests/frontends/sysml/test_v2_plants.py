@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import pytest
-from reading_v2 import FRONT
 
 from examples.compiling import compile_example, compile_text, outputs
 from sysmlc.backends.sysml.document import document
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
+from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
 from sysmlc.ir.measures import quantity_kind_of, unit_of
@@ -58,7 +58,7 @@ def plant(data, name="plant.aml"):
 def read_back(graph, sink=None):
     text, _ = document(graph, Sink())
     again, sink = Graph(), Sink() if sink is None else sink
-    FRONT.read([Source("model.sysml", text.encode())], again, sink, Coverage())
+    FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
     pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
     return again
 

@@ -6,13 +6,13 @@ What the text cannot say is not compared: the losses SM730 to SM737 of docs/writ
 from random import Random
 
 import pytest
-from reading_v2 import FRONT
 
 from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, PLANT, compile_example
 from sysmlc.backends.sysml.document import document
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
@@ -81,7 +81,7 @@ def read_back(graph):
     """The graph of the text of a graph, and what was found in the text."""
     text, _ = document(graph, Sink())
     again, sink = Graph(), Sink()
-    FRONT.read([Source("model.sysml", text.encode())], again, sink, Coverage())
+    FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
     pipeline.pipeline(PASSES).run(again, sink, verify_each=True)
     return again, sink
 

@@ -1,8 +1,9 @@
 """What rules for models in SysML v1 say of valid text in SysML v2, and contracts of its names."""
 
-from reading_v2 import FRONT, read
+from reading_v2 import read
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, catalogue
+from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.sysml.settled import SEVERITIES
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain
@@ -34,7 +35,7 @@ def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
 
 def test_the_project_has_the_last_word():
     graph, sink = Graph(), Sink({"SM214": Severity.WARNING})
-    FRONT.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())
+    FRONTEND.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())
     pipeline.pipeline(("resolve", "inherit", "classify")).run(graph, sink)
     assert [one.rule.code for one in sink] == ["SM214"]
 
