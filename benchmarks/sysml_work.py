@@ -51,8 +51,7 @@ def parse(folder: Path, *_arguments: str) -> tuple[Measured, int]:
 
 
 def resolve(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """Text to a tree whose names lead to elements, the library found and indexed before."""
-    from sysmlc import cache
+    """Text to a tree whose names lead to elements."""
     from sysmlc.diagnostics import Sink
     from sysmlc.language.library import find
     from sysmlc.language.names import resolve as names
@@ -62,7 +61,7 @@ def resolve(folder: Path, *_arguments: str) -> tuple[Measured, int]:
     measured = Measured()
     documents = [tree(text, name, language, sink) for text, name, language in texts]
     measured.lap("parse")
-    names(documents, find(cache=cache.default()), sink)
+    names(documents, find(), sink)
     measured.lap("resolve")
     return measured, sum(len(text.encode()) for text, _, _ in texts)
 

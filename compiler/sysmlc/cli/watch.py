@@ -44,7 +44,6 @@ Example:
 @options.templates
 @options.reporting
 @options.reading
-@options.caching
 def command(
     models: tuple[Path, ...],
     output: Path | None,
