@@ -228,7 +228,7 @@ def test_a_token_with_another_value_than_those_on_the_branches_ends_at_the_decis
         'guard="1" guard_literal=true', 'guard="2" guard_literal=true', attrs='decision_input="b"'
     )
     assert found == ["SM476"]
-    assert graph.inputs[-1].domain.literals == ("1", "2", "other")
+    assert graph.inputs[-1].domain.literals == ("_1", "_2", "other")
     *_, rest = graph.outgoing(graph.node("d"))
     assert (rest.guard.text, graph.node(rest.target).kind) == ("else", "sink")
     assert graph.node("d").exhaustive
@@ -240,6 +240,15 @@ def test_a_text_or_a_literal_of_an_enumeration_is_compared_like_a_number():
     )
     assert found == []
     assert graph.inputs[-1].domain.literals == ("red", "other")
+
+
+def test_values_on_branches_become_identifiers_that_differ():
+    graph, _ = decision(
+        'guard="other" guard_literal=true',
+        'guard="no gap" guard_literal=true',
+        attrs='decision_input="b"',
+    )
+    assert graph.inputs[-1].domain.literals == ("other_2", "no_gap", "other")
 
 
 def test_the_literal_true_that_tools_write_on_control_flows_opens_every_branch():

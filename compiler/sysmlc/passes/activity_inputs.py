@@ -1,13 +1,13 @@
 """Inputs of a token graph: the variables that guards, decisions and events read."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.names import Names, identifier
+from sysmlc.logic.names import Names, identifier, unique
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_expressions import Scope, UnreadableError
 
@@ -66,12 +66,16 @@ class Inputs:
         return f.var(name)
 
     def answer(self, wanted: str, literals: Iterable[str], origin: Element) -> "Answer":
-        """The value that a decision compares with the literals on its branches."""
-        found = list(dict.fromkeys(literals))
-        if set(found) <= {"true", "false"}:
-            return Answer(f.var(self._declare(wanted, BooleanDomain(), origin)), True)
-        domain = EnumerationDomain((*found, OTHER))
-        return Answer(f.var(self._declare(wanted, domain, origin)), False)
+        """Declare the input that a decision compares with the literals on its branches.
+
+        A literal can be any text, such as ``0``. Formulas know it by an identifier.
+        """
+        texts = list(dict.fromkeys(literals))
+        if set(texts) <= {"true", "false"}:
+            return Answer(f.var(self._declare(wanted, BooleanDomain(), origin)), None)
+        other, *values = unique([OTHER, *texts], "value")
+        variable = f.var(self._declare(wanted, EnumerationDomain((*values, other)), origin))
+        return Answer(variable, dict(zip(texts, values, strict=True)))
 
     def _declare(self, wanted: str, domain: Domain, origin: Element) -> str:
         name = self.names.new(wanted)
@@ -80,21 +84,21 @@ class Inputs:
 
 
 class Answer:
-    """The input of a decision."""
+    """The input of a decision; without names of its values it is Boolean."""
 
-    def __init__(self, variable: Formula, is_boolean: bool) -> None:
+    def __init__(self, variable: Formula, value_names: Mapping[str, str] | None) -> None:
         self._variable = variable
-        self._is_boolean = is_boolean
+        self._value_names = value_names
 
     def equals(self, literal: str) -> Formula:
-        """The input is the literal."""
-        if self._is_boolean:
+        """Return the condition that the input equals the literal."""
+        if self._value_names is None:
             return self._variable if literal == "true" else f.negate(self._variable)
-        return f.eq(self._variable, f.const(literal))
+        return f.eq(self._variable, f.const(self._value_names[literal]))
 
     def is_covered(self, literals: list[str]) -> bool:
-        """Whether the input is always one of the literals."""
-        return self._is_boolean and {"true", "false"} <= set(literals)
+        """Tell whether the input always equals one of the literals."""
+        return self._value_names is None and {"true", "false"} <= set(literals)
 
 
 def events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
