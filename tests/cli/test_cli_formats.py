@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from jsonschema import Draft202012Validator
 
+from json_documents import SARIF
 from sysmlc import resources
 from sysmlc.cli.session import has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
@@ -104,6 +105,7 @@ def test_json_follows_its_schema():
     Draft202012Validator.check_schema(schema)
     assert list(Draft202012Validator(schema).iter_errors(content)) == []
     assert content == {
+        "format": "sysmlc-diagnostics/2",
         "diagnostics": [
             {
                 "file": "plant.uml",
@@ -121,84 +123,6 @@ def test_json_follows_its_schema():
         ],
         "summary": {"errors": 1, "warnings": 0, "infos": 0, "files": 1},
     }
-
-
-SARIF = {
-    "type": "object",
-    "required": ["$schema", "version", "runs"],
-    "properties": {
-        "version": {"const": "2.1.0"},
-        "runs": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "required": ["tool", "results"],
-                "properties": {
-                    "tool": {
-                        "type": "object",
-                        "required": ["driver"],
-                        "properties": {
-                            "driver": {
-                                "type": "object",
-                                "required": ["name", "rules"],
-                                "properties": {
-                                    "rules": {
-                                        "items": {
-                                            "required": ["id"],
-                                            "properties": {
-                                                "shortDescription": {"required": ["text"]}
-                                            },
-                                        }
-                                    }
-                                },
-                            }
-                        },
-                    },
-                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-                    "results": {
-                        "type": "array",
-                        "items": {
-                            "type": "object",
-                            "required": ["ruleId", "level", "message", "partialFingerprints"],
-                            "properties": {
-                                "level": {"enum": ["none", "note", "warning", "error"]},
-                                "ruleIndex": {"type": "integer", "minimum": 0},
-                                "message": {"required": ["text"]},
-                                "locations": {
-                                    "type": "array",
-                                    "items": {
-                                        "properties": {
-                                            "physicalLocation": {
-                                                "required": ["artifactLocation"],
-                                                "properties": {
-                                                    "artifactLocation": {
-                                                        "properties": {
-                                                            "uri": {
-                                                                "type": "string",
-                                                                "pattern": "^[^/:\\\\ ][^:\\\\ ]*$",
-                                                            }
-                                                        }
-                                                    },
-                                                    "region": {
-                                                        "properties": {
-                                                            "startLine": {"minimum": 1},
-                                                            "startColumn": {"minimum": 1},
-                                                        }
-                                                    },
-                                                },
-                                            }
-                                        }
-                                    },
-                                },
-                            },
-                        },
-                    },
-                },
-            },
-        },
-    },
-}
 
 
 def test_sarif_has_the_shape_that_scanning_services_read():

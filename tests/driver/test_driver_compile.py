@@ -157,7 +157,7 @@ def test_a_folder_without_a_model_is_an_error(tmp_path):
 def test_our_own_outputs_in_a_folder_are_no_inputs(tmp_path, plant):
     out = tmp_path / "out"
     out.mkdir()
-    (out / "manifest.json").write_text('{\n "schema": "sysmlc-manifest/1"}')
+    (out / "manifest.json").write_text('{\n "format": "sysmlc-manifest/2"}')
     (out / "graph.ir").write_text(PLANT)
     assert [file.path for file in compiled(tmp_path).inputs] == ["plant.ir"]
 

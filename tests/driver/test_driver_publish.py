@@ -112,12 +112,23 @@ def test_what_was_kept_is_removed_when_the_model_can_be_read_again(tmp_path):
     assert "outlines/Robot.txt" not in files(tmp_path)
 
 
+def test_files_that_a_manifest_of_version_1_lists_are_removed(tmp_path):
+    publish(tmp_path)
+    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
+    del manifest["format"]
+    (tmp_path / "out/manifest.json").write_text(
+        json.dumps({"schema": "sysmlc-manifest/1", **manifest})
+    )
+    publish(tmp_path, PLANT.replace("Robot", "Arm"))
+    assert "outlines/Robot.txt" not in files(tmp_path)
+
+
 def test_a_manifest_that_names_files_elsewhere_is_not_believed(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "precious.txt").write_text("keep")
     listed = [{"path": "../precious.txt"}, {"path": str(tmp_path / "precious.txt")}, {}]
     for entry in listed:
-        manifest = {"schema": "sysmlc-manifest/1", "files": [entry], "withheld": [], "kept": []}
+        manifest = {"format": "sysmlc-manifest/2", "files": [entry], "withheld": [], "kept": []}
         (tmp_path / "out/manifest.json").write_text(json.dumps(manifest))
         publish(tmp_path)
         assert (tmp_path / "precious.txt").exists()

@@ -23,6 +23,7 @@ class GraphBackend:
         places = {element.id: Place(element.source, element.ordinal) for element in ordered}
         found = options.locate(place for place in places.values() if place.file)
         content = {
+            "format": "sysmlc-graph/2",
             "elements": [
                 _element(element, names[element.id], found.get(places[element.id]))
                 for element in ordered

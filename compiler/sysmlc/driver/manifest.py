@@ -21,7 +21,7 @@ def manifest_text(outcome: Outcome, kept: Iterable[str] = ()) -> str:
     """
     return encode_json(
         {
-            "schema": "sysmlc-manifest/1",
+            "format": "sysmlc-manifest/2",
             "sysmlc": __version__,
             "inputs": [
                 {"path": file.path, "sha256": file.sha256, "language": file.language}

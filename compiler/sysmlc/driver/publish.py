@@ -119,11 +119,12 @@ def _previous(folder: Path, made: Mapping[str, str]) -> list[str]:
     """What the manifest in the folder lists beside what is made, as far as it lies in there."""
     try:
         manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-        if not str(manifest["schema"]).startswith("sysmlc-manifest/"):
+        # Version 1 of the format has the member 'schema' in place of 'format'.
+        if not str(manifest.get("format", manifest.get("schema"))).startswith("sysmlc-manifest/"):
             return []
         entries = (*manifest["files"], *manifest["withheld"], *manifest["kept"])
         paths = {str(entry["path"]) for entry in entries}
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return []
     return sorted(filter(_inside(folder), paths - made.keys()))
 

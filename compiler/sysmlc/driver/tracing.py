@@ -15,7 +15,7 @@ TRACE = "trace.json"
 
 def coverage_text(compilation: Compilation) -> str:
     """Return the verdict on every element of the inputs."""
-    return encode_json({"schema": "sysmlc-coverage/1", **compilation.coverage.as_json()})
+    return encode_json({"format": "sysmlc-coverage/2", **compilation.coverage.as_json()})
 
 
 def trace_text(compilation: Compilation) -> str:
@@ -24,7 +24,7 @@ def trace_text(compilation: Compilation) -> str:
     ids = dict.fromkeys(chain.from_iterable(artefact.trace for artefact in artefacts))
     elements = filter(None, map(compilation.graph.get, ids))
     content = {
-        "schema": "sysmlc-trace/1",
+        "format": "sysmlc-trace/2",
         "outputs": [{"path": artefact.path, "elements": artefact.trace} for artefact in artefacts],
         "elements": _describe_elements(compilation, elements),
     }

@@ -154,7 +154,7 @@ def as_json(files: Sequence[FileReport]) -> str:
     total = added(file.totals for file in files)
     types = type_reports(files)
     content = {
-        "schema": "sysmlc-coverage/1",
+        "format": "sysmlc-coverage/2",
         "files": [_file(file) for file in files],
         "types": [{"type": one.name, **_counts(one.counts)} for one in types],
         "total": _counts(total),

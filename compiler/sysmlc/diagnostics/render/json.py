@@ -1,4 +1,4 @@
-"""Findings as one JSON document, after metamodels/sysmlc-diagnostics.schema.json."""
+"""Findings as one JSON document (metamodels/sysmlc-diagnostics.schema.json)."""
 
 import json
 
@@ -8,6 +8,7 @@ from sysmlc.diagnostics.render.report import Finding, Report
 def render(report: Report, *, color: bool = False) -> str:
     """The document, also when there is no finding."""
     content = {
+        "format": "sysmlc-diagnostics/2",
         "diagnostics": [_finding(finding) for finding in report.findings],
         "summary": report.summary(),
     }
