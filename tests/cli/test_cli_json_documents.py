@@ -1,0 +1,71 @@
+"""Every JSON document of the examples and of the commands follows its schema in metamodels/."""
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from json_documents import (
+    EXAMPLES,
+    ROOT,
+    SCHEMAS,
+    Document,
+    command_documents,
+    compile_documents,
+    find_violations,
+)
+from sysmlc.driver import registry
+
+MODELS = [folder for folder in sorted(EXAMPLES.iterdir()) if folder.name != "robots"]
+MODELS += sorted(EXAMPLES.glob("robots/hall.*"))
+FORMATS = {
+    schema["properties"]["format"]["const"]: name
+    for name, schema in SCHEMAS.items()
+    if "format" in schema.get("properties", {})
+}
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.name)
+def test_documents_of_an_example_follow_their_schemas(model, tmp_path):
+    documents = list(compile_documents(model, tmp_path / "out"))
+    assert {"sysmlc-manifest", "sysmlc-graph", "sarif"} <= {each.schema for each in documents}
+    assert [line for each in documents for line in find_violations(each)] == []
+
+
+def test_documents_of_other_commands_follow_their_schemas(tmp_path):
+    documents = list(command_documents(tmp_path))
+    assert {"gr1c-strategy", "sysmlc-machine", "sysmlc-controller", "sysmlc-diff"} <= {
+        each.schema for each in documents
+    }
+    assert [line for each in documents for line in find_violations(each)] == []
+
+
+def test_a_violation_names_the_document_and_the_place():
+    manifest = {"format": "sysmlc-manifest/2", "files": 1}
+    lines = find_violations(Document("manifest.json", "sysmlc-manifest", manifest))
+    assert "manifest.json: $.files: 1 is not of type 'array'" in lines
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_a_schema_is_a_schema_and_its_id_names_its_format(name):
+    schema = SCHEMAS[name]
+    Draft202012Validator.check_schema(schema)
+    assert schema["$id"].startswith(f"urn:sysmlc:{name.removeprefix('sysmlc-')}:")
+    if name in FORMATS.values():
+        assert f"{name}/{schema['$id'].rpartition(':')[2]}" in FORMATS
+
+
+def test_the_languages_of_inputs_are_those_of_the_front_ends():
+    languages = [frontend.name for frontend in registry.frontends()] + ["overlay", "diagrams"]
+    manifest, recipe = SCHEMAS["sysmlc-manifest"], SCHEMAS["sysmlc-recipe"]
+    for inputs in (manifest["properties"]["inputs"], recipe["properties"]["source"]):
+        assert inputs["items"]["properties"]["language"]["enum"] == languages
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_the_documentation_lists_every_schema_and_format(name):
+    (row,) = [
+        line
+        for line in (ROOT / "docs" / "outputs.md").read_text().splitlines()
+        if line.startswith("|") and f"metamodels/{name}.schema.json" in line
+    ]
+    formats = [f"`{format_id}`" for format_id, schema in FORMATS.items() if schema == name]
+    assert all(format_id in row for format_id in formats)

@@ -1,0 +1,99 @@
+"""Every JSON document of the corpus follows its schema, and every member of a schema is written."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from json_documents import (
+    EXAMPLES,
+    SCHEMAS,
+    Document,
+    command_documents,
+    compile_documents,
+    declared_properties,
+    find_violations,
+    written_properties,
+)
+from rich_recipe import rich_recipe
+from sysmlc.driver import full_catalogue
+from sysmlc.ir import parse_text
+
+pytestmark = [pytest.mark.corpus, pytest.mark.long]
+
+LARGEST = 2_500_000
+"""Size in bytes of the largest XMI and AutomationML files that are compiled."""
+ICE_LEVELS = """\
+[recipe.levels]
+task = "RecipePrimitives::Task"
+machine-service = "RecipePrimitives::MachineService"
+machine-function = "RecipePrimitives::MachineFunction"
+"""
+"""The ICE laboratory has recipes, but not the names of the profile."""
+READ_ONLY = {
+    "neutral-contract",
+    "sysmlc-config",
+    "sysmlc-libraries",
+    "sysmlc-overlay",
+    "sysmlc-scenario",
+}
+"""Schemas of files that sysmlc reads and does not write."""
+NEVER_WRITTEN = {
+    # A variable of a machine can have a material as its type, but none of the models has one.
+    "sysmlc-recipe#/valueType/material",
+}
+
+
+def find_models(corpus: Path) -> Iterator[Path]:
+    """Yield the examples and the models of the corpus, folders of SysML v2 text as one unit."""
+    yield from (path for path in sorted(EXAMPLES.iterdir()) if path.name != "robots")
+    yield from sorted(EXAMPLES.glob("robots/hall.*"))
+    for folder in ("xmi/papyrus", "xmi/magicdraw", "xmi/ea", "xmi/omg", "aml/dev"):
+        for path in sorted((corpus / folder).iterdir()):
+            is_model = path.suffix not in (".md", ".txt", ".di", ".notation")
+            if path.is_file() and is_model and path.stat().st_size < LARGEST:
+                yield path
+    text = corpus / "sysml2"
+    yield from (text / "omg-release" / "training", text / "omg-release" / "examples")
+    yield from (path for path in sorted((text / "showcase").iterdir()) if path.is_dir())
+
+
+def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
+    """Yield the documents of all models, of all commands, and of the models that explain rules."""
+    for number, model in enumerate(find_models(corpus)):
+        yield from compile_documents(model, folder / str(number))
+    config = folder / "ice.toml"
+    config.write_text(ICE_LEVELS)
+    laboratory = corpus / "sysml2" / "ice-lab"
+    yield from compile_documents(laboratory, folder / "ice", "--config", config)
+    (folder / "commands").mkdir()
+    yield from command_documents(folder / "commands")
+    texts = [rich_recipe()]
+    texts += [text for rule in full_catalogue().values() for text in (rule.wrong, rule.right)]
+    # The rules about comments with JSON show comments that somebody damaged.
+    graphs = [text for text in texts if _is_graph(text) and "sysmlc-kept" not in text]
+    for number, text in enumerate(graphs):
+        model = folder / f"rule{number}.ir"
+        model.write_text(text)
+        yield from compile_documents(model, folder / f"rule{number}")
+
+
+def _is_graph(text: str) -> bool:
+    try:
+        return len(parse_text(text)) > 0
+    except ValueError:
+        return False
+
+
+def test_documents_follow_their_schemas_and_write_every_member(corpus, tmp_path):
+    """One test for both: the documents take some minutes."""
+    violations: list[str] = []
+    written: set[str] = set()
+    for document in find_documents(corpus, tmp_path):
+        violations += find_violations(document)
+        if not violations:
+            written |= written_properties(document)
+    assert violations == []
+    declared = {member for name in SCHEMAS for member in declared_properties(name)}
+    ours = {member for member in declared if member.partition("#")[0] not in READ_ONLY}
+    assert ours - written == NEVER_WRITTEN

@@ -1,0 +1,57 @@
+"""A recipe that has every member of sysmlc-recipe which the examples do not have."""
+
+from sysmlc.recipe import samples
+
+_PROFILE = 'namespace="urn:sysmlc:profile:1"'
+_WAIT = """\
+    Action w "wait" subkind="accept"
+      Trigger w.t subkind="change" condition="n > 0"
+      Pin w.ok "ok" direction="out"
+        -> typed-by Boolean
+    Action paint "paint" subkind="call-behavior"
+      -> calls place
+      Pin paint.ok "ok" direction="in"
+        -> typed-by Boolean
+    ObjectFlow mount.flow
+      -> flow-source w.ok
+      -> flow-target paint.ok
+"""
+_STEPS = (*samples.STEPS[:-1], "m w", "paint e")
+_TAGS = {
+    '  Class robot "Robot" level="machine"\n': f"""\
+    Application robot.m stereotype="Machine" {_PROFILE} tag.plantElement="Cell/Robot 1"
+      -> subject robot
+""",
+    '  Class plate "Plate" level="material"\n': f"""\
+    Application plate.m stereotype="Material" {_PROFILE} tag.noWait="true"
+      -> subject plate
+""",
+    '  Activity r "Build" level="recipe"\n': f"""\
+    Application r.s stereotype="Recipe" {_PROFILE} tag.noWait="true"
+      -> subject r
+    Parameter r.count "count" direction="out"
+      -> typed-by Integer
+    Parameter r.blank "blank" direction="in"
+      -> typed-by plate
+    Parameter r.speed "speed" direction="in"
+      -> typed-by speed
+""",
+    '  Activity mount "Mount" level="task"\n': f"""\
+    Application mount.s stereotype="Task" {_PROFILE} tag.pre="n == 0" tag.post="ok" \
+tag.interruptible="true" tag.noWait="true"
+      -> subject mount
+""",
+}
+
+
+def rich_recipe() -> str:
+    """Return the model in IR text."""
+    text = samples.task(nodes=samples.NODES + _WAIT, steps=_STEPS)
+    for line, more in _TAGS.items():
+        assert line in text
+        text = text.replace(line, line + more)
+    text = text.replace('tag.acquire="gripper"', 'tag.acquire="gripper" tag.interruptible="true"')
+    text += '  DataType speed "Speed"\n'
+    text += '    Application speed.v stereotype="ValueType" namespace="urn:sysml" tag.unit="mm/s"\n'
+    text += "      -> subject speed\n"
+    return text.replace('tag.method="ns=2;s=Grip"', 'tag.method="ns=2;s=Grip" tag.doneWhen="ok"')
