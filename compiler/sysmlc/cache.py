@@ -1,14 +1,18 @@
-"""The cache folder: what earlier runs found, by a digest of everything that it depends on.
+"""The cache: results of earlier runs in a private folder of the user.
 
-Nothing in it is needed: an entry that is missing, damaged or cannot be written costs time only.
+An entry is found by a key, the digest of everything that its content depends on. A missing,
+damaged or misplaced entry costs time only. Because an entry decides what a run reports, nobody else
+may be able to write one: the folder belongs to the user, is closed to others, and lies outside the
+project, whose files a stranger may have written.
 """
 
+import hashlib
 import os
-import zlib
-from _thread import get_ident
-from collections.abc import Iterator
+import stat
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
+from secrets import token_hex
 
 from sysmlc.values import dataclass
 
@@ -17,100 +21,148 @@ VARIABLE = "SYSMLC_CACHE"
 
 _LIMIT = 512 * 2**20
 _SUFFIX = ".entry"
-_SUM = 4
-"""Bytes of the check sum before an entry."""
+_FOLDER_MODE = 0o700
+_FILE_MODE = 0o600
+_WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+_DIGEST_BYTES = hashlib.sha256().digest_size
 
 _TALLY = "tally"
-"""File with a byte for each ``limit / 8192`` bytes that were put since the last look at sizes."""
+"""File with a byte for each ``limit / 8192`` bytes stored since entries were last evicted."""
 _ROUND = 128
-"""So many bytes of it, and entries are looked through: at 1/64 of the limit."""
+"""Entries are evicted when the tally has so many bytes: at 1/64 of the limit."""
+
+
+class CacheError(Exception):
+    """The folder must not be used as a cache; the message says why and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cache:
-    """Entries of bytes in a folder; the ones not used for longest go when it exceeds ``limit``.
-
-    ``limit`` counts bytes on disk.
-    """
+    """Entries of bytes in a folder; the least recently used are evicted above ``limit`` bytes."""
 
     folder: Path
     limit: int = _LIMIT
 
     def get(self, key: str) -> bytes | None:
-        """The entry, or None when there is none that is whole."""
+        """Return the content stored under *key*, or None if there is no intact entry."""
         path = self._path(key)
         try:
-            with path.open("rb", buffering=0) as stream:
-                known, content = stream.read(_SUM), stream.readall()
+            data = path.read_bytes()
             os.utime(path)
         except OSError:
             return None
-        return content if content and known == _check_sum(content) else None
+        digest, content = data[:_DIGEST_BYTES], data[_DIGEST_BYTES:]
+        return content if digest == _compute_digest(key, content) else None
 
-    def put(self, key: str, *parts: bytes | memoryview) -> None:
-        """Keep an entry, of parts; in one step, so that no other process sees half of it."""
+    def put(self, key: str, content: bytes) -> None:
+        """Store *content* under *key* in one step, so that no process sees half an entry."""
         path = self._path(key)
-        temporary = f"{path}.{os.getpid()}.{get_ident()}"
+        temporary = f"{path}.{token_hex(8)}"
         with suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
+            path.parent.mkdir(mode=_FOLDER_MODE, exist_ok=True)
             try:
-                with open(temporary, "wb", opener=_private) as stream:
-                    stream.writelines((_check_sum(*parts), *parts))
-                os.replace(temporary, path)  # noqa: PTH105 - hundreds of files at once
+                with open(temporary, "xb", opener=_open_private) as stream:
+                    stream.writelines((_compute_digest(key, content), content))
+                os.replace(temporary, path)  # noqa: PTH105 - the other name is a text
             except BaseException:
                 Path(temporary).unlink(missing_ok=True)
                 raise
-            self._count(sum(map(len, parts)))
+            self._count(len(content))
 
     def _count(self, size: int) -> None:
-        """Look through the entries, which takes its time, once after many were put."""
-        with (self.folder / _TALLY).open("ab") as tally:
+        """Note the size of a new entry; evict old ones once enough has been stored."""
+        with open(self.folder / _TALLY, "ab", opener=_open_private) as tally:
             tally.write(b"." * (1 + size * 64 * _ROUND // self.limit))
             if tally.tell() >= _ROUND:
                 tally.truncate(0)
-                self._prune()
+                self._evict()
 
     def _path(self, key: str) -> Path:
         return self.folder / key[:2] / f"{key}{_SUFFIX}"
 
-    def _prune(self) -> None:
+    def _evict(self) -> None:
         entries = sorted(self._entries())
         size = sum(entry[1] for entry in entries)
-        for _, of_entry, path in entries:
+        for _, entry_size, path in entries:
             if size <= self.limit:
                 return
             Path(path).unlink(missing_ok=True)
-            size -= of_entry
+            size -= entry_size
 
     def _entries(self) -> Iterator[tuple[int, int, str]]:
-        """When each entry was used last, its size, its path."""
+        """Yield the time of last use, the size and the path of each entry."""
         for folder in os.scandir(self.folder):
             for entry in os.scandir(folder) if folder.is_dir() else ():
                 if entry.name.endswith(_SUFFIX):
-                    stat = entry.stat()
-                    yield stat.st_mtime_ns, stat.st_size, entry.path
+                    status = entry.stat()
+                    yield status.st_mtime_ns, status.st_size, entry.path
 
 
-def _private(path: str, flags: int) -> int:
-    return os.open(path, flags, 0o600)
+def open_cache(project_roots: Iterable[Path]) -> Cache | None:
+    """Return the cache of this user, or None if it is switched off or cannot be created.
 
-
-def _check_sum(*parts: bytes | memoryview) -> bytes:
-    found = 0
-    for part in parts:
-        found = zlib.crc32(part, found)
-    return found.to_bytes(_SUM, "big")
-
-
-def default() -> Cache | None:
-    """The cache of this user, or None when it is switched off."""
+    Raises CacheError for a folder that others could have written to: one inside *project_roots*, a
+    symbolic link, or one that belongs to or is open to somebody else.
+    """
     chosen = os.environ.get(VARIABLE, "")
     if chosen.lower() == "off":
         return None
-    return Cache(Path(chosen) if chosen else _user_folder())
+    folder = Path(chosen).absolute() if chosen else _find_user_folder()
+    _check_location(folder, project_roots)
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):
+            folder.mkdir(mode=_FOLDER_MODE)
+        _check_owner(folder)
+    except OSError:
+        return None
+    return Cache(folder)
 
 
-def _user_folder() -> Path:
+def _check_location(folder: Path, project_roots: Iterable[Path]) -> None:
+    resolved = folder.resolve()
+    for root in project_roots:
+        if resolved.is_relative_to(root.resolve()) or folder.is_relative_to(root.absolute()):
+            raise CacheError(
+                f"the cache folder '{folder}' lies inside the project '{root}', whose files are "
+                f"not trusted; set {VARIABLE} to a folder elsewhere, or to 'off'"
+            )
+
+
+def _check_owner(folder: Path) -> None:
+    """Raise CacheError unless *folder* is a folder that only this user can write to."""
+    status = os.lstat(folder)
+    if stat.S_ISLNK(status.st_mode):
+        raise CacheError(
+            f"the cache folder '{folder}' is a symbolic link; set {VARIABLE} to the folder itself"
+        )
+    # Windows has neither: there the user's profile is private.
+    if not hasattr(os, "geteuid"):
+        return
+    if status.st_uid != os.geteuid():
+        raise CacheError(
+            f"the cache folder '{folder}' belongs to another user; set {VARIABLE} to a folder of "
+            "your own"
+        )
+    if status.st_mode & _WRITABLE_BY_OTHERS:
+        raise CacheError(
+            f"the cache folder '{folder}' is writable by other users; run 'chmod 700' on it after "
+            "deleting its content"
+        )
+
+
+def _open_private(path: str, flags: int) -> int:
+    return os.open(path, flags, _FILE_MODE)
+
+
+def _compute_digest(key: str, content: bytes) -> bytes:
+    """Return the digest of an entry; with its key, so that an entry is no other entry's."""
+    digest = hashlib.sha256(f"{len(key)}:{key}".encode())
+    digest.update(content)
+    return digest.digest()
+
+
+def _find_user_folder() -> Path:
     from platformdirs import user_cache_path
 
     return user_cache_path("sysmlc", appauthor=False)

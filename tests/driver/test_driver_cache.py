@@ -15,9 +15,15 @@ from sysmlc.driver import cache_key, compilation
 
 
 @pytest.fixture
-def runs(monkeypatch, tmp_path):
+def cache_folder(tmp_path_factory):
+    """A folder outside of the project."""
+    return tmp_path_factory.mktemp("user") / "cache"
+
+
+@pytest.fixture
+def runs(monkeypatch, tmp_path, cache_folder):
     """A cache of its own; the list of runs in which the passes really ran."""
-    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(cache.VARIABLE, str(cache_folder))
     monkeypatch.chdir(tmp_path)
     happened = []
     monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "tool")
@@ -144,11 +150,11 @@ def test_another_working_folder_sees_its_own_names_of_files(runs, monkeypatch):
 
 
 @pytest.mark.parametrize("damage", [b"", b"no zip", b"\x78\x9c", None])
-def test_a_damaged_cache_costs_time_only(runs, tmp_path, damage):
+def test_a_damaged_cache_costs_time_only(runs, cache_folder, damage):
     Path("plant.ir").write_text(PLANT)
     sysmlc("plant.ir")
     before = out_files(Path("out"))
-    for entry in (tmp_path / "cache").rglob("*.entry"):
+    for entry in cache_folder.rglob("*.entry"):
         whole = entry.read_bytes()
         entry.write_bytes(whole[:-3] + b"abc" if damage is None else damage)
     Path("out/trace.json").unlink()
@@ -156,9 +162,9 @@ def test_a_damaged_cache_costs_time_only(runs, tmp_path, damage):
     assert (out_files(Path("out")), len(runs)) == (before, 2)
 
 
-def test_a_cache_that_cannot_be_written_costs_time_only(runs, tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("no folder")
-    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
+def test_a_cache_that_cannot_be_written_costs_time_only(runs, cache_folder, monkeypatch):
+    cache_folder.write_text("no folder")
+    monkeypatch.setenv(cache.VARIABLE, str(cache_folder / "below"))
     Path("plant.ir").write_text(PLANT)
     assert sysmlc("plant.ir")[0] == 0
     assert sysmlc("plant.ir")[0] == 0

@@ -30,7 +30,7 @@ def nowhere(origin):
 
 @pytest.fixture
 def keeper(tmp_path):
-    return Keeper(Cache(tmp_path / "cache"), "this version")
+    return Keeper(Cache(tmp_path), "this version")
 
 
 def made(study, keeper, has_relations=True, options=None):
@@ -123,9 +123,10 @@ def test_a_damaged_entry_costs_time_only(keeper):
     made(FIRST, keeper, has_relations=False)
     key = keeper._key(FIRST)
     for data in (
-        b"no zip",
-        b"x\x9c\x03\x00\x00\x00\x00\x01",
-        b"x\x01\x01\x02\x00\xfd\xff{}\x01u\x00\xf9",
+        b"no JSON",
+        b"{}",
+        b"[{},[],[]]",
+        b'[{"inputs":[],"outputs":["nobody"]},[],[]]',
     ):
         keeper.cache.put(key, data)
         assert keeper.get(FIRST) is None

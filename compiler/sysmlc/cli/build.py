@@ -58,7 +58,7 @@ def command(
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
-    made = [session.outcome_of(unit, config, settings) for unit in units]
+    made = session.list_outcomes(units, config, settings)
     session.report(made, settings)
     code = session.exit_code(made, config, settings)
     for unit, outcome in zip(units, made, strict=True):

@@ -35,7 +35,7 @@ def command(
     settings = session.Settings(**given, uses_shipped_templates=True)
     config = session.load_config(models, settings)
     units = session.units(models, config, None, settings.emit)
-    made = [session.outcome_of(unit, config, settings, has_files=False) for unit in units]
+    made = session.list_outcomes(units, config, settings, has_files=False)
     session.report(made, settings)
     if settings.form == "text" and not any(outcome.findings for outcome in made):
         click.echo("no findings", err=True)

@@ -10,6 +10,7 @@ from sysmlc.cli import options, terminal
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sysmlc.config import Config
     from sysmlc.driver import Compilation
     from sysmlc.floors.keeping import Keeper
     from sysmlc.floors.outcome import Outcome
@@ -68,7 +69,8 @@ def command(
     progress = Progress(settings.verbose)
     chosen = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
     try:
-        ctx.exit(_studied(made, config.rules, settings, output, has_relations, chosen))
+        keeper = _open_keeper(models, config) if settings.has_cache else None
+        ctx.exit(_studied(made, config.rules, settings, output, has_relations, chosen, keeper))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
@@ -82,6 +84,7 @@ def _studied(
     output: Path | None,
     has_relations: bool,
     chosen: "Options",
+    keeper: "Keeper | None",
 ) -> int:
     from sysmlc.cli import session
     from sysmlc.cli.result_files import write_files
@@ -90,8 +93,6 @@ def _studied(
     from sysmlc.floors.outcome import studied
     from sysmlc.floors.report import files, summary
     from sysmlc.floors.study import Study
-
-    keeper = _keeper(settings.has_cache)
 
     def place(origin: str) -> Subject:
         element = made.graph.get(origin)
@@ -113,14 +114,14 @@ def _studied(
     return max(code, _code(outcomes, has_errors))
 
 
-def _keeper(has_cache: bool) -> "Keeper | None":
-    """Where what is known of floors is kept; None when nothing is to be."""
-    from sysmlc import cache
+def _open_keeper(models: "Sequence[Path]", config: "Config") -> "Keeper | None":
+    """Return the store of controllers and travel times in the user's cache, if there is a cache."""
+    from sysmlc.cli import session
     from sysmlc.driver.cache_key import compute_tool_digest
     from sysmlc.floors.keeping import Keeper
 
-    store = cache.default() if has_cache else None
-    return None if store is None else Keeper(store, compute_tool_digest())
+    cache = session.open_cache(models, config)
+    return None if cache is None else Keeper(cache, compute_tool_digest())
 
 
 def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:

@@ -14,6 +14,7 @@ from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend, InputFile
+    from sysmlc.cache import Cache
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
@@ -182,18 +183,37 @@ def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> 
     return _compile(replace(request, passes=passes), settings)
 
 
-def outcome_of(
-    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
-) -> "Outcome":
-    """Return the outcome of the unit, from the cache if nothing has changed since it was stored.
+def list_outcomes(
+    units: Sequence[Unit], config: "Config", settings: Settings, has_files: bool = True
+) -> "list[Outcome]":
+    """Return the outcomes of units, each from the cache if nothing has changed since it was stored.
 
-    Without *has_files* the outcome holds diagnostics only.
+    Without *has_files* the outcomes hold diagnostics only.
     """
-    from sysmlc import cache
+    files = [file for unit in units for file in unit.files]
+    cache = open_cache(files, config) if settings.is_plain else None
+    if cache is None:
+        return [compute_outcome(unit, config, settings, has_files) for unit in units]
+    return [_reuse_outcome(cache, unit, config, settings, has_files) for unit in units]
 
-    store = cache.default() if settings.is_plain else None
-    if store is None:
-        return compute_outcome(unit, config, settings, has_files)
+
+def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
+    """Return the user's cache, or None. A folder that cannot be trusted is reported once."""
+    from sysmlc import cache
+    from sysmlc.config import find_project_root
+
+    roots = {find_project_root(file) for file in inputs}
+    roots |= {folder for folder in (config.root, config.folder) if folder is not None}
+    try:
+        return cache.open_cache(sorted(roots))
+    except cache.CacheError as problem:
+        terminal.echo(f"sysmlc: warning: no cache is used: {problem}", err=True)
+        return None
+
+
+def _reuse_outcome(
+    cache: "Cache", unit: Unit, config: "Config", settings: Settings, has_files: bool
+) -> "Outcome":
     from sysmlc.driver import open_unit
     from sysmlc.driver.cache_key import compute_outcome_key
     from sysmlc.driver.outcome_cache import load_outcome, store_outcome
@@ -201,10 +221,10 @@ def outcome_of(
     request = _request(unit.files, config, settings)
     opened = open_unit(request)
     key = compute_outcome_key(opened, request, unit.emit, has_files)
-    outcome = load_outcome(store, key, opened.root)
+    outcome = load_outcome(cache, key, opened.root)
     if outcome is None:
         outcome = _outcome(_with_backends(request, unit.emit), settings, has_files, opened)
-        store_outcome(store, key, outcome)
+        store_outcome(cache, key, outcome)
     return outcome
 
 

@@ -4,12 +4,12 @@ New targets on the same floor ask for nothing but another allocation (MOOD4I the
 controller, the times that robots travel and what was decided of the contracts stay.
 """
 
-import json
-import zlib
 from collections.abc import Mapping
 from dataclasses import field
 from hashlib import sha256
 from typing import Any
+
+import msgspec
 
 from sysmlc.cache import Cache
 from sysmlc.floors.relations import Relation
@@ -21,7 +21,7 @@ from sysmlc.synthesis.decide import Verdict
 from sysmlc.synthesis.synthesise import Synthesis
 from sysmlc.values import dataclass, replace
 
-_FORMAT = 1
+_FORMAT = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,28 +34,35 @@ class Crew:
     """What was decided of the contracts of the floor."""
 
 
+class _Entry(msgspec.Struct, array_like=True):
+    """A crew as the cache stores it."""
+
+    controller: Mapping[str, Any]
+    times: tuple[tuple[int, tuple[tuple[int, int], ...]], ...]
+    claims: tuple[tuple[str, bool, str, tuple[str, ...]], ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Keeper:
-    """Keeps crews in a cache, by floor and robots; ``tool`` tells the versions of the tool."""
+    """Stores crews in a cache, by floor and robots; ``tool`` is the digest of the tool."""
 
     cache: Cache
     tool: str
 
     def get(self, study: Study) -> Crew | None:
-        """The crew of this floor, if an earlier run has kept one."""
+        """Return the crew of this floor if an earlier run has stored it."""
         entry = self.cache.get(self._key(study))
         if entry is None:
             return None
         try:
-            return _crew(json.loads(zlib.decompress(entry)), study)
-        except (LookupError, ValueError, TypeError, zlib.error):
+            return _decode(msgspec.json.decode(entry, type=_Entry), study)
+        except (LookupError, ValueError, TypeError, AttributeError, RecursionError):
             return None
 
     def put(self, study: Study, crew: Crew) -> None:
-        """Keep a crew; one without a controller is none."""
+        """Store a crew that has a controller."""
         if crew.controller.machine is not None:
-            text = json.dumps(_form(crew), separators=(",", ":"))
-            self.cache.put(self._key(study), zlib.compress(text.encode(), 1))
+            self.cache.put(self._key(study), msgspec.json.encode(_encode(crew)))
 
     def _key(self, study: Study) -> str:
         return sha256(repr((_FORMAT, self.tool, floor_of(study))).encode()).hexdigest()
@@ -68,27 +75,26 @@ def floor_of(study: Study) -> Study:
     return replace(floor, targets=(), orders=(), deadline=None)
 
 
-def _form(crew: Crew) -> Mapping[str, Any]:
+def _encode(crew: Crew) -> "_Entry":
     machine = crew.controller.machine
-    return {
-        "controller": None if machine is None else form_of(machine),
-        "times": [[goal, sorted(known.items())] for goal, known in sorted(crew.times.items())],
-        "claims": [
-            [one.claim, one.holds, one.reason, one.run]
-            for one in crew.claims.values()
-            if one.holds is not None
-        ],
-    }
+    return _Entry(
+        controller={} if machine is None else form_of(machine),
+        times=tuple((goal, tuple(sorted(steps.items()))) for goal, steps in crew.times.items()),
+        claims=tuple(
+            (claim.claim, claim.holds, claim.reason, claim.run)
+            for claim in crew.claims.values()
+            if claim.holds is not None
+        ),
+    )
 
 
-def _crew(form: Mapping[str, Any], study: Study) -> Crew:
+def _decode(entry: "_Entry", study: Study) -> Crew:
     contract = controller_contract(study)
     told = reduced(contract).contract
-    machine = controller_of(form["controller"], told.variables)
-    times = {goal: dict(known) for goal, known in form["times"]}
+    machine = controller_of(entry.controller, told.variables)
+    times = {goal: dict(steps) for goal, steps in entry.times}
     claims = {
-        claim: Relation(claim, holds, reason, tuple(run))
-        for claim, holds, reason, run in form["claims"]
+        claim: Relation(claim, holds, reason, run) for claim, holds, reason, run in entry.claims
     }
     verdict = Verdict(contract.component, is_realizable=True)
     return Crew(Synthesis(verdict, told, machine), times, claims)
