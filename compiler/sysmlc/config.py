@@ -127,12 +127,15 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
 
     A repository must not choose what is read or written elsewhere on the machine.
     """
-    entries = [("output", config.output), ("templates", config.templates)]
+    entries = [("templates", config.templates)]
+    outputs = [config.output, *(unit.output for unit in config.models)]
     for unit in config.models:
         if not _is_inside(unit.name):
             message = f"the name '{unit.name}' leads out of the output folder"
             raise ConfigError(f"{file}:{_line(text, 'name')}: {message}; use a plain name")
-        entries += [("output", unit.output), *(("files", pattern) for pattern in unit.files)]
+        entries += [("files", pattern) for pattern in unit.files]
+    # Links in the path of an output folder count when something is written to it.
+    entries += [("output", output) for output in outputs if not _is_inside(output)]
     for key, value in entries:
         if not _is_confined(value, config):
             raise ConfigError(

@@ -6,8 +6,10 @@ import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PureWindowsPath
 
+from sysmlc.patterns import pattern
 from sysmlc.values import dataclass
 
+_TEMPORARY = pattern(r"\.sysmlc-[0-9a-f]{16}")
 _MODE = 0o644
 """Who may read and write a new file, as far as the user's mask lets them."""
 
@@ -121,9 +123,28 @@ def write_if_changed(target: Path, text: str) -> bool:
     return True
 
 
+def is_temporary(name: str) -> bool:
+    """Whether a file has the name of one that a process wrote and had no time to rename."""
+    return _TEMPORARY.fullmatch(name) is not None
+
+
 def write(target: Path | str, data: bytes) -> None:
-    """Make the file, or replace it, in one step: no reader sees half of it."""
-    folder = os.path.dirname(target)  # noqa: PTH120
+    """Make the file, or replace it, in one step: no reader sees half of it.
+
+    The content reaches the disk before the name does, so that not even a power failure leaves
+    half a file.
+    """
+    temporary = write_temporary(os.path.dirname(target), data)  # noqa: PTH120
+    try:
+        sync(temporary)
+        os.replace(temporary, target)  # noqa: PTH105 - a Path for each file costs as much again
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def write_temporary(folder: str, data: bytes) -> str:
+    """Write *data* to a new file in *folder*, which is made if need be; return its path."""
     temporary = os.path.join(folder, f".sysmlc-{os.urandom(8).hex()}")  # noqa: PTH118
     handle = _opened(temporary, folder)
     try:
@@ -131,10 +152,24 @@ def write(target: Path | str, data: bytes) -> None:
             _write_all(handle, data)
         finally:
             os.close(handle)
-        os.replace(temporary, target)  # noqa: PTH105 - a Path for each file costs as much again
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+    return temporary
+
+
+def sync(path: Path | str) -> None:
+    """Wait until the content of a file, or the names in a folder, are on the disk.
+
+    Windows can do that only for files that are open for writing; there this does nothing.
+    """
+    if os.name == "nt":
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def _write_all(handle: int, data: bytes) -> None:

@@ -258,7 +258,7 @@ def test_a_true_error_is_told_and_the_outputs_kept_until_it_is_mended(watch):
     kept = watched.graph()
     (watched.folder / "plant.uml").write_bytes(model("New")[:-20])
     watched.until(lambda: "malformed-file" in watched.said())
-    watched.until(lambda: watched.built()[-1] == "out: kept as it is, the model has errors")
+    watched.until(lambda: watched.built()[-1] == "out: not updated because the model has errors")
     assert watched.graph() == kept
     (watched.folder / "plant.uml").write_bytes(model("Mended"))
     watched.until_built("Mended")

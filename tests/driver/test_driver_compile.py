@@ -270,7 +270,7 @@ def test_the_hash_seed_does_not_matter(tmp_path):
         "import sys; from pathlib import Path; from driver_fakes import compiled\n"
         "from sysmlc.driver import manifest_text, outcome, trace_text\n"
         "made = compiled(*map(Path, sys.argv[1:]))\n"
-        "print(manifest_text(outcome(made)), trace_text(made), made.diagnostics)"
+        "print(manifest_text(outcome(made), {}), trace_text(made), made.diagnostics)"
     )
     (tmp_path / "faulty.ir").write_text(FAULTY)
     printed = set()

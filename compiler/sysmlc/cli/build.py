@@ -9,8 +9,8 @@ import click
 from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
-    from sysmlc.cli.session import Unit
-    from sysmlc.driver import Outcome, Plan
+    from sysmlc.cli.session import Settings
+    from sysmlc.driver import Outcome, Publication, Target
 
 
 @click.command(
@@ -37,6 +37,12 @@ Examples:
     is_flag=True,
     help="Write nothing; exit 1 and list the files when the output folder is not up to date.",
 )
+@click.option(
+    "--force",
+    "is_forced",
+    is_flag=True,
+    help="Replace files that sysmlc did not write, or that were edited after it wrote them.",
+)
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -44,6 +50,7 @@ def command(
     models: tuple[Path, ...],
     output: Path | None,
     check_only: bool,
+    is_forced: bool,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... (files or folders) and write what changed to the output folder.
@@ -52,23 +59,30 @@ def command(
     with an error is withheld; the others are written.
     """
     from sysmlc.cli import session
-    from sysmlc.driver import plan
+    from sysmlc.driver import publish
 
     _check_command_word(models)
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
-    made = session.list_outcomes(units, config, settings)
-    session.report(made, settings)
-    code = session.exit_code(made, config, settings)
-    for unit, outcome in zip(units, made, strict=True):
-        if outcome.exit_code() == 2:
-            continue
-        planned = plan(outcome, unit.output)
-        if check_only:
-            code = max(code, _compare(planned))
+    outcomes = session.list_outcomes(units, config, settings)
+    code = session.exit_code(outcomes, config, settings)
+    targets = [session.target_of(unit, config, is_forced=is_forced) for unit in units]
+    written = [
+        (outcome, target)
+        for outcome, target in zip(outcomes, targets, strict=True)
+        if outcome.exit_code() < 2
+    ]
+    if check_only:
+        session.report(outcomes, settings)
+        ctx.exit(max([code, *(_compare(outcome, target) for outcome, target in written)]))
+    publications = [publish(outcome, target) for outcome, target in written]
+    session.report(outcomes, settings, publications)
+    for (outcome, target), publication in zip(written, publications, strict=True):
+        if publication.is_refused:
+            code = 2
         else:
-            _write(planned, unit, outcome, session.says_more(settings), settings.verbose)
+            _print_changes(outcome, target.folder, publication, settings)
     ctx.exit(code)
 
 
@@ -85,30 +99,29 @@ def _check_command_word(models: tuple[Path, ...]) -> None:
             raise click.UsageError(f"no command or file '{word}'; did you mean '{near[0]}'?")
 
 
-def _compare(planned: "Plan") -> int:
-    stale = planned.differences()
-    for path in stale:
-        terminal.echo(f"not up to date: {planned.folder / path}", err=True)
-    return 1 if stale else 0
+def _compare(outcome: "Outcome", target: "Target") -> int:
+    from sysmlc.driver import compare
+
+    paths = compare(outcome, target)
+    for path in paths:
+        terminal.echo(f"not up to date: {target.folder / path}", err=True)
+    return 1 if paths else 0
 
 
-def _write(planned: "Plan", unit: "Unit", outcome: "Outcome", talk: bool, verbose: bool) -> None:
-    from sysmlc.cli.session import fail
-    from sysmlc.driver import OutputError, apply
+def _print_changes(
+    outcome: "Outcome", folder: Path, publication: "Publication", settings: "Settings"
+) -> None:
+    from sysmlc.cli import session
 
-    try:
-        changed = apply(planned)
-    except OutputError as problem:
-        fail(str(problem))
-    if verbose:
-        for path in changed:
-            terminal.echo(f"changed {unit.output / path}", err=True)
-    if talk:
-        terminal.echo(_sentence(planned, len(changed), outcome, unit.output))
+    if settings.verbose:
+        for path in publication.changed:
+            terminal.echo(f"changed {folder / path}", err=True)
+    if session.says_more(settings):
+        terminal.echo(_summarise(outcome, folder, len(publication.changed)))
 
 
-def _sentence(planned: "Plan", changed: int, outcome: "Outcome", folder: Path) -> str:
+def _summarise(outcome: "Outcome", folder: Path, changed: int) -> str:
     withheld = len(outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
     shown = os.path.relpath(folder) if folder.is_relative_to(Path.cwd()) else str(folder)
-    return f"{shown}: {len(planned.digests)} files, {changed} changed{held}"
+    return f"{shown}: {len(outcome.files) + 1} files, {changed} changed{held}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
-    from sysmlc.driver import Compilation, Opened, Outcome, Request
+    from sysmlc.driver import Compilation, Opened, Outcome, Publication, Request, Target
     from sysmlc.sources.schema import Schemas
 
 _AS_WRITTEN = frozenset({"resolve", "kept"})
@@ -328,9 +328,24 @@ def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
             fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
 
 
-def report(outcomes: "Iterable[Outcome]", settings: Settings) -> None:
-    """Show the findings of all outcomes as one report."""
-    show([finding for made in outcomes for finding in named(made.root, made.findings)], settings)
+def target_of(unit: Unit, config: "Config", *, is_forced: bool = False) -> "Target":
+    """Return the output folder of the unit, with what bounds it."""
+    from sysmlc.driver import Target
+
+    configurations = (config.file,) if config.file else ()
+    return Target(unit.output, unit.boundary, configurations, is_forced)
+
+
+def report(
+    outcomes: "Iterable[Outcome]", settings: Settings, publications: "Iterable[Publication]" = ()
+) -> None:
+    """Show the findings of all outcomes, and those about their output folders, as one report."""
+    from sysmlc.diagnostics.render import make_report
+
+    found = [finding for made in outcomes for finding in named(made.root, made.findings)]
+    diagnostics = [one for publication in publications for one in publication.diagnostics]
+    found += named(Path.cwd(), make_report(diagnostics, ()).findings)
+    show(found, settings)
 
 
 def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings, Unit
     from sysmlc.cli.settling import Stamps
     from sysmlc.config import Config
-    from sysmlc.driver import Outcome
+    from sysmlc.driver import Outcome, Target
 
 _PATIENCE = 1.5
 """Seconds without a save before what looks half saved is believed, if files must rest at all."""
@@ -29,6 +29,7 @@ class Compiled:
     """A unit and the outcome of compiling it."""
 
     unit: "Unit"
+    target: "Target"
     outcome: "Outcome"
 
 
@@ -180,7 +181,12 @@ def compiled(
     gc.unfreeze()
     config = session.load_config(models, settings)
     units = session.units(models, config, output, settings.emit)
-    return [Compiled(unit, session.compute_outcome(unit, config, settings)) for unit in units]
+    return [
+        Compiled(
+            unit, session.target_of(unit, config), session.compute_outcome(unit, config, settings)
+        )
+        for unit in units
+    ]
 
 
 def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> bool:
@@ -189,20 +195,21 @@ def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> b
     Who keeps going gets those that no error concerns, as from ``build``.
     """
     from sysmlc.cli import session
-    from sysmlc.driver import OutputError, apply, plan
+    from sysmlc.driver import publish as write_outputs
 
     folder, code = made.unit.output, made.outcome.exit_code()
-    session.report([made.outcome], settings)
     if code > 1 or (code and not keep_going):
-        terminal.echo(f"{folder}: kept as it is, the model has errors")
+        session.report([made.outcome], settings)
+        terminal.echo(f"{folder}: not updated because the model has errors")
         return False
-    try:
-        changed = apply(plan(made.outcome, folder))
-    except OutputError as problem:
-        session.fail(str(problem))
+    publication = write_outputs(made.outcome, made.target)
+    session.report([made.outcome], settings, [publication])
+    if publication.is_refused:
+        terminal.echo(f"{folder}: not updated")
+        return False
     withheld = len(made.outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
-    terminal.echo(f"{folder}: {len(changed)} changed{held}")
+    terminal.echo(f"{folder}: {len(publication.changed)} changed{held}")
     return True
 
 

@@ -10,7 +10,7 @@ from sysmlc.driver.compilation import (
 )
 from sysmlc.driver.manifest import manifest_text
 from sysmlc.driver.outcome import Outcome, outcome
-from sysmlc.driver.publish import OutputError, Plan, apply, plan
+from sysmlc.driver.publishing import Publication, Target, compare, publish
 from sysmlc.driver.registry import (
     BackendError,
     backend_names,
@@ -26,18 +26,18 @@ __all__ = [
     "Observer",
     "Opened",
     "Outcome",
-    "OutputError",
-    "Plan",
+    "Publication",
     "Request",
-    "apply",
+    "Target",
     "backend_names",
+    "compare",
     "compile_model",
     "full_catalogue",
     "load_backends",
     "manifest_text",
     "open_unit",
     "outcome",
-    "plan",
+    "publish",
     "select_backends",
     "trace_text",
 ]

@@ -8,6 +8,7 @@ from pathlib import Path
 from sysmlc.config import find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
+from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
@@ -117,18 +118,12 @@ def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:
 def _walk(folder: Path) -> Iterator[Path]:
     for path, folders, files in os.walk(folder):
         here = Path(path)
-        folders[:] = [f for f in folders if not f.startswith(".") and not _is_output(here / f)]
+        folders[:] = [
+            f for f in folders if not f.startswith(".") and not is_output_folder(here / f)
+        ]
         for file in files:
             if Path(file).suffix.lower() in SUFFIXES and not file.startswith("."):
                 yield here / file
-
-
-def _is_output(folder: Path) -> bool:
-    manifest = folder / "manifest.json"
-    try:
-        return manifest.is_file() and '"sysmlc-manifest/' in manifest.read_text("utf-8")[:200]
-    except (OSError, UnicodeDecodeError):
-        return False
 
 
 def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:

@@ -1,35 +1,30 @@
 """``manifest.json``: what a run read and wrote, what it withheld and why."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 
 from sysmlc import __version__
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
-from sysmlc.driver.tracing import COVERAGE, TRACE
+from sysmlc.driver.ownership import FORMAT
 from sysmlc.output import encode_json
 
-MANIFEST = "manifest.json"
 
-_OURS = frozenset({COVERAGE, TRACE})
-"""Files that the driver writes beside those of the back ends; the manifest does not list them."""
+def manifest_text(outcome: Outcome, kept: Mapping[str, str]) -> str:
+    """Return the manifest: inputs and files with their digests, withheld files and the reasons.
 
-
-def manifest_text(outcome: Outcome, kept: Iterable[str] = ()) -> str:
-    """Inputs and files with their digests, what is withheld and why, what is ``kept``.
-
-    ``kept`` are files of an earlier run whose inputs could not be read this time.
+    *kept* are paths and digests of files of an earlier run, whose inputs could not be read now.
     """
     return encode_json(
         {
-            "format": "sysmlc-manifest/2",
+            "format": FORMAT,
             "sysmlc": __version__,
             "inputs": [
                 {"path": file.path, "sha256": file.sha256, "language": file.language}
                 for file in outcome.inputs
             ],
-            "files": [_file(file) for file in outcome.files if file.path not in _OURS],
+            "files": [_file(file) for file in outcome.files],
             "withheld": [_withheld(file) for file in outcome.withheld],
-            "kept": [{"path": path} for path in kept],
+            "kept": [{"path": path, "sha256": digest} for path, digest in kept.items()],
         }
     )
 

@@ -8,13 +8,19 @@ from driver_fakes import FAULTY, PLANT, Outlines, compiled
 from jsonschema import Draft202012Validator
 
 from sysmlc import resources
-from sysmlc.driver import OutputError, apply, outcome, plan
+from sysmlc.driver import Target, compare, outcome, publish
 
 
-def publish(folder, text=PLANT, **given):
-    """Compile a text and bring ``folder/out`` up to date; what changed."""
+def build(folder, text=PLANT, **given):
+    """Compile a text and bring ``folder/out`` up to date; return what changed."""
+    publication = publication_of(folder, text, **given)
+    assert publication.diagnostics == ()
+    return list(publication.changed)
+
+
+def publication_of(folder, text=PLANT, **given):
     (folder / "plant.ir").write_text(text)
-    return apply(plan(outcome(compiled(folder / "plant.ir", **given)), folder / "out"))
+    return publish(outcome(compiled(folder / "plant.ir", **given)), Target(folder / "out"))
 
 
 def files(folder):
@@ -26,14 +32,14 @@ ALL = ["coverage.json", "manifest.json", "outlines/Gate.txt", "outlines/Robot.tx
 
 
 def test_the_folder_holds_what_was_made_and_three_files_about_it(tmp_path):
-    assert sorted(publish(tmp_path)) == ALL
+    assert sorted(build(tmp_path)) == ALL
     assert files(tmp_path) == ALL
 
 
 @pytest.mark.parametrize("name", ["manifest", "coverage", "trace"])
 @pytest.mark.parametrize("text", [PLANT, FAULTY, "Klass gate\n"])
 def test_they_follow_their_schemas(tmp_path, name, text):
-    publish(tmp_path, text)
+    build(tmp_path, text)
     schema = json.loads(resources.text("metamodels", f"sysmlc-{name}.schema.json"))
     Draft202012Validator.check_schema(schema)
     content = json.loads((tmp_path / "out" / f"{name}.json").read_text())
@@ -41,46 +47,47 @@ def test_they_follow_their_schemas(tmp_path, name, text):
 
 
 def test_a_second_run_writes_nothing(tmp_path):
-    publish(tmp_path)
+    build(tmp_path)
     for path in (tmp_path / "out").rglob("*"):
         os.utime(path, (1, 1))
-    assert publish(tmp_path) == []
+    assert build(tmp_path) == []
     assert {path.stat().st_mtime for path in (tmp_path / "out").rglob("*")} == {1}
 
 
 def test_only_what_changed_is_written(tmp_path):
-    publish(tmp_path)
+    build(tmp_path)
     os.utime(tmp_path / "out/outlines/Robot.txt", (1, 1))
-    changed = publish(tmp_path, PLANT.replace('gate.in "in"', 'gate.in "entry"'))
+    changed = build(tmp_path, PLANT.replace('gate.in "in"', 'gate.in "entry"'))
     assert changed == ["outlines/Gate.txt", "trace.json", "manifest.json"]
     assert (tmp_path / "out/outlines/Robot.txt").stat().st_mtime == 1
 
 
 def test_the_manifest_is_written_last(tmp_path):
-    assert publish(tmp_path)[-1] == "manifest.json"
+    assert build(tmp_path)[-1] == "manifest.json"
 
 
 def test_what_is_no_longer_made_is_removed_and_what_others_made_stays(tmp_path):
-    publish(tmp_path)
+    build(tmp_path)
     (tmp_path / "out/outlines/own.txt").write_text("by hand")
-    publish(tmp_path, PLANT.replace("Robot", "Arm"))
+    build(tmp_path, PLANT.replace("Robot", "Arm"))
     assert "outlines/Robot.txt" not in files(tmp_path)
     assert {"outlines/Arm.txt", "outlines/own.txt"} <= set(files(tmp_path))
 
 
 def test_folders_that_become_empty_go_too(tmp_path):
-    publish(tmp_path)
-    publish(tmp_path, backends=())
+    build(tmp_path)
+    build(tmp_path, backends=())
     assert files(tmp_path) == ["coverage.json", "manifest.json", "trace.json"]
     assert not (tmp_path / "out/outlines").exists()
 
 
 def test_a_withheld_file_is_removed_and_listed_with_the_reason(tmp_path):
-    publish(tmp_path)
-    publish(tmp_path, FAULTY)
+    build(tmp_path)
+    build(tmp_path, FAULTY)
     assert "outlines/Gate.txt" not in files(tmp_path)
     manifest = json.loads((tmp_path / "out/manifest.json").read_text())
-    assert [entry["path"] for entry in manifest["files"]] == ["outlines/Robot.txt"]
+    listed = [entry["path"] for entry in manifest["files"]]
+    assert listed == ["outlines/Robot.txt", "coverage.json", "trace.json"]
     assert manifest["withheld"] == [
         {
             "path": "outlines/Gate.txt",
@@ -97,8 +104,8 @@ def test_a_withheld_file_is_removed_and_listed_with_the_reason(tmp_path):
 
 
 def test_a_model_that_cannot_be_read_removes_nothing(tmp_path):
-    publish(tmp_path)
-    publish(tmp_path, "Klass gate\n")
+    build(tmp_path)
+    build(tmp_path, "Klass gate\n")
     assert files(tmp_path) == ALL
     manifest = json.loads((tmp_path / "out/manifest.json").read_text())
     kept = ["outlines/Gate.txt", "outlines/Robot.txt"]
@@ -106,73 +113,51 @@ def test_a_model_that_cannot_be_read_removes_nothing(tmp_path):
 
 
 def test_what_was_kept_is_removed_when_the_model_can_be_read_again(tmp_path):
-    publish(tmp_path)
-    publish(tmp_path, "Klass gate\n")
-    publish(tmp_path, PLANT.replace("Robot", "Arm"))
+    build(tmp_path)
+    build(tmp_path, "Klass gate\n")
+    build(tmp_path, PLANT.replace("Robot", "Arm"))
     assert "outlines/Robot.txt" not in files(tmp_path)
 
 
-def test_files_that_a_manifest_of_version_1_lists_are_removed(tmp_path):
-    publish(tmp_path)
-    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
-    del manifest["format"]
-    (tmp_path / "out/manifest.json").write_text(
-        json.dumps({"schema": "sysmlc-manifest/1", **manifest})
-    )
-    publish(tmp_path, PLANT.replace("Robot", "Arm"))
-    assert "outlines/Robot.txt" not in files(tmp_path)
-
-
-def test_a_manifest_that_names_files_elsewhere_is_not_believed(tmp_path):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "precious.txt").write_text("keep")
-    listed = [{"path": "../precious.txt"}, {"path": str(tmp_path / "precious.txt")}, {}]
-    for entry in listed:
-        manifest = {"format": "sysmlc-manifest/2", "files": [entry], "withheld": [], "kept": []}
-        (tmp_path / "out/manifest.json").write_text(json.dumps(manifest))
-        publish(tmp_path)
-        assert (tmp_path / "precious.txt").exists()
-
-
-def test_differences_are_what_apply_would_change(tmp_path):
-    publish(tmp_path)
+def test_differences_are_what_publishing_would_change(tmp_path):
+    build(tmp_path)
     (tmp_path / "plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-    planned = plan(outcome(compiled(tmp_path / "plant.ir")), tmp_path / "out")
-    expected = planned.differences()
-    assert "outlines/Arm.txt" in expected
-    assert sorted(apply(planned)) == expected
-    assert planned.differences() != expected
+    result, target = outcome(compiled(tmp_path / "plant.ir")), Target(tmp_path / "out")
+    differences = compare(result, target)
+    assert "outlines/Arm.txt" in differences
+    assert sorted(publish(result, target).changed) == differences
+    assert compare(result, target) == []
 
 
-def test_a_file_in_the_way_of_the_folder_is_one_sentence(tmp_path):
+def test_a_file_in_the_way_of_the_folder_is_reported(tmp_path):
     (tmp_path / "out").write_text("a file")
-    with pytest.raises(OutputError, match="cannot write"):
-        publish(tmp_path)
+    (diagnostic,) = publication_of(tmp_path).diagnostics
+    assert (diagnostic.rule.name, "out" in diagnostic.message) == ("unwritable-output", True)
 
 
 def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch):
-    publish(tmp_path)
+    build(tmp_path)
     before = (tmp_path / "out/outlines/Gate.txt").read_text()
 
     def fails(*_):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.write", fails)
-    with pytest.raises(OutputError, match="No space left"):
-        publish(tmp_path, PLANT.replace('"in"', '"entry"'))
+    (diagnostic,) = publication_of(tmp_path, PLANT.replace('"in"', '"entry"')).diagnostics
+    assert "No space left" in diagnostic.message
     assert (tmp_path / "out/outlines/Gate.txt").read_text() == before
     assert files(tmp_path) == ALL
 
 
 @pytest.mark.parametrize("backends", [(), (Outlines(),)])
 def test_trace_is_laid_out_as_all_our_json(tmp_path, backends):
-    publish(tmp_path, PLANT.replace('"Gate"', '"Ga\\"te ü"'), backends=backends)
+    build(tmp_path, PLANT.replace('"Gate"', '"Ga\\"te ü"'), backends=backends)
     text = (tmp_path / "out/trace.json").read_text(encoding="utf-8")
     assert text == json.dumps(json.loads(text), ensure_ascii=False, indent=1) + "\n"
 
 
 def test_trace_leads_from_files_to_elements_to_lines(tmp_path):
-    publish(tmp_path, backends=(Outlines(),))
+    build(tmp_path, backends=(Outlines(),))
     trace = json.loads((tmp_path / "out/trace.json").read_text())
     assert trace["outputs"][0] == {"path": "outlines/Gate.txt", "elements": ["gate", "gate.in"]}
     assert trace["elements"][0] == {

@@ -1,0 +1,322 @@
+"""Which files of an output folder a build replaces or removes, whatever a repository commits."""
+
+import hashlib
+import json
+import os
+
+import pytest
+
+OUTPUTS = ["coverage.json", "graph.json", "manifest.json", "trace.json"]
+
+
+def build(project, *arguments):
+    return project.run("build", "plant.ir", "--emit", "graph", *arguments)
+
+
+def names(folder):
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
+
+
+def claim(project, path, folder="out", **extra):
+    """Commit a manifest that lists *path*, with the right digest if the file is there."""
+    try:
+        content = (project.folder / folder / path).read_bytes()
+    except (OSError, ValueError):
+        content = b""
+    entry = {"path": path, "backend": "graph", "sha256": hashlib.sha256(content).hexdigest()}
+    manifest = {"format": "sysmlc-manifest/2", "files": [entry], "kept": [], **extra}
+    return project.write(f"{folder}/manifest.json", json.dumps(manifest))
+
+
+def test_a_foreign_file_is_not_overwritten(project):
+    project.write("out/trace.json", "by hand")
+    before = project.snapshot()
+    done = build(project)
+    assert done.exit_code == 2
+    assert "SM910 foreign-output-file" in done.stderr
+    assert "'out/trace.json' is not overwritten: sysmlc did not write it" in done.stderr
+    assert "build --force" in done.stderr
+    assert project.snapshot() == before
+
+
+def test_foreign_files_with_other_names_and_equal_content_do_no_harm(project):
+    build(project, "-o", "same")
+    project.write("out/trace.json", (project.folder / "same/trace.json").read_text())
+    project.write("out/own.json", "by hand")
+    assert build(project).exit_code == 0
+    assert names(project.folder / "out") == sorted([*OUTPUTS, "own.json"])
+
+
+def test_force_replaces_a_foreign_file(project):
+    project.write("out/trace.json", "by hand")
+    assert build(project, "--force").exit_code == 0
+    assert json.loads((project.folder / "out/trace.json").read_text())
+    assert build(project).exit_code == 0
+
+
+def test_force_replaces_the_outputs_of_version_1(project):
+    build(project)
+    manifest = json.loads((project.folder / "out/manifest.json").read_text())
+    manifest["files"] = [entry for entry in manifest["files"] if entry["backend"]]
+    version_1 = {"schema": "sysmlc-manifest/1", **manifest}
+    del version_1["format"]
+    project.write("out/manifest.json", json.dumps(version_1))
+    project.write("plant.ir", 'Package pkg "Other"\n')
+    assert "'out/coverage.json' is not overwritten" in build(project).stderr
+    assert build(project, "--force").exit_code == 0
+    assert build(project, "--check").exit_code == 0
+
+
+def test_an_edited_output_is_not_overwritten_before_it_is_deleted(project):
+    build(project)
+    project.write("out/graph.json", "by hand")
+    done = build(project)
+    assert done.exit_code == 2
+    assert "it was edited after sysmlc wrote it" in done.stderr
+    assert (project.folder / "out/graph.json").read_text() == "by hand"
+    (project.folder / "out/graph.json").unlink()
+    assert build(project).exit_code == 0
+    assert names(project.folder / "out") == OUTPUTS
+
+
+def test_an_edited_output_that_is_no_longer_generated_stays(project):
+    project.run("build", "plant.ir", "--emit", "graph,ir")
+    project.write("out/graph.json", "by hand")
+    done = project.run("build", "plant.ir", "--emit", "ir")
+    assert (done.exit_code, "SM913 edited-stale-output" in done.stderr) == (0, True)
+    assert (project.folder / "out/graph.json").read_text() == "by hand"
+    done = project.run("build", "plant.ir", "--emit", "graph")
+    assert (done.exit_code, "sysmlc did not write it" in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"name": "my extension", "manifest_version": 3}',
+        '{"format": 2}',
+        '["sysmlc-manifest/2"]',
+        "[" * 100_000,
+        "",
+        '{"format": "sysmlc-manifest/2", "files": [',
+    ],
+)
+@pytest.mark.parametrize("name", ["manifest.json", "manifest.pending.json"])
+@pytest.mark.parametrize("options", [(), ("--force",)])
+def test_a_manifest_of_others_is_never_overwritten(project, name, text, options):
+    project.write(f"out/{name}", text)
+    before = project.snapshot()
+    done = build(project, *options)
+    assert done.exit_code == 2
+    assert f"'out/{name}' is not written: it is not a manifest of sysmlc" in done.stderr
+    assert project.snapshot() == before
+
+
+def test_a_manifest_of_others_may_be_anything_but_a_file(project):
+    (project.folder / "out").mkdir()
+    os.mkfifo(project.folder / "out/manifest.json")
+    assert "is not a manifest of sysmlc" in build(project).stderr
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "../plant.ir",
+        "../../outside/secret.ir",
+        "{outside}/secret.ir",
+        "linked/secret.ir",
+        "link.ir",
+        ".git/HEAD",
+        "sub/.GIT/HEAD",
+        "manifest.json",
+        "..\\plant.ir",
+        "",
+        ".",
+        "own.txt/x",
+        "a" * 5000,
+        "\ud800",
+        "x\0y",
+    ],
+)
+def test_a_manifest_that_lists_foreign_files_removes_nothing(project, path):
+    project.write("out/.git/HEAD", "ref: refs/heads/main\n")
+    project.write("out/sub/.GIT/HEAD", "ref: refs/heads/main\n")
+    project.write("out/own.txt", "by hand")
+    (project.folder / "out/linked").symlink_to(project.outside)
+    (project.folder / "out/link.ir").symlink_to("../plant.ir")
+    claim(project, path.replace("{outside}", str(project.outside)))
+    before = project.snapshot()
+    assert build(project).exit_code == 0
+    after = project.snapshot()
+    assert {name for name in before if after.get(name, b"") != before[name]} <= {
+        "project/out/manifest.json"
+    }
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [{}, [], "x", None, {"path": 1, "sha256": "x"}, {"path": "own.txt"}, {"path": ["own.txt"]}],
+)
+def test_a_manifest_with_entries_of_wrong_types_removes_nothing(project, entry):
+    project.write("out/own.txt", "by hand")
+    for manifest in (
+        {"files": [entry], "kept": entry},
+        {"files": entry, "kept": {"path": "own.txt"}},
+    ):
+        manifest = {"format": "sysmlc-manifest/2", **manifest}
+        project.write("out/manifest.json", json.dumps(manifest))
+        assert build(project).exit_code == 0
+        assert (project.folder / "out/own.txt").read_text() == "by hand"
+
+
+def test_a_file_with_another_content_than_the_manifest_lists_is_not_removed(project):
+    project.write("out/own.txt", "by hand")
+    claim(project, "own.txt")
+    project.write("out/own.txt", "by hand, later")
+    assert build(project).exit_code == 0
+    assert (project.folder / "out/own.txt").exists()
+
+
+def test_a_file_as_the_manifest_lists_it_is_removed(project):
+    """The nearest legal neighbour: this is how an output looks that is no longer generated."""
+    project.write("out/own/graph.txt", "generated")
+    claim(project, "own/graph.txt")
+    assert build(project).exit_code == 0
+    assert names(project.folder / "out") == OUTPUTS
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["plant.ir", "sysmlc.toml", "README.md", ".github/ci.yml", ".git/HEAD", "sysml/own.ir"],
+)
+@pytest.mark.parametrize("name", ["manifest.json", "manifest.pending.json"])
+def test_a_project_root_as_output_folder_keeps_its_files(project, path, name):
+    project.write(
+        "sysmlc.toml",
+        'output = "."\n[[model]]\nname = "p"\nfiles = ["*.ir", "sysml"]\noutput = "."\n',
+    )
+    for file in ("README.md", ".github/ci.yml"):
+        project.write(file, "by hand\n")
+    project.write("sysml/own.ir", 'Package own "Own"\n')
+    claim(project, path, ".").rename(project.folder / name)
+    before = project.snapshot()
+    assert project.run("build", "--emit", "graph").exit_code == 0
+    after = project.snapshot()
+    changed = {file for file in before if after.get(file) != before[file]}
+    assert changed <= {f"project/{name}"}
+
+
+def test_an_input_is_never_an_output(project):
+    """A file that is both would be compiled from its own output at the next build."""
+    project.write("graph.ir")
+    claim(project, "graph.ir", ".")
+    before = project.snapshot()
+    for options in ((), ("--force",)):
+        done = project.run("build", "graph.ir", "--emit", "ir", "-o", ".", *options)
+        assert done.exit_code == 2
+        assert "'graph.ir' is not written: it is an input or a configuration" in done.stderr
+        assert project.snapshot() == before
+
+
+@pytest.mark.parametrize("options", [(), ("--force",)])
+@pytest.mark.parametrize("target", ["../../outside", "../own"])
+def test_a_linked_folder_in_the_output_folder_is_not_written_to(project, target, options):
+    project.write("own/notes.txt", "by hand")
+    project.write("sysmlc.toml", "")
+    (project.folder / "out").mkdir()
+    (project.folder / "out/diagrams").symlink_to(target)
+    before = project.snapshot()
+    done = project.run("build", "plant.ir", "--emit", "plantuml", *options)
+    assert "'out/diagrams' is not written: it is a link" in done.stderr
+    assert (done.exit_code, project.snapshot() == before) == (2, True)
+
+
+@pytest.mark.parametrize("options", [(), ("--force",)])
+def test_a_linked_file_in_the_output_folder_is_not_replaced(project, options):
+    project.write("out/x", "")
+    (project.folder / "out/graph.json").symlink_to("../plant.ir")
+    before = project.snapshot()
+    done = build(project, *options)
+    assert "SM911 protected-output-file" in done.stderr
+    assert "'out/graph.json' is not written: it is a link" in done.stderr
+    assert (done.exit_code, project.snapshot() == before) == (2, True)
+
+
+@pytest.mark.parametrize("configuration", ["", 'output = "out"\n', None])
+def test_a_linked_output_folder_is_followed_inside_the_root_only(project, configuration):
+    if configuration is not None:
+        project.write("sysmlc.toml", configuration)
+    (project.folder / "out").symlink_to("../outside")
+    before = project.snapshot()
+    done = build(project)
+    assert done.exit_code == 2
+    assert "out" in done.stderr
+    assert project.snapshot() == before
+    assert build(project, "-o", "out").exit_code == 0  # named on the command line
+    assert (project.outside / "graph.json").exists()
+    (project.folder / "out").unlink()
+    (project.folder / "gen").mkdir()
+    (project.folder / "out").symlink_to("gen")
+    assert build(project).exit_code == 0
+    assert names(project.folder / "gen") == OUTPUTS
+
+
+def test_a_linked_folder_of_a_unit_does_not_lead_out_of_the_named_folder(project):
+    project.write("two.ir", 'Package two "Two"\n')
+    project.write(
+        "sysmlc.toml",
+        "".join(
+            f'[[model]]\nname = "{name}"\nfiles = ["{file}"]\n'
+            for name, file in (("a", "plant.ir"), ("b", "two.ir"))
+        ),
+    )
+    (project.folder / "gen").mkdir()
+    (project.folder / "gen/a").symlink_to("../../outside")
+    before = project.snapshot(project.outside)
+    done = project.run("build", "-o", "gen", "--emit", "graph")
+    assert (done.exit_code, "'gen/a' is not written: it lies outside" in done.stderr) == (2, True)
+    assert project.snapshot(project.outside) == before
+    assert names(project.folder / "gen/b") == OUTPUTS
+
+
+def test_check_lists_unlisted_files_of_our_folders(project):
+    build(project)
+    assert build(project, "--check").exit_code == 0
+    project.write("out/contracts/Old.md", "left by an earlier version")
+    project.write("out/notes.txt", "by hand")
+    done = build(project, "--check")
+    listed = [line for line in done.stderr.splitlines() if line.startswith("not up to date")]
+    assert (done.exit_code, listed) == (1, ["not up to date: out/contracts/Old.md"])
+
+
+def test_check_writes_nothing(project):
+    project.write("out/trace.json", "by hand")
+    before = project.snapshot()
+    done = build(project, "--check")
+    assert done.exit_code == 1
+    assert "not up to date: out/trace.json\n" in done.stderr
+    assert project.snapshot() == before
+    claim(project, "../plant.ir").rename(project.folder / "out/manifest.pending.json")
+    assert "not up to date: out/manifest.json\n" in build(project, "--check").stderr
+
+
+def test_watch_does_not_replace_foreign_files(project):
+    from sysmlc.cli import session, watch
+
+    project.write("out/trace.json", "by hand")
+    before = project.snapshot()
+    settings = session.Settings(emit=("graph",))
+    assert not watch.rebuild((project.folder / "plant.ir",), None, settings)
+    assert project.snapshot() == before
+
+
+def test_commands_with_a_result_folder_follow_no_link(project):
+    project.write("gate.ltl", "G (request -> F grant)\n")
+    project.write("gate.part", ".inputs request\n.outputs grant\n")
+    assert project.run("synth", "gate.ltl", "-o", "gen").exit_code == 0
+    (machine,) = (project.folder / "gen").glob("*.json")
+    machine.unlink()
+    machine.symlink_to("../plant.ir")
+    before = project.snapshot()
+    done = project.run("synth", "gate.ltl", "-o", "gen")
+    assert (done.exit_code, "is a link or in the way; remove it" in done.stderr) == (2, True)
+    assert project.snapshot() == before
