@@ -196,7 +196,7 @@ def test_an_accepted_finding_is_not_shown(here):
         "sysmlc.toml",
         '[[suppress]]\nrule = "missing-file"\nelement = "Plant::*"\nreason = "test"\n',
     )
-    done = here.sysmlc("check", "untyped.ir", "--emit", "graph", "--format", "concise")
+    done = here.sysmlc("check", ".", "--emit", "graph", "--format", "concise")
     assert "SM902 unused-suppression" in done.stderr
 
 

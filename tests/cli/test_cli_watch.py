@@ -229,14 +229,14 @@ def test_files_that_refer_to_one_another_are_saved_one_after_the_other(watch):
 
 
 def test_a_checkout_that_changes_many_files_is_built_whole(watch):
-    files = {f"f{n}.uml": model(f"Old{n}", id=f"i{n}") for n in range(20)}
+    files = {f"f{n}.sysml": f"package Old{n};".encode() for n in range(20)}
     watched = watch(files, ".")
-    (watched.folder / "f3.uml").unlink()
+    (watched.folder / "f3.sysml").unlink()
     for n in range(20):
         if n != 3:
-            (watched.folder / f"f{n}.uml").write_bytes(model(f"New{n}", id=f"i{n}"))
+            (watched.folder / f"f{n}.sysml").write_text(f"package New{n};")
             time.sleep(0.01)
-    (watched.folder / "more.uml").write_bytes(model("More", id="more"))
+    (watched.folder / "more.sysml").write_text("package More;")
     watched.until_built("More")
     watched.until_built("New19")
     assert "Old" not in watched.graph()

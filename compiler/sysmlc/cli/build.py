@@ -9,7 +9,10 @@ import click
 from sysmlc.cli import options, terminal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from sysmlc.cli.session import Settings
+    from sysmlc.cli.units import Unit
     from sysmlc.driver import Outcome, Publication, Target
 
 
@@ -59,15 +62,16 @@ def command(
     with an error is withheld; the others are written.
     """
     from sysmlc.cli import session
+    from sysmlc.cli.units import open_units
     from sysmlc.driver import publish
 
     _check_command_word(models)
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
-    units = session.units(models, config, output, settings.emit)
-    outcomes = session.list_outcomes(units, config, settings)
-    code = session.exit_code(outcomes, config, settings)
-    targets = [session.target_of(unit, config, is_forced=is_forced) for unit in units]
+    units = open_units(models, config, settings, output)
+    outcomes = session.compile_units(units, settings)
+    code = session.exit_code_of_all(units, outcomes, settings)
+    targets = [session.target_of(unit, is_forced=is_forced) for unit in units]
     written = [
         (outcome, target)
         for outcome, target in zip(outcomes, targets, strict=True)
@@ -75,7 +79,8 @@ def command(
     ]
     if check_only:
         session.report(outcomes, settings)
-        ctx.exit(max([code, *(_compare(outcome, target) for outcome, target in written)]))
+        differences = [_compare(outcome, target) for outcome, target in written]
+        ctx.exit(max([code, _report_leftovers(units), *differences]))
     publications = [publish(outcome, target) for outcome, target in written]
     session.report(outcomes, settings, publications)
     for (outcome, target), publication in zip(written, publications, strict=True):
@@ -83,6 +88,7 @@ def command(
             code = 2
         else:
             _print_changes(outcome, target.folder, publication, settings)
+    _report_leftovers(units)
     ctx.exit(code)
 
 
@@ -123,5 +129,22 @@ def _print_changes(
 def _summarise(outcome: "Outcome", folder: Path, changed: int) -> str:
     withheld = len(outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
-    shown = os.path.relpath(folder) if folder.is_relative_to(Path.cwd()) else str(folder)
-    return f"{shown}: {len(outcome.files) + 1} files, {changed} changed{held}"
+    return f"{_relative(folder)}: {len(outcome.files) + 1} files, {changed} changed{held}"
+
+
+def _report_leftovers(units: "Sequence[Unit]") -> int:
+    """Mention output folders that no unit has any more, and return 1 if there are some, else 0."""
+    from sysmlc.cli.units import find_leftover_outputs
+
+    folders = find_leftover_outputs(units)
+    for folder in folders:
+        terminal.echo(
+            f"{_relative(folder)}: outputs of an earlier run; no model has this name now: "
+            "delete the folder if it is not needed",
+            err=True,
+        )
+    return int(bool(folders))
+
+
+def _relative(folder: Path) -> str:
+    return os.path.relpath(folder) if folder.is_relative_to(Path.cwd()) else str(folder)

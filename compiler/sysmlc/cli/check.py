@@ -31,12 +31,13 @@ def command(
 ) -> None:
     """Compile MODEL... in memory and report what is wrong, as 'build' would."""
     from sysmlc.cli import session
+    from sysmlc.cli.units import open_units
 
     settings = session.Settings(**given, uses_shipped_templates=True)
     config = session.load_config(models, settings)
-    units = session.units(models, config, None, settings.emit)
-    made = session.list_outcomes(units, config, settings, has_files=False)
+    units = open_units(models, config, settings, None)
+    made = session.compile_units(units, settings, has_files=False)
     session.report(made, settings)
     if settings.form == "text" and not any(outcome.findings for outcome in made):
         click.echo("no findings", err=True)
-    ctx.exit(session.exit_code(made, config, settings))
+    ctx.exit(session.exit_code_of_all(units, made, settings))

@@ -11,7 +11,6 @@ from sysmlc.values import replace
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from sysmlc.config import Config
     from sysmlc.diagnostics.coverage_report import FileReport
     from sysmlc.driver.covering import Covered
 
@@ -59,22 +58,19 @@ def command(
     file. What only says how the model is drawn does not count.
     """
     from sysmlc.cli import session
+    from sysmlc.cli.units import open_units
+    from sysmlc.driver.covering import cover
 
-    loaded = session.load_config(models, session.Settings(config, isolated))
-    units = session.units(models, loaded, None, ())
-    made = [_cover(unit.files, loaded) for unit in units]
+    settings = session.Settings(config, isolated)
+    loaded = session.load_config(models, settings)
+    units = open_units(models, loaded, settings, None)
+    made = [cover(unit.request, unit.opened) for unit in units]
     code = max(_report_errors(one) for one in made)
-    files = [file for one in made for file in _shown(one)]
+    reports = {file.file: file for one in made for file in _shown(one)}
+    files = [reports[name] for name in sorted(reports)]
     if code < 2 and (files or form != "text"):
         _print(files, form, every)
     ctx.exit(max(code, int(_is_below(files, fail_under))))
-
-
-def _cover(files: tuple[Path, ...], config: "Config") -> "Covered":
-    from sysmlc.driver import Request
-    from sysmlc.driver.covering import cover
-
-    return cover(Request(inputs=files, config=config))
 
 
 def _report_errors(made: "Covered") -> int:

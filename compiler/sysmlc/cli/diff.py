@@ -1,5 +1,6 @@
 """``sysmlc diff``: what changed between two models."""
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ import click
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from sysmlc.cli.session import Settings
     from sysmlc.diagnostics import Place
@@ -49,29 +50,52 @@ def command(
     """Compare OLD and NEW (files or folders, of any format) as they are written.
 
     Places in files, ids that were given anew and the order of elements make no difference.
+    Of folders with several compile units, those whose first files have the same path are compared.
     Overlays count when both models have one.
     Exit code 0 when they are equal, 1 when they differ, 2 when one cannot be read.
     """
     from sysmlc.cli import session
+    from sysmlc.ir import Graph
     from sysmlc.ir.compare import compare
 
     settings = session.Settings(**given)
-    made = [_read(path, settings) for path in (old, new)]
-    unread = [one for one in made if _is_unread(one)]
+    sides = [_read(path, settings) for path in (old, new)]
+    compilations = [compilation for side in sides for compilation in side.values()]
+    unread = [compilation for compilation in compilations if _is_unread(compilation)]
     if unread:
         session.show([found for one in unread for found in session.findings(one)], settings)
         ctx.exit(2)
-    _check(ignore, made)
-    _refine(made)
-    changes = compare(made[0].graph, made[1].graph, ignore)
-    click.echo(_text(changes, form, made), nl=False, color=True)
+    _check(ignore, compilations)
+    changes: list[Change] = []
+    for pair in _pair_units(*sides):
+        _refine(pair)
+        before, after = (side.graph if side else Graph() for side in pair)
+        changes += compare(before, after, ignore)
+    click.echo(_text(changes, form, sides), nl=False, color=True)
     ctx.exit(1 if changes else 0)
 
 
-def _read(path: Path, settings: "Settings") -> "Compilation":
+def _read(path: Path, settings: "Settings") -> "dict[str, Compilation]":
+    """Read the units of a model by the path of their first file below *path*."""
     from sysmlc.cli import session
+    from sysmlc.cli.units import open_named_units
 
-    return session.read_unit((path,), session.load_config([path], settings), settings)
+    units = open_named_units((path,), session.load_config([path], settings), settings)
+    return {
+        os.path.relpath(unit.opened.root / unit.opened.first_file(), path): session.read_as_written(
+            unit, settings
+        )
+        for unit in units
+    }
+
+
+def _pair_units(
+    old: "dict[str, Compilation]", new: "dict[str, Compilation]"
+) -> "list[tuple[Compilation | None, Compilation | None]]":
+    """Pair the units of both sides; a unit without a counterpart was added or removed."""
+    if len(old) == len(new) == 1:
+        return list(zip(old.values(), new.values(), strict=True))
+    return [(old.get(path), new.get(path)) for path in sorted(old.keys() | new.keys())]
 
 
 def _is_unread(made: "Compilation") -> bool:
@@ -93,30 +117,31 @@ def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
             raise click.BadParameter(f"'{word}': {found}", param_hint="'--ignore'")
 
 
-def _refine(made: "list[Compilation]") -> None:
+def _refine(made: "Sequence[Compilation | None]") -> None:
     """Add what overlays say, when both models have one: else the overlay were the difference."""
     from sysmlc.diagnostics import Sink
     from sysmlc.overlay import Refinement
     from sysmlc.passes.overlay import Overlay
 
-    if all(one.graph.derived(Refinement) for one in made):
-        for one in made:
-            Overlay().run(one.graph, Sink())
+    graphs = [one.graph for one in made if one is not None]
+    if len(graphs) == len(made) and all(graph.derived(Refinement) for graph in graphs):
+        for graph in graphs:
+            Overlay().run(graph, Sink())
 
 
-def _text(changes: "list[Change]", form: str, made: "list[Compilation]") -> str:
+def _text(changes: "list[Change]", form: str, sides: "list[dict[str, Compilation]]") -> str:
     from sysmlc.cli import diff_forms
     from sysmlc.cli.session import has_color
 
     if form == "json":
-        return diff_forms.json_text(changes, *(_places(changes, made, i) for i in (0, 1)))
+        return diff_forms.json_text(changes, *(_places(changes, sides, i) for i in (0, 1)))
     if form == "markdown":
         return diff_forms.markdown(changes)
     return diff_forms.text(changes, color=has_color(sys.stdout))
 
 
 def _places(
-    changes: "Iterable[Change]", made: "list[Compilation]", side: int
+    changes: "Iterable[Change]", sides: "list[dict[str, Compilation]]", side: int
 ) -> "Mapping[Place, Place]":
     """Lines and columns of what changed, in the old model or in the new one."""
     from sysmlc.diagnostics import Place
@@ -124,4 +149,5 @@ def _places(
 
     refs = (change.new if side else change.old for change in changes)
     places = {Place(ref.file, ref.ordinal) for ref in refs if ref is not None and ref.file}
-    return Locator(made[side].sources)(places)
+    sources = [source for compilation in sides[side].values() for source in compilation.sources]
+    return Locator(sources)(places)

@@ -13,8 +13,9 @@ from sysmlc.cli.limits import LIMITS
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
-    from sysmlc.backends.base import Backend, InputFile
+    from sysmlc.backends.base import Backend
     from sysmlc.cache import Cache
+    from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
@@ -60,9 +61,10 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
-    """Files that are compiled together, and where their outputs go.
+class Selection:
+    """Files and folders that were named, or a ``[[model]]``, and where their outputs go.
 
+    ``name`` is that of the ``[[model]]``; without one the files may be several compile units.
     Nothing is written outside ``boundary``: the project root, or the folder that the user named.
     """
 
@@ -70,6 +72,7 @@ class Unit:
     output: Path
     emit: tuple[str, ...]
     boundary: Path
+    name: str = ""
 
 
 def fail(message: str, *details: str) -> NoReturn:
@@ -121,31 +124,33 @@ def _start(models: Sequence[Path]) -> Path:
     return first if first.is_dir() else first.parent
 
 
-def units(
+def select(
     models: Sequence[Path], config: "Config", output: Path | None, emit: tuple[str, ...]
-) -> list[Unit]:
-    """The compile units: what was named, or every ``[[model]]``.
+) -> list[Selection]:
+    """Return what was named, or every ``[[model]]``.
 
-    A named file that a ``[[model]]`` lists brings the whole unit with it.
+    A named file that a ``[[model]]`` lists brings the whole unit with it, and so does a named
+    folder that such a file lies in. What else was named comes last.
     """
     folder = config.folder or Path.cwd()
     declared = [(unit, _expand(config, unit.files)) for unit in config.models]
     chosen = [
-        Unit(
+        Selection(
             tuple(files),
             output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
             emit or unit.emit or config.emit,
-            boundary=output or config.root or Path.cwd(),
+            output or config.root or Path.cwd(),
+            unit.name,
         )
         for unit, files in declared
-        if not models or any(_same(model, file) for model in models for file in files)
+        if not models or any(_contains(model, file) for model in models for file in files)
     ]
     listed = [file for unit in chosen for file in unit.files]
     rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
     if rest:
         plain = output or (folder / config.output if config.folder else Path(config.output))
         boundary = output or config.root or Path.cwd()
-        chosen.append(Unit(rest, plain, emit or config.emit, boundary))
+        chosen.append(Selection(rest, plain, emit or config.emit, boundary))
     if not chosen:
         raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")
     return chosen
@@ -161,6 +166,11 @@ def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
         fail(str(problem))
 
 
+def _contains(model: Path, file: Path) -> bool:
+    """Whether *model* is the file, or a folder that the file lies in."""
+    return Path(os.path.realpath(file)).is_relative_to(os.path.realpath(model))
+
+
 def _same(left: Path, right: Path) -> bool:
     return os.path.realpath(left) == os.path.realpath(right)
 
@@ -171,30 +181,54 @@ def compile_unit(
     settings: Settings,
     emit: tuple[str, ...] | None = None,
 ) -> "Compilation":
-    """Compile files with the back ends of ``emit`` (None: with no back end)."""
-    request = _request(files, config, settings)
-    return _compile(_with_backends(request, emit), settings)
+    """Compile files, which must be one unit, with the back ends of ``emit`` (None: with none).
 
-
-def read_unit(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Compilation":
-    """Read files as they are written: references resolved, nothing refined."""
-    request = _request(files, config, settings)
-    passes = tuple(one for one in request.pipeline() if one.name in _AS_WRITTEN)
-    return _compile(replace(request, passes=passes), settings)
-
-
-def list_outcomes(
-    units: Sequence[Unit], config: "Config", settings: Settings, has_files: bool = True
-) -> "list[Outcome]":
-    """Return the outcomes of units, each from the cache if nothing has changed since it was stored.
-
-    Without *has_files* the outcomes hold diagnostics only.
+    Findings about the configuration are dropped unless the files are the whole project.
     """
-    files = [file for unit in units for file in unit.files]
-    cache = open_cache(files, config) if settings.is_plain else None
-    if cache is None:
-        return [compute_outcome(unit, config, settings, has_files) for unit in units]
-    return [_reuse_outcome(cache, unit, config, settings, has_files) for unit in units]
+    from sysmlc.cli.units import open_single_unit
+    from sysmlc.driver.project_findings import select_project_findings, without_project_findings
+
+    unit = open_single_unit(files, config, settings)
+    compilation = compile_opened(unit, settings, emit)
+    kept = select_project_findings(config, [unit.opened], [compilation.diagnostics])
+    return replace(
+        compilation, diagnostics=tuple(without_project_findings(compilation.diagnostics, kept))
+    )
+
+
+def compile_opened(
+    unit: "Unit", settings: Settings, emit: tuple[str, ...] | None = None
+) -> "Compilation":
+    """Compile a unit with the back ends of ``emit`` (None: with none)."""
+    return _compile(_with_backends(unit.request, emit), settings, unit.opened)
+
+
+def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
+    """Read a unit as its authors wrote it: references are resolved, nothing is refined."""
+    passes = tuple(step for step in unit.request.pipeline() if step.name in _AS_WRITTEN)
+    return _compile(replace(unit.request, passes=passes), settings, unit.opened)
+
+
+def compile_units(
+    units: "Sequence[Unit]", settings: Settings, *, has_files: bool = True, uses_cache: bool = True
+) -> "list[Outcome]":
+    """Return the outcome of each unit, from the cache if nothing has changed since it was stored.
+
+    Findings about the configuration are judged for all units together. Without *has_files* the
+    outcomes hold diagnostics only.
+    """
+    from sysmlc.driver.project_findings import judge_project_findings
+
+    files = [file for unit in units for file in unit.request.inputs]
+    is_cached = uses_cache and settings.is_plain
+    cache = open_cache(files, units[0].config) if is_cached else None
+    outcomes = [
+        compute_outcome(unit, settings, has_files)
+        if cache is None
+        else _reuse_outcome(cache, unit, settings, has_files)
+        for unit in units
+    ]
+    return judge_project_findings([(unit.config, unit.opened) for unit in units], outcomes)
 
 
 def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
@@ -211,47 +245,27 @@ def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
         return None
 
 
-def _reuse_outcome(
-    cache: "Cache", unit: Unit, config: "Config", settings: Settings, has_files: bool
-) -> "Outcome":
-    from sysmlc.driver import open_unit
+def _reuse_outcome(cache: "Cache", unit: "Unit", settings: Settings, has_files: bool) -> "Outcome":
     from sysmlc.driver.cache_key import compute_outcome_key
     from sysmlc.driver.outcome_cache import load_outcome, store_outcome
 
-    request = _request(unit.files, config, settings)
-    opened = open_unit(request)
-    key = compute_outcome_key(opened, request, unit.emit, has_files)
-    outcome = load_outcome(cache, key, opened.root)
+    key = compute_outcome_key(unit.opened, unit.request, unit.emit, has_files)
+    outcome = load_outcome(cache, key, unit.opened.root)
     if outcome is None:
-        outcome = _outcome(_with_backends(request, unit.emit), settings, has_files, opened)
+        outcome = compute_outcome(unit, settings, has_files)
         store_outcome(cache, key, outcome)
     return outcome
 
 
-def compute_outcome(
-    unit: Unit, config: "Config", settings: Settings, has_files: bool = True
-) -> "Outcome":
+def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) -> "Outcome":
     """Compile the unit in this process and return the outcome; the cache is not used."""
-    request = _request(unit.files, config, settings)
-    return _outcome(_with_backends(request, unit.emit), settings, has_files)
-
-
-def _outcome(
-    request: "Request", settings: Settings, has_files: bool, opened: "Opened | None" = None
-) -> "Outcome":
     from sysmlc.driver import outcome
 
-    return outcome(_compile(request, settings, opened), has_files)
+    return outcome(compile_opened(unit, settings, unit.emit), has_files)
 
 
-def inputs_of(unit: Unit, config: "Config", settings: Settings) -> "tuple[InputFile, ...]":
-    """What a compilation of the unit would read now."""
-    from sysmlc.driver import open_unit
-
-    return open_unit(_request(unit.files, config, settings)).inputs()
-
-
-def _request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
+def make_request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
+    """Return the request to compile files with no back end."""
     from sysmlc.driver import Request
 
     return Request(
@@ -328,24 +342,27 @@ def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
             fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
 
 
-def target_of(unit: Unit, config: "Config", *, is_forced: bool = False) -> "Target":
+def target_of(unit: "Unit", *, is_forced: bool = False) -> "Target":
     """Return the output folder of the unit, with what bounds it."""
     from sysmlc.driver import Target
 
-    configurations = (config.file,) if config.file else ()
+    configurations = (unit.config.file,) if unit.config.file else ()
     return Target(unit.output, unit.boundary, configurations, is_forced)
 
 
 def report(
     outcomes: "Iterable[Outcome]", settings: Settings, publications: "Iterable[Publication]" = ()
 ) -> None:
-    """Show the findings of all outcomes, and those about their output folders, as one report."""
+    """Show the findings of all outcomes, and those about their output folders, as one report.
+
+    A finding about a library is shown once, although several units use the library.
+    """
     from sysmlc.diagnostics.render import make_report
 
     found = [finding for made in outcomes for finding in named(made.root, made.findings)]
     diagnostics = [one for publication in publications for one in publication.diagnostics]
     found += named(Path.cwd(), make_report(diagnostics, ()).findings)
-    show(found, settings)
+    show(dict.fromkeys(found), settings)
 
 
 def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
@@ -401,12 +418,17 @@ def says_more(settings: Settings) -> bool:
     return settings.form not in ("json", "sarif")
 
 
-def exit_code(
-    outcomes: "Iterable[Outcome | Compilation]", config: "Config", settings: Settings
+def exit_code(outcome: "Outcome | Compilation", config: "Config", settings: Settings) -> int:
+    """Return the exit code of an outcome, with ``--strict`` or ``strict`` of the configuration."""
+    return outcome.exit_code(settings.strict or config.strict)
+
+
+def exit_code_of_all(
+    units: "Sequence[Unit]", outcomes: "Sequence[Outcome]", settings: Settings
 ) -> int:
-    """The highest exit code of the outcomes."""
-    strict = settings.strict or config.strict
-    return max(outcome.exit_code(strict) for outcome in outcomes)
+    """Return the highest exit code; each unit is judged by the configuration of its project."""
+    pairs = zip(units, outcomes, strict=True)
+    return max(exit_code(outcome, unit.config, settings) for unit, outcome in pairs)
 
 
 def has_color(stream: object) -> bool:

@@ -42,7 +42,7 @@ def command(
     if made.exit_code() < 2:
         text = print_text(made.graph) if element is None else _one(made.graph, element)
         terminal.echo_text(text, nl=False)
-    ctx.exit(session.exit_code([made], config, settings))
+    ctx.exit(session.exit_code(made, config, settings))
 
 
 def _one(graph: "Graph", wanted: str) -> str:

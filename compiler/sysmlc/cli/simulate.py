@@ -66,7 +66,7 @@ def command(
         if output is not None and diagram:
             write_files([(f"{scenario.stem}.seq.puml", diagram)], output)
     passed = result is not None and result.passed
-    code = session.exit_code([made], config, settings)
+    code = session.exit_code(made, config, settings)
     ctx.exit(max(code, 0 if passed else 1))
 
 

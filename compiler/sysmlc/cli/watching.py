@@ -10,8 +10,9 @@ from sysmlc.cli import terminal
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
-    from sysmlc.cli.session import Settings, Unit
+    from sysmlc.cli.session import Settings
     from sysmlc.cli.settling import Stamps
+    from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.driver import Outcome, Target
 
@@ -149,13 +150,13 @@ class Watch:
     def _is_of_now(self, made: "Sequence[Compiled]") -> bool:
         """Whether these are made of what the inputs are now, new files included."""
         from sysmlc.cli import session
+        from sysmlc.cli.units import open_units
 
         if not made:
             return True
         config = session.load_config(self._models, self._settings)
-        units = session.units(self._models, config, self._output, self._settings.emit)
-        now = [session.inputs_of(one, config, self._settings) for one in units]
-        return now == [one.outcome.inputs for one in made]
+        units = open_units(self._models, config, self._settings, self._output)
+        return [unit.opened.inputs() for unit in units] == [one.outcome.inputs for one in made]
 
     def _rest(self) -> float:
         """How long files must rest: faults of a configuration are told at once, when it is read."""
@@ -176,16 +177,16 @@ def compiled(
     leave the standard library unread when the first edit comes.
     """
     from sysmlc.cli import session
+    from sysmlc.cli.units import open_units
 
     # Front ends freeze the graphs that they made; those of earlier compilations may go now.
     gc.unfreeze()
     config = session.load_config(models, settings)
-    units = session.units(models, config, output, settings.emit)
+    units = open_units(models, config, settings, output)
+    outcomes = session.compile_units(units, settings, uses_cache=False)
     return [
-        Compiled(
-            unit, session.target_of(unit, config), session.compute_outcome(unit, config, settings)
-        )
-        for unit in units
+        Compiled(unit, session.target_of(unit), outcome)
+        for unit, outcome in zip(units, outcomes, strict=True)
     ]
 
 
@@ -231,5 +232,5 @@ def _unit_files(
     from sysmlc.cli import session
 
     config = session.load_config(models, settings)
-    units = session.units(models, config, None, ())
-    return config, tuple(file for unit in units for file in unit.files)
+    selections = session.select(models, config, None, ())
+    return config, tuple(file for selection in selections for file in selection.files)

@@ -51,6 +51,12 @@ class Sink:
         found = Diagnostic(rule, severity, message, subject, told, advice)
         self._found.setdefault((rule.code, message, subject), found)
 
+    def subset(self, diagnostics: Iterable[Diagnostic]) -> "Sink":
+        """Return a new sink with the same severities that already holds *diagnostics*."""
+        part = Sink(self._severities)
+        part._found = {(d.rule.code, d.message, d.subject): d for d in diagnostics}
+        return part
+
     def relate(self, found: Diagnostic, id: str) -> None:
         """Say which element of the graph a finding is about that only knew its place."""
         key = (found.rule.code, found.message, found.subject)

@@ -19,6 +19,7 @@ from sysmlc.driver.registry import (
     select_backends,
 )
 from sysmlc.driver.tracing import trace_text
+from sysmlc.driver.units import open_units
 
 __all__ = [
     "BackendError",
@@ -36,6 +37,7 @@ __all__ = [
     "load_backends",
     "manifest_text",
     "open_unit",
+    "open_units",
     "outcome",
     "publish",
     "select_backends",

@@ -64,6 +64,8 @@ class Request:
     """Schemas that the inputs are validated against; None: they are not."""
     library: str = ""
     """Where the model library of SysML v2 is; empty where it is usually found."""
+    excluded: tuple[Path, ...] = ()
+    """Real paths that are skipped in folders, because they belong to other compile units."""
 
     def pipeline(self) -> tuple[Pass, ...]:
         """The passes in order. Raises ConfigError for options that no pass has."""
@@ -106,6 +108,13 @@ class Opened:
     frontends: tuple[Frontend, ...]
     drawings: tuple[Source, ...] = ()
     """What lies beside the inputs and holds the diagrams of authors, when they are wanted."""
+    name: str = ""
+    """Name of the unit, safe as a folder name and unique among the units of one request."""
+
+    def first_file(self) -> str:
+        """Return the name of the first source, without the entry of an archive, or ``.``."""
+        sources = self.reading.sources()
+        return sources[0].name.partition("!")[0] if sources else "."
 
     def inputs(self) -> tuple[InputFile, ...]:
         """All that was read, as the outputs name it."""
@@ -118,17 +127,21 @@ class Opened:
 
 
 def open_unit(request: Request) -> Opened:
-    """Read the inputs of a request, and what they refer to; parse nothing."""
+    """Read the inputs of a request, and what they refer to, as one unit; parse nothing.
+
+    ``units.open_units`` partitions the files of a folder into several units.
+    """
     sink = Sink(request.config.rules)
     frontends = request.frontends or tuple(registry.frontends(request.library))
     root = unit_root((*request.inputs, *request.overlays), request.config.folder)
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     laid = [path for path in request.inputs if path.name.endswith(SUFFIX)]
-    reading = read_unit(models, root, frontends, sink, (*request.overlays, *laid))
-    return Opened(root, reading, sink, frontends, _drawings(request, reading, root, sink))
+    overlays = (*request.overlays, *laid)
+    reading = read_unit(models, root, frontends, sink, overlays, request.excluded)
+    return Opened(root, reading, sink, frontends, load_drawings(request, reading, root, sink))
 
 
-def _drawings(request: Request, reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
+def load_drawings(request: Request, reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
     if request.diagrams == DERIVED:
         return ()
     from sysmlc.driver.drawings import beside
@@ -308,9 +321,9 @@ class _Run:
         return element is not None and element.attrs.get("library") is True
 
     def _unknown_level_elements(self) -> Iterator[tuple[str, str]]:
-        """Names in ``[recipe.levels]``; with several units an element may be in another one."""
+        """Names in ``[recipe.levels]`` that no element of the unit has, each with advice."""
         levels = self._request.config.passes.get("recipe", {}).get("levels")
-        if not isinstance(levels, dict) or len(self._request.config.models) > 1:
+        if not isinstance(levels, dict):
             return
         unknown = [name for name in levels if not self._is_known(name)]
         names = {self._graph.qualified_name(one) for one in self._graph} if unknown else set()

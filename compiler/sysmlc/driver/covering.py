@@ -4,8 +4,8 @@ from pathlib import Path
 
 from sysmlc.diagnostics import Coverage, Diagnostic
 from sysmlc.diagnostics.coverage_report import FileReport, file_reports
-from sysmlc.driver import faults, registry
-from sysmlc.driver.compilation import Request, open_unit
+from sysmlc.driver import faults
+from sysmlc.driver.compilation import Opened, Request, open_unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Source, SourceError
 from sysmlc.values import dataclass
@@ -21,12 +21,12 @@ class Covered:
     sources: tuple[Source, ...]
 
 
-def cover(request: Request) -> Covered:
+def cover(request: Request, opened: Opened | None = None) -> Covered:
     """Read the inputs of a request, and say what became of their elements."""
-    opened = open_unit(request)
+    opened = opened or open_unit(request)
     coverage, graph = Coverage(is_detailed=True), Graph()
     sources = opened.reading.sources()
-    for frontend in request.frontends or registry.frontends(request.library):
+    for frontend in opened.frontends:
         ours = [r.source for r in opened.reading.recognised if r.frontend is frontend]
         try:
             if ours:

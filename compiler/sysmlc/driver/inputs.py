@@ -5,7 +5,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from sysmlc.config import find_project_root
+from sysmlc.config import FILE_NAME, find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.driver.ownership import is_output_folder
@@ -58,13 +58,19 @@ def _depth(folder: Path) -> int:
     return len(folder.parts)
 
 
-def collect(paths: Iterable[Path], root: Path, sink: Sink) -> dict[Path, bool]:
-    """Files to read, sorted by name, and whether each was named (not found in a folder)."""
+def collect(
+    paths: Iterable[Path], root: Path, sink: Sink, excluded: Iterable[Path] = ()
+) -> dict[Path, bool]:
+    """Files to read, sorted by name, and whether each was named (not found in a folder).
+
+    Folders are searched without the files and folders in ``excluded``, which are real paths.
+    """
     found: dict[Path, bool] = {}
+    left_out = frozenset(excluded)
     for path in paths:
         absolute = _absolute(path)
         if absolute.is_dir():
-            found = dict.fromkeys(_in_folder(absolute, root, sink), False) | found
+            found = dict.fromkeys(_in_folder(absolute, root, sink, left_out), False) | found
         elif absolute.exists():
             found[absolute] = True
         else:
@@ -99,31 +105,64 @@ def _absolute(path: Path) -> Path:
     return path.resolve() if path.is_dir() else path.parent.resolve() / path.name
 
 
-def _in_folder(folder: Path, root: Path, sink: Sink) -> list[Path]:
+def _in_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Path]) -> list[Path]:
     inside = Roots((folder,))
     found = []
-    for path in sorted(_walk(folder)):
+    for path in sorted(find_model_files(folder, excluded)):
         if path.is_symlink() and not inside.allows(path):
             name = name_of(path, root)
             sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         else:
             found.append(path)
-    if not found:
+    if not found and not any(path.is_relative_to(folder) for path in excluded):
         name = name_of(folder, root)
         shown = folder.resolve().name if name == "." else name
         sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=shown)
     return found
 
 
-def _walk(folder: Path) -> Iterator[Path]:
+def find_model_files(folder: Path, excluded: frozenset[Path] = frozenset()) -> Iterator[Path]:
+    """Yield the files below *folder* that are named like models, in no particular order.
+
+    Hidden folders, output folders and whatever ``excluded`` lists (real paths) are skipped.
+    """
+    for parent, names in _walk(folder, excluded):
+        for name in names:
+            is_model = Path(name).suffix.lower() in SUFFIXES and not name.startswith(".")
+            if is_model and not _is_excluded(parent / name, excluded):
+                yield parent / name
+
+
+def find_projects(folder: Path) -> Iterator[Path]:
+    """Yield the topmost folders below *folder* that are project roots of their own.
+
+    Such a folder has a ``sysmlc.toml``.
+    """
+    projects: list[Path] = []
+    for parent, _ in _walk(folder, frozenset()):
+        is_inside = any(parent.is_relative_to(project) for project in projects)
+        if parent != folder and not is_inside and (parent / FILE_NAME).is_file():
+            projects.append(parent)
+            yield parent
+
+
+def _walk(folder: Path, excluded: frozenset[Path]) -> Iterator[tuple[Path, list[str]]]:
+    """Yield each folder to search with the names of its files."""
     for path, folders, files in os.walk(folder):
-        here = Path(path)
+        parent = Path(path)
+        yield parent, files
+        # os.walk descends into what is left in the list.
         folders[:] = [
-            f for f in folders if not f.startswith(".") and not is_output_folder(here / f)
+            name
+            for name in folders
+            if not name.startswith(".")
+            and not is_output_folder(parent / name)
+            and not _is_excluded(parent / name, excluded)
         ]
-        for file in files:
-            if Path(file).suffix.lower() in SUFFIXES and not file.startswith("."):
-                yield here / file
+
+
+def _is_excluded(path: Path, excluded: frozenset[Path]) -> bool:
+    return bool(excluded) and Path(os.path.realpath(path)) in excluded
 
 
 def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:

@@ -14,6 +14,22 @@ from sysmlc.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)
+class ReadFile:
+    """One file that was read: the names of its sources, and the files that it refers to.
+
+    Paths are real paths. An archive has several sources, an overlay one, a file that no front end
+    recognises none.
+    """
+
+    path: Path
+    sources: tuple[str, ...] = ()
+    references: frozenset[Path] = frozenset()
+    is_named: bool = False
+    """Whether the command line or the configuration names the file itself, not its folder."""
+    is_overlay: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Reading:
     """The recognised sources, sorted by name, and whether nothing was left out."""
 
@@ -22,6 +38,7 @@ class Reading:
     roots: Roots
     """Folders that the unit may be read from."""
     overlays: tuple[LoadedOverlay, ...] = ()
+    files: tuple[ReadFile, ...] = ()
 
     def sources(self) -> tuple[Source, ...]:
         """The sources alone."""
@@ -34,18 +51,22 @@ def read_unit(
     frontends: Sequence[Frontend],
     sink: Sink,
     overlays: Sequence[Path] = (),
+    excluded: Sequence[Path] = (),
 ) -> Reading:
-    """The sources of the unit; what cannot be read is reported."""
+    """The sources of the unit; what cannot be read is reported.
+
+    Folders are searched without the real paths in ``excluded``.
+    """
     roots = allowed_roots((*inputs, *overlays), root)
     reader = _Reader(root, roots, frontends, sink)
-    for path, named in collect(inputs, root, sink).items():
-        reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED)
+    for path, named in collect(inputs, root, sink, excluded).items():
+        reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED, is_named=named)
     for path in overlays:
         reader.read_overlay(path, is_named=True)
     reader.follow_links()
     ordered = tuple(reader.found[name] for name in sorted(reader.found))
     laid = tuple(reader.overlays[name] for name in sorted(reader.overlays))
-    return Reading(ordered, not sink.has_errors(), roots, laid)
+    return Reading(ordered, not sink.has_errors(), roots, laid, reader.list_files())
 
 
 class _Reader:
@@ -61,19 +82,39 @@ class _Reader:
         self._seen: set[Path] = set()
         self._laid: set[Path] = set()
         self._waiting: list[tuple[Path, Recognised]] = []
+        self._sources: dict[Path, list[str]] = {}
+        self._references: dict[Path, set[Path]] = {}
+        self._named: set[Path] = set()
 
-    def read(self, path: Path, otherwise: Rule | None) -> None:
+    def list_files(self) -> tuple[ReadFile, ...]:
+        """Return the files that were read, sorted by path, with their references."""
+        return tuple(
+            ReadFile(
+                path,
+                tuple(self._sources.get(path, ())),
+                frozenset(self._references.get(path, ())),
+                path in self._named,
+                path in self._laid,
+            )
+            for path in sorted(self._seen)
+        )
+
+    def read(self, path: Path, otherwise: Rule | None, *, is_named: bool = False) -> None:
         """Read a file; ``otherwise`` is reported when no front end recognises it."""
         real = Path(os.path.realpath(path))
         if real in self._seen:
             return
         self._seen.add(real)
+        if is_named:
+            self._named.add(real)
         sources = _sources(path, self._root, self._sink)
         for found in recognise(sources, self._frontends, otherwise, self._sink):
             self.found[found.source.name] = found
+            self._sources.setdefault(real, []).append(found.source.name)
             self._waiting.append((path, found))
         overlay = beside(path) if sources else None
         if overlay is not None:
+            self._refer(path, overlay)
             self.read_overlay(overlay, is_named=False)
 
     def read_overlay(self, path: Path, *, is_named: bool) -> None:
@@ -87,9 +128,13 @@ class _Reader:
         if found is None:
             return
         self.overlays[found.source.name] = found
+        self._sources[real] = [found.source.name]
+        if is_named:
+            self._named.add(real)
         for file in models_of(found):
             target = self._roots.resolve(path, file)
             if target is not None:
+                self._refer(path, target)
                 self.read(target, None)
 
     def follow_links(self) -> None:
@@ -99,8 +144,13 @@ class _Reader:
             for href in found.frontend.links(found.source):
                 target = self._roots.resolve(path, href)
                 if target is not None:
+                    self._refer(path, target)
                     self.read(target, None)
             self._check_mentioned(path, found)
+
+    def _refer(self, path: Path, target: Path) -> None:
+        references = self._references.setdefault(Path(os.path.realpath(path)), set())
+        references.add(Path(os.path.realpath(target)))
 
     def _check_mentioned(self, path: Path, found: Recognised) -> None:
         """Tell which files of other languages are not there; parts of a package are checked."""

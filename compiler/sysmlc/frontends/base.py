@@ -1,11 +1,13 @@
 """What a front end is: it recognises its files and reads them into the graph."""
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 from typing import Protocol, runtime_checkable
 
 from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
+from sysmlc.values import dataclass
 
 
 class Frontend(Protocol):
@@ -28,6 +30,34 @@ class Frontend(Protocol):
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph and account for every element of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileNames:
+    """How a file takes part in the compile units of its folder, beyond ``Frontend.links``.
+
+    A library, such as a profile, only defines what models use. It belongs to each unit that uses
+    it and does not connect these units.
+    """
+
+    is_library: bool = False
+    declared: AbstractSet[str] = frozenset()
+    """Names by which other files can refer to this one."""
+    local: AbstractSet[str] = frozenset()
+    """Names of all its elements; a use of such a name in the same unit means that element."""
+    used: AbstractSet[str] = frozenset()
+    """Names by which this file may refer to others; local names may be among them."""
+
+
+@runtime_checkable
+class Relating(Protocol):
+    """A front end whose files are libraries, refer to one another by name, or share a folder."""
+
+    is_folder_unit: bool
+    """Whether the files of a folder are one model although none of them names another file."""
+
+    def read_names(self, source: Source) -> FileNames:
+        """Return how the source takes part in compile units; its faults are reported later."""
 
 
 @runtime_checkable

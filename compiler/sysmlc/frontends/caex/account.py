@@ -23,6 +23,7 @@ from sysmlc.sources.encoding import codec
 _Use = tuple[Document, Node]
 
 _EXTERNAL = re.compile(r"<(?:[\w.-]+:)?ExternalReference\b[^>]*")
+_HIERARCHY = re.compile(rb"<(?:[\w.-]+:)?InstanceHierarchy\b")
 _PATH = re.compile(r"""\bPath\s*=\s*(?:"([^"]+)|'([^']+))""")
 
 
@@ -37,6 +38,11 @@ def links(source: Source) -> list[str]:
     text = source.data[mark:].decode(name, "replace")
     found = (match for tag in _EXTERNAL.findall(text) if (match := _PATH.search(tag)))
     return list(dict.fromkeys(unescape(match[1] or match[2]) for match in found))
+
+
+def has_hierarchy(source: Source) -> bool:
+    """Whether the file has an instance hierarchy; in UTF-16 every other byte is zero."""
+    return _HIERARCHY.search(source.data.replace(b"\0", b"")) is not None
 
 
 def account(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink
+from sysmlc.frontends.base import FileNames
 from sysmlc.frontends.caex import detect
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
@@ -12,6 +13,7 @@ class CaexFrontend:
     """Reads AutomationML: CAEX 2.15 and 3.0, and files that mix them."""
 
     name = "caex"
+    is_folder_unit = False
 
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1, that the source is AutomationML."""
@@ -22,6 +24,12 @@ class CaexFrontend:
         from sysmlc.frontends.caex.account import links
 
         return links(source)
+
+    def read_names(self, source: Source) -> FileNames:
+        """A file without an instance hierarchy is a library; files refer to others by path."""
+        from sysmlc.frontends.caex.account import has_hierarchy
+
+        return FileNames(is_library=not has_hierarchy(source))
 
     def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
         """The files of other languages that it refers to: they are not read."""

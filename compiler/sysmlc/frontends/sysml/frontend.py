@@ -1,8 +1,10 @@
 """The front end for SysML v2 and KerML."""
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.base import FileNames
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
 from sysmlc.values import dataclass
@@ -15,6 +17,7 @@ class SysmlFrontend:
     ``library`` is where the standard library is; empty where it is usually found.
     """
 
+    is_folder_unit: ClassVar[bool] = True
     name: str = "sysml"
     library: str = ""
 
@@ -31,6 +34,12 @@ class SysmlFrontend:
     def links(self, source: Source) -> Sequence[str]:
         """Files of a model do not name one another: a folder is a unit."""
         return ()
+
+    def read_names(self, source: Source) -> FileNames:
+        """Files refer to one another by the names of their root members."""
+        from sysmlc.frontends.sysml.root_names import read_names
+
+        return read_names(source)
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Parse, resolve and lower all files of the unit."""

@@ -27,7 +27,7 @@ def read(
     from sysmlc.language.names import Model, resolve_all
 
     models = [source for source in sources if not is_description(source)]
-    documents = [_document(source, sink) for source in models]
+    documents = [parse_document(source, sink) for source in models]
     standard = _library(library, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
         from sysmlc.language.exchange import link
@@ -72,8 +72,8 @@ def _mark(graph: Graph, libraries: Sequence[Document]) -> None:
                 graph.set(one, external=True)
 
 
-def _document(source: Source, sink: Sink) -> Document:
-    """The tree of one file; what is wrong in it is reported by its reader."""
+def parse_document(source: Source, sink: Sink) -> Document:
+    """Parse one text or interchange file and report its faults."""
     if is_xml(source):
         from sysmlc.language.exchange import read as read_exchange
 

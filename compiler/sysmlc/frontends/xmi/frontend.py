@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.base import FileNames
 from sysmlc.frontends.xmi import detect
 from sysmlc.frontends.xmi.snapshot import is_snapshot
 from sysmlc.ir import Graph
@@ -13,6 +14,7 @@ class XmiFrontend:
     """Reads UML 2 and SysML v1 models in XMI: Papyrus, MagicDraw/Cameo, and what is like them."""
 
     name = "xmi"
+    is_folder_unit = False
 
     def detect(self, source: Source) -> float:
         """How sure it is, from 0 to 1, that the source is UML in XMI."""
@@ -27,6 +29,19 @@ class XmiFrontend:
         from sysmlc.frontends.xmi.links import links
 
         return links(source)
+
+    def read_names(self, source: Source) -> FileNames:
+        """A profile is a library, named by its namespaces; models name others by hrefs only."""
+        if is_snapshot(source):
+            return FileNames(is_library=True)
+        from sysmlc.frontends.xmi.links import profile_namespaces, used_namespaces
+
+        declared = profile_namespaces(source)
+        return FileNames(
+            is_library=declared is not None,
+            declared=declared or frozenset(),
+            used=used_namespaces(source),
+        )
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Read the files into the graph; references are left for the pass ``resolve``.

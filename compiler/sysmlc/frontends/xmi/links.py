@@ -1,9 +1,15 @@
-"""Which files a document refers to; found without parsing it, before the unit is known."""
+"""How a document refers to others; found without parsing it, before the unit is known."""
 
+from sysmlc.frontends.xmi.profiles import default_namespace
 from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 
 _HREF = pattern(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+
+_ROOT = pattern(rb"<uml:(Profile|Model|Package)\b([^>]*)")
+_NAME = pattern(rb"""\sname\s*=\s*(?:"([^"]*)|'([^']*))""")
+_EMF_NAMESPACE = pattern(rb"""\bnsURI\s*=\s*["']([^"']+)""")
+_XML_NAMESPACE = pattern(rb"""\bxmlns:[\w.-]+\s*=\s*["']([^"']+)""")
 
 
 def links(source: Source) -> list[str]:
@@ -21,3 +27,26 @@ def _unescaped(href: str) -> str:
     from html import unescape
 
     return unescape(href)
+
+
+def profile_namespaces(source: Source) -> frozenset[str] | None:
+    """Return the namespaces of the stereotypes in a profile; None for any other document.
+
+    Papyrus saves one for each version of the profile, MagicDraw derives it from the name.
+    """
+    root = _ROOT.search(source.data)
+    if root is None or root[1] != b"Profile":
+        return None
+    name = _NAME.search(root[2])
+    own = _text(name[1] or name[2] or b"") if name is not None else ""
+    namespaces = map(_text, _EMF_NAMESPACE.findall(source.data))
+    return frozenset([default_namespace(own), *namespaces])
+
+
+def used_namespaces(source: Source) -> frozenset[str]:
+    """Return the XML namespaces that a document declares with a prefix."""
+    return frozenset(map(_text, _XML_NAMESPACE.findall(source.data)))
+
+
+def _text(data: bytes) -> str:
+    return _unescaped(data.decode("utf-8", "replace"))

@@ -49,9 +49,14 @@ def last_segment(namespace: str) -> str:
     return namespace.rpartition("/")[2].removesuffix(".xmi")
 
 
+def default_namespace(profile: str) -> str:
+    """Return the namespace that MagicDraw gives a profile without a URI of its own."""
+    return f"http://www.magicdraw.com/schemas/{mangled(profile)}.xmi"
+
+
 def _conventional(package: Element) -> list[str]:
     if package.kind is not Kind.PROFILE:
         return []
     uri = package.attrs.get("u_r_i") or package.attrs.get("uri")
-    default = f"http://www.magicdraw.com/schemas/{mangled(package.name)}.xmi"
+    default = default_namespace(package.name)
     return [str(uri), default] if uri else [default]

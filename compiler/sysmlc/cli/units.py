@@ -1,0 +1,190 @@
+"""From what the user named to the compile units of a run, and where the outputs of each go."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sysmlc.values import dataclass, replace
+
+if TYPE_CHECKING:
+    from sysmlc.cli.session import Selection, Settings
+    from sysmlc.config import Config
+    from sysmlc.driver import Opened, Request
+
+_LISTED = 10
+"""Units that a message lists."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A compile unit whose files have been read, and where its outputs go.
+
+    ``name`` is unique in the run and safe as a folder name. Nothing is written outside
+    ``boundary``: the project root, or the folder that the user named.
+    """
+
+    request: "Request"
+    opened: "Opened"
+    name: str
+    output: Path
+    emit: tuple[str, ...]
+    boundary: Path
+
+    @property
+    def config(self) -> "Config":
+        """The configuration of the project that the unit belongs to."""
+        return self.request.config
+
+
+def open_units(
+    models: Sequence[Path], config: "Config", settings: "Settings", output: Path | None
+) -> list[Unit]:
+    """Read the files of all compile units of a run.
+
+    Each ``[[model]]`` is a unit; the other files that were named, or that lie in a named folder,
+    are partitioned (``driver.units``). A folder with its own ``sysmlc.toml`` below a named folder
+    is compiled as if it were named alone. One unit is written to the output folder itself, several
+    units to a folder each.
+    """
+    units = _give_unique_names(_open_project(models, config, settings, output))
+    if output is None:
+        return units
+    if len(units) == 1:
+        # The unit may be that of a project below the named folder.
+        is_placed = units[0].boundary == output
+        return units if is_placed else [replace(units[0], output=output, boundary=output)]
+    return [replace(unit, output=output / unit.name, boundary=output) for unit in units]
+
+
+def find_leftover_outputs(units: Sequence[Unit]) -> list[Path]:
+    """Return output folders of earlier runs, beside those of *units*, that no unit has now.
+
+    A model that was renamed or deleted leaves one behind, and so does a folder that was one unit.
+    """
+    from sysmlc.driver.ownership import is_output_folder
+
+    used = {unit.output.resolve() for unit in units}
+    used |= {
+        (unit.config.folder / model.output).resolve()
+        for unit in units
+        if unit.config.folder is not None
+        for model in unit.config.models
+    }
+    parents = [unit.output.resolve().parent for unit in units]
+    shared = sorted(parent for parent in {*parents} if parents.count(parent) > 1)
+    folders = [
+        folder
+        for parent in shared
+        if parent.is_dir()
+        for folder in (parent, *sorted(parent.iterdir()))
+    ]
+    return [folder for folder in folders if folder not in used and is_output_folder(folder)]
+
+
+def open_named_units(models: Sequence[Path], config: "Config", settings: "Settings") -> list[Unit]:
+    """Read the compile units of the files and folders that were named, whatever ``[[model]]`` says.
+
+    For commands that write no output folder.
+    """
+    from sysmlc.cli.session import Selection
+
+    selection = Selection(tuple(models), Path(), (), Path())
+    return list(_open_selection(selection, config, settings, ()))
+
+
+def open_single_unit(models: Sequence[Path], config: "Config", settings: "Settings") -> Unit:
+    """Read the files that were named, which must be one compile unit, else exit with code 2."""
+    from sysmlc.cli.session import fail, name_of
+
+    units = open_named_units(models, config, settings)
+    if len(units) > 1:
+        files = [name_of(unit.opened.root, unit.opened.first_file()) for unit in units]
+        listed = ", ".join(files[:_LISTED]) + (", ..." if len(files) > _LISTED else "")
+        fail(f"the models are {len(units)} compile units; name the files of one, such as {listed}")
+    return units[0]
+
+
+def _open_project(
+    models: Sequence[Path], config: "Config", settings: "Settings", output: Path | None
+) -> list[Unit]:
+    """Open the declared units first: the files that they read are no units of their own."""
+    from sysmlc.cli.session import make_request, select
+    from sysmlc.driver import open_unit
+
+    selections = select(models, config, output, settings.emit)
+    units: list[Unit] = []
+    for selection in selections:
+        if selection.name:
+            request = make_request(selection.files, config, settings)
+            opened = open_unit(request)
+            units.append(
+                Unit(
+                    request,
+                    opened,
+                    selection.name,
+                    selection.output,
+                    selection.emit,
+                    selection.boundary,
+                )
+            )
+        else:
+            read = [file.path for unit in units for file in unit.opened.reading.files]
+            units += _open_selection(selection, config, settings, read)
+    return units
+
+
+def _make_unit(
+    selection: "Selection", request: "Request", opened: "Opened", name: str, output: Path
+) -> Unit:
+    return Unit(request, opened, name, output, selection.emit, selection.boundary)
+
+
+def _open_selection(
+    selection: "Selection",
+    config: "Config",
+    settings: "Settings",
+    excluded: Sequence[Path],
+) -> Iterator[Unit]:
+    """Yield the units of one selection, and those of the projects below its folders."""
+    from sysmlc.cli.session import make_request
+    from sysmlc.driver import open_units
+    from sysmlc.driver.inputs import find_projects
+
+    folders = [path.resolve() for path in selection.files if path.is_dir()]
+    ignores_others = settings.isolated or settings.config is not None
+    projects = [] if ignores_others else [p for f in folders for p in find_projects(f)]
+    request = replace(
+        make_request(selection.files, config, settings), excluded=(*excluded, *projects)
+    )
+    parts = open_units(request)
+    is_alone = len(parts) == 1 and not excluded
+    for opened in parts:
+        if request.excluded and not opened.reading.files and not len(opened.sink):
+            continue
+        folder = selection.output if is_alone else selection.output / opened.name
+        yield _make_unit(selection, request, opened, opened.name, folder)
+    for project in projects:
+        yield from _open_nested(project, settings, parts[0].root)
+
+
+def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Unit]:
+    """Open the units of a project below a named folder; their names begin with its path."""
+    from sysmlc.cli.session import load_config
+    from sysmlc.naming import file_names
+
+    units = _open_project([project], load_config([project], settings), settings, None)
+    path = project.relative_to(root) if project.is_relative_to(root) else Path(project.name)
+    (name,) = file_names(["::".join(path.parts)]).values()
+    for unit in units:
+        yield replace(unit, name=name if len(units) == 1 else f"{name}.{unit.name}")
+
+
+def _give_unique_names(units: Sequence[Unit]) -> list[Unit]:
+    """Number the names that differ in case only; file systems may not tell them apart."""
+    counts: dict[str, int] = {}
+    named: list[Unit] = []
+    for unit in units:
+        key = unit.name.lower()
+        counts[key] = count = counts.get(key, 0) + 1
+        named.append(unit if count == 1 else replace(unit, name=f"{unit.name}~{count}"))
+    return named

@@ -1,0 +1,105 @@
+"""Findings about the configuration of a project, which one compile unit alone cannot decide.
+
+A ``[[suppress]]`` entry is unused, and a name in ``[recipe.levels]`` is unknown, only if that holds
+in every unit of the project. A run that reads a part of the project does not report either.
+"""
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from sysmlc.config import Config, ConfigError, expand_files
+from sysmlc.diagnostics import Diagnostic
+from sysmlc.driver import faults
+from sysmlc.driver.compilation import Opened
+from sysmlc.driver.inputs import find_model_files, find_projects
+from sysmlc.driver.outcome import Outcome
+from sysmlc.frontends.base import Frontend
+from sysmlc.sources import SourceError, load
+from sysmlc.values import replace
+
+_PROJECT_RULES = frozenset({faults.UNUSED_SUPPRESSION.code, faults.UNKNOWN_LEVEL_ELEMENT.code})
+
+
+def judge_project_findings(
+    units: Sequence[tuple[Config, Opened]], outcomes: Sequence[Outcome]
+) -> list[Outcome]:
+    """Return the outcomes with the findings that hold for a whole project, each once.
+
+    Units may belong to several projects, each with a configuration of its own.
+    """
+    judged = list(outcomes)
+    for file in dict.fromkeys(config.file for config, _ in units):
+        members = [index for index, (config, _) in enumerate(units) if config.file == file]
+        diagnostics = [[f.diagnostic for f in outcomes[index].findings] for index in members]
+        opened = [units[index][1] for index in members]
+        kept = select_project_findings(units[members[0]][0], opened, diagnostics)
+        for index in members:
+            findings = outcomes[index].findings
+            judged[index] = replace(
+                outcomes[index],
+                findings=tuple(f for f in findings if _is_kept(f.diagnostic, kept)),
+            )
+            kept = frozenset()
+    return judged
+
+
+def select_project_findings(
+    config: Config, units: Sequence[Opened], diagnostics: Sequence[Iterable[Diagnostic]]
+) -> frozenset[str]:
+    """Return the messages of the findings about the configuration that hold in all *units*."""
+    messages = [
+        frozenset(d.message for d in found if d.rule.code in _PROJECT_RULES)
+        for found in diagnostics
+    ]
+    common = frozenset.intersection(*messages)
+    return common if common and _is_whole_project(config, units) else frozenset()
+
+
+def without_project_findings(
+    diagnostics: Iterable[Diagnostic], kept: frozenset[str]
+) -> Iterator[Diagnostic]:
+    """Yield *diagnostics* without those about the configuration whose message is not in *kept*."""
+    return (diagnostic for diagnostic in diagnostics if _is_kept(diagnostic, kept))
+
+
+def _is_kept(diagnostic: Diagnostic, kept: frozenset[str]) -> bool:
+    return diagnostic.rule.code not in _PROJECT_RULES or diagnostic.message in kept
+
+
+def _is_whole_project(config: Config, units: Sequence[Opened]) -> bool:
+    """Whether the units read every model of the project."""
+    read = {file.path for opened in units for file in opened.reading.files}
+    frontends = units[0].frontends
+    try:
+        return all(path in read or not _is_model(path, frontends) for path in _list_files(config))
+    except ConfigError:
+        return False
+
+
+def _is_model(path: Path, frontends: Sequence[Frontend]) -> bool:
+    """Whether a front end recognises the file; much XML is no model."""
+    try:
+        sources = load(path, path.name)
+    except SourceError:
+        return False
+    return any(frontend.detect(source) > 0 for source in sources for frontend in frontends)
+
+
+def _list_files(config: Config) -> Iterator[Path]:
+    """Yield the real paths of the files of every ``[[model]]``, or else of the whole project.
+
+    Of the project these are all files that are named like models.
+    """
+    if config.folder is None:
+        return
+    declared = [path for unit in config.models for path in expand_files(config, unit.files)]
+    for path in declared or [config.folder]:
+        if not path.is_dir():
+            yield Path(os.path.realpath(path))
+            continue
+        folder = path.resolve()
+        nested = frozenset(() if declared else find_projects(folder))
+        real_paths = (Path(os.path.realpath(file)) for file in find_model_files(folder, nested))
+        # A link that leads out of the folder is not read.
+        yield from (file for file in real_paths if file.is_relative_to(folder))
