@@ -49,7 +49,6 @@ def imported(model: Path, folder: Path) -> set[str]:
         "sysmlc.frontends.huds.lowering",
         "sysmlc.overlay.model",
         "urllib.request",
-        "traceback",
     ],
 )
 def test_a_model_of_uml_brings_no_readers_of_other_things(uml_modules, module):
