@@ -315,7 +315,7 @@ def test_sides_that_lead_nowhere_are_those_that_lxml_finds(aml, reading):
 CONTAINERS = {
     "AdditionalDocumentNotInRels": "no relationship of the package leads to its part",
     "AutomationMLComponent_WithMissingDocuments": "it has no part 'files/TestTXTDeviceManual.txt'",
-    "InvalidRootAmlDocument": "is no model that a front end recognises",
+    "InvalidRootAmlDocument": "is not a model: it is",
     "MissingPart": "it has no part 'wrongFilePath.txt'",
     "MissingRootDocument": "it has no part 'wrongLinkToFile.aml'",
     "MultipleRootDocuments": "it has 2 root documents, 'root1.aml' and 'root2.aml'",

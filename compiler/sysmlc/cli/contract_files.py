@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sysmlc.cli import terminal
+from sysmlc.escapes import escape_undecodable
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
         known = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
         fail(f"'{language}' is no form that is read; known are {known}")
     try:
-        source = Source(file.as_posix(), file.read_bytes())
+        source = Source(escape_undecodable(file.as_posix()), file.read_bytes())
         text = source.data.decode("utf-8-sig") + _parts_beside(file, source.data)
     except OSError as problem:
         fail(f"cannot read '{file}': {problem.strerror}")

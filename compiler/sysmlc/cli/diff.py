@@ -31,7 +31,8 @@ Examples:
 @click.argument("new", type=click.Path(path_type=Path), metavar="NEW")
 @click.option(
     "--ignore",
-    callback=options.names,
+    multiple=True,
+    callback=options.split_names,
     metavar="A,B",
     help="What makes no difference: names of attributes; with 'id' equal ids mean nothing.",
 )

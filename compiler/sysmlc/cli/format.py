@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from sysmlc.escapes import escape_undecodable
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def _read(path: Path, language: str | None) -> _Text:
     from sysmlc.sources import DEFAULT_LIMITS, SourceError
     from sysmlc.sources.whole import read_whole
 
-    name = path.as_posix()
+    name = escape_undecodable(path.as_posix())
     if name == "-" and sys.stdin is None:
         fail("standard input is closed")
     try:

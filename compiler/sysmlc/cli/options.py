@@ -12,9 +12,11 @@ from sysmlc.diagnostics.render.registry import FORMATS
 _F = TypeVar("_F", bound=Callable[..., object])
 
 
-def names(_ctx: click.Context, _param: click.Parameter, value: str | None) -> tuple[str, ...]:
-    """Names that are separated by commas."""
-    return tuple(part.strip() for part in (value or "").split(",") if part.strip())
+def split_names(
+    _ctx: click.Context, _param: click.Parameter, values: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the names that a repeated option lists, separated by commas in each of its values."""
+    return tuple(part.strip() for value in values for part in value.split(",") if part.strip())
 
 
 def models(required: bool = False) -> Callable[[_F], _F]:
@@ -161,9 +163,11 @@ def emitting(function: _F) -> _F:
         [
             click.option(
                 "--emit",
-                callback=names,
+                multiple=True,
+                callback=split_names,
                 metavar="A,B|+X",
-                help="Back ends instead of the default ones; +X adds one. See 'sysmlc backends'.",
+                help="Back ends instead of the default ones; +X adds one. Repeated options add up."
+                " See 'sysmlc backends'.",
             ),
             click.option(
                 "--diagrams",
@@ -191,7 +195,7 @@ def output_folder(function: _F) -> _F:
     return click.option(
         "-o",
         "--output",
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=Path, file_okay=False),
         metavar="DIR",
         help="Output folder.  [default: out, or what the configuration says]",
     )(function)

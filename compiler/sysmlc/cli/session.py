@@ -10,6 +10,7 @@ import click
 
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
+from sysmlc.escapes import escape_undecodable
 from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
@@ -385,7 +386,9 @@ def named(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
 def name_of(root: Path, name: str) -> str:
     """Name of an input as the reader knows it: relative to the working folder."""
     path, here = root / name, Path.cwd()
-    return path.relative_to(here).as_posix() if path.is_relative_to(here) else name
+    if not path.is_relative_to(here):
+        return name
+    return escape_undecodable(path.relative_to(here).as_posix())
 
 
 def show(found: "Iterable[Finding]", settings: Settings) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options, terminal
+from sysmlc.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.sources import Source
@@ -75,7 +76,7 @@ def _read(scenario: Path) -> "Source":
     from sysmlc.sources import Source
 
     try:
-        return Source(scenario.as_posix(), scenario.read_bytes())
+        return Source(escape_undecodable(scenario.as_posix()), scenario.read_bytes())
     except OSError as problem:
         fail(f"cannot read scenario '{scenario}': {problem.strerror}")
 

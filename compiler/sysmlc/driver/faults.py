@@ -39,11 +39,12 @@ UNRECOGNISED = rule(
     "SM171",
     "unrecognised-content",
     Severity.ERROR,
-    "'{path}' is no model that a front end recognises",
+    "'{path}' is not a model: {reason}",
     why="Front ends recognise their files by content, whatever the name ends in. "
     "A file that was named on the command line but is not understood would otherwise be "
     "silently left out.",
-    help="front ends: {frontends}; for a project of a modelling tool save it as XMI first",
+    help="expected XMI, AutomationML or SysML v2 (front ends: {frontends}); save a project of a "
+    "modelling tool as XMI first",
     wrong="<html><body>a page that was saved instead of the model</body></html>",
     right='<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
     ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML">...</xmi:XMI>',
@@ -88,7 +89,7 @@ NOTHING_TO_COMPILE = rule(
     why="A folder is searched for files whose names end as models' do "
     "(.uml, .xmi, .xml, .mdxml, .mdzip, .aml, .amlx, .caex, .sysml, .kerml, .sysmlx, .kermlx, "
     ".kpar, .ir); there is none.",
-    help="name a file, or another folder",
+    help="name a file, or a folder with files of such names",
     wrong="models/readme.txt",
     right="models/plant.uml",
 )
@@ -107,12 +108,23 @@ SKIPPED = rule(
     "SM175",
     "skipped-file",
     Severity.WARNING,
-    "'{path}' is named like a model but no front end recognises it",
+    "'{path}' is named like a model but is none: {reason}",
     why="In a folder only what is recognised is compiled; a file that is named like a model "
     "may have been meant.",
     help="name the files instead of the folder if this one is not meant",
     wrong="models/ with plant.uml and an empty notes.xml",
     right="models/ with plant.uml",
+)
+EMPTY = rule(
+    "SM157",
+    "empty-file",
+    Severity.WARNING,
+    "'{path}' is empty: it defines nothing",
+    why="A text of SysML v2 without a declaration is allowed, but a model that is named was "
+    "probably meant to have content. Some editors leave an empty file when saving fails.",
+    help="save the model again, or remove the file",
+    wrong="sysmlc plant.sysml, which has 0 bytes",
+    right="sysmlc plant.sysml, which has 'package Plant;'",
 )
 CHANGING = rule(
     "SM127",

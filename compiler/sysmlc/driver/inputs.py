@@ -8,7 +8,9 @@ from pathlib import Path
 from sysmlc.config import FILE_NAME, find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
+from sysmlc.driver.contents import describe_content, is_blank
 from sysmlc.driver.ownership import is_output_folder
+from sysmlc.escapes import escape_undecodable
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
@@ -79,9 +81,12 @@ def collect(
 
 
 def name_of(path: Path, root: Path) -> str:
-    """Name of a file in outputs: relative to the root, with ``/``, in NFC."""
+    """Return the name of a file in outputs: relative to the root, with ``/``, in NFC.
+
+    Bytes that are not UTF-8 are escaped, so that every output can hold the name.
+    """
     relative = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
-    return unicodedata.normalize("NFC", relative.as_posix())
+    return unicodedata.normalize("NFC", escape_undecodable(relative.as_posix()))
 
 
 def recognise(
@@ -92,12 +97,16 @@ def recognise(
         scores = [(frontend.detect(source), frontend) for frontend in frontends]
         score, best = max(scores, key=lambda pair: pair[0])
         if score > 0:
+            if is_blank(source.data):
+                sink.report(faults.EMPTY, faults.about_file(source.name), path=source.name)
             yield Recognised(source, best)
         elif otherwise is not None:
             known = ", ".join(frontend.name for frontend in frontends)
-            sink.report(
-                otherwise, faults.about_file(source.name), path=source.name, frontends=known
-            )
+            reason = "it is empty"
+            if not is_blank(source.data):
+                reason = f"it is {describe_content(source.data)}"
+            subject = faults.about_file(source.name)
+            sink.report(otherwise, subject, path=source.name, reason=reason, frontends=known)
 
 
 def _absolute(path: Path) -> Path:

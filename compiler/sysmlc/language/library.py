@@ -16,6 +16,8 @@ VARIABLE = "SYSML_LIBRARY_PATH"
 _REMEMBERED = 256
 """Files of libraries that are kept in memory."""
 _SUFFIXES = {".sysml": "sysml", ".kerml": "kerml"}
+SHIPPED = "sysmlc:"
+"""What the names of library files that come with sysmlc begin with."""
 _DISTRIBUTION = "sysml"
 """The distribution whose model files are the standard library; they are read as data only."""
 

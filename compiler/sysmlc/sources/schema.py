@@ -7,6 +7,7 @@ from typing import cast
 
 from lxml import etree
 
+from sysmlc.escapes import escape_undecodable
 from sysmlc.sources.roots import Roots
 from sysmlc.sources.source import Source
 from sysmlc.values import dataclass
@@ -133,7 +134,7 @@ def _closure(top: Path, folder: Path) -> dict[Path, etree._ElementTree]:
 
 
 def _compiled(path: Path, folder: Path, closure: dict[Path, etree._ElementTree]) -> Schema:
-    name = path.relative_to(folder).as_posix()
+    name = escape_undecodable(path.relative_to(folder).as_posix())
     try:
         compiled = etree.XMLSchema(closure[path])
     except etree.XMLSchemaParseError as problem:

@@ -9,7 +9,7 @@ from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.language.exchange import Files, interchange_path, write
-from sysmlc.language.library import VARIABLE, Library, core, find
+from sysmlc.language.library import SHIPPED, VARIABLE, Library, core, find
 from sysmlc.language.names import Model
 from sysmlc.language.names.adding import implied_redefinitions
 from sysmlc.language.text.nesting import LIMIT
@@ -41,7 +41,10 @@ class SysmlxBackend:
             known = Files(model.documents, library, partial(implied_redefinitions, model))
             for document in model.documents:
                 path = f"sysmlx/{interchange_path(document)}"
-                data = write(document, known, sink, _Places(model.documents))
+                # As for unresolved names, faults of our libraries are not those of the model.
+                is_foreign = model.library.is_core and document.path.startswith(SHIPPED)
+                document_sink = Sink() if is_foreign else sink
+                data = write(document, known, document_sink, _Places(model.documents))
                 output.add(path, data.decode(), (), self.name)
 
 

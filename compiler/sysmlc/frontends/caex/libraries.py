@@ -165,6 +165,17 @@ def header(context: Context, document: Document) -> None:
         node.verdict = Verdict.MAPPED
 
 
+def report_missing_plant(context: Context) -> None:
+    """Report the first file of a unit that has libraries but no instance hierarchy."""
+    roots = [document.root for document in context.documents]
+    if any(True for root in roots for _ in root.of("InstanceHierarchy")):
+        return
+    for document in context.documents:
+        if any(True for _ in document.root.of(*LIBRARIES)):
+            context.report(rules.ONLY_LIBRARIES, document, document.root, file=document.name)
+            return
+
+
 def _alias(context: Context, document: Document, node: Node) -> None:
     alias, path = node.attributes.get("Alias", ""), node.attributes.get("Path", "")
     repeats.declare(context, document, node, _file(document.name, path))

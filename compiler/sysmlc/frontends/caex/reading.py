@@ -42,6 +42,7 @@ def _lower(context: Context) -> None:
     types = []
     for document in context.documents:
         libraries.header(context, document)
+    libraries.report_missing_plant(context)
     libraries.tie_aliases(context)
     for document in context.documents:
         types += libraries.lower(context, document)

@@ -153,6 +153,18 @@ NO_MODEL = rule(
     wrong="<CAEXFile FileName='a.aml'/>",
     right="<CAEXFile FileName='a.aml'><InstanceHierarchy Name='Plant'/></CAEXFile>",
 )
+ONLY_LIBRARIES = rule(
+    "SM158",
+    "only-caex-libraries",
+    Severity.INFO,
+    "'{file}' holds only libraries; without an instance hierarchy there is no plant to compile",
+    why="Contracts, recipes and most diagrams describe the plant of an instance hierarchy. "
+    "Libraries alone define what such a plant is made of.",
+    help="name the file with the plant, too",
+    wrong="<CAEXFile FileName='a.aml'><RoleClassLib Name='Roles'/></CAEXFile>",
+    right="<CAEXFile FileName='a.aml'><RoleClassLib Name='Roles'/>"
+    "<InstanceHierarchy Name='Plant'/></CAEXFile>",
+)
 MALFORMED = rule(
     "SM142",
     "malformed-caex-file",

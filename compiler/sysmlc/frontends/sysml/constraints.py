@@ -6,9 +6,9 @@ from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.definitions import marked, visibility
 from sysmlc.frontends.sysml.features import property_
-from sysmlc.frontends.sysml.libraries import SHIPPED
 from sysmlc.frontends.sysml.types import types_of
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from sysmlc.sources.files import is_description_entry
 
 _SUFFIXES = (".sysml", ".kerml")
 _SKIPPED = pattern(rb"(?:\xef\xbb\xbf)?(?:\s+|//\*.*?\*/|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
-_WORD = pattern(rb"[a-z]+|#|@")
+_WORD = pattern(rb"[a-z]+|#(?=[\w'])|@(?=[\w'])")
 _WORDS = """
     package library standard private public protected import part action state item attribute port
     requirement constraint abstract doc comment enum interface connection flow use verification
@@ -37,7 +37,9 @@ def _of_text(name: str, head: bytes) -> float:
     is_known = word is not None and word[0] in _FIRST
     if is_named:
         return 1.0 if is_known else 0.5
-    return 0.6 if is_known and b"\0" not in head else 0.0
+    # Of other texts many begin with such a word ("part of ..."), or with '#'.
+    is_declaration = b"{" in head or b";" in head
+    return 0.6 if is_known and is_declaration and b"\0" not in head else 0.0
 
 
 def is_description(source: Source) -> bool:

@@ -20,7 +20,5 @@ FILES = {
     FLOORS: "Floors.sysml",
 }
 """Their files in ``metamodels``."""
-SHIPPED = "sysmlc:"
-"""Before the name of a file that comes with us."""
 READ = frozenset({ACTIONS, MACHINES, FLOORS})
 """Those whose elements are in the graph, as external ones: what they demand counts."""

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
-from sysmlc.frontends.sysml.libraries import FILES, READ, SHIPPED
+from sysmlc.frontends.sysml.libraries import FILES, READ
 from sysmlc.frontends.sysml.rules import NO_LIBRARY
 from sysmlc.frontends.sysml.settled import settle
 from sysmlc.frontends.sysml.unit import lower
 from sysmlc.ir import Graph
+from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document
 from sysmlc.sources import Source, SourceError
 
@@ -99,11 +100,16 @@ def _missing(documents: Sequence[Document], known: Sequence[Document]) -> list[D
     there = {one.name for document in (*documents, *known) for one in document.root.members}
     found = []
     for name, file in FILES.items():
-        is_named = any(name in one.text or not one.text for one in documents)
+        is_named = any(name in one.text or _is_interchange(one) for one in documents)
         if is_named and name not in there:
             source = Source(f"{SHIPPED}{file}", resources.text("metamodels", file).encode())
             found.append(_parse(source, "sysml", Sink()))
     return found
+
+
+def _is_interchange(document: Document) -> bool:
+    """Whether a document was read from XMI, which does not show the names that it refers to."""
+    return document.source is not None and is_xml(document.source)
 
 
 def _library(path: str, sink: Sink) -> "Library":

@@ -10,7 +10,6 @@ from sysmlc.frontends.sysml.account import account
 from sysmlc.frontends.sysml.blame import blame
 from sysmlc.frontends.sysml.connections import steps_of_value
 from sysmlc.frontends.sysml.handlers import HANDLERS
-from sysmlc.frontends.sysml.libraries import SHIPPED
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.parameters import pin_of
 from sysmlc.frontends.sysml.places import Home
@@ -18,6 +17,7 @@ from sysmlc.frontends.sysml.strays import tell
 from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing, together
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.pins import pin_subkind
+from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document, Node
 
 if TYPE_CHECKING:

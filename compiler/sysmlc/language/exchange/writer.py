@@ -1,5 +1,6 @@
 """Writes the tree of KerML and SysML v2 as XMI (.kermlx, .sysmlx; KerML 1.0, 10.2)."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from posixpath import dirname, relpath, splitext
 from urllib.parse import quote
@@ -10,9 +11,12 @@ from sysmlc.language.exchange.elements import Element, Link, walk
 from sysmlc.language.exchange.files import File, Files
 from sysmlc.language.exchange.naming import shown
 from sysmlc.language.exchange.xmi import Targets, is_writable, lines
+from sysmlc.language.library import SHIPPED
 from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node
+from sysmlc.patterns import pattern
 
+_REPOSITORY = pattern(r"(^|/)\.(git(?:/|$))", re.IGNORECASE)
 _SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
 
 
@@ -35,8 +39,12 @@ def write(
 
 
 def interchange_path(document: Document) -> str:
-    """The path of the interchange file of a document: another suffix, archives as folders."""
-    path = document.path.removeprefix("sysmlc:").replace("!", "/")
+    """Return the path of the interchange file of a document: another suffix, archives as folders.
+
+    What an output path may not contain (backslashes, repositories of git) is percent-encoded.
+    """
+    path = document.path.removeprefix(SHIPPED).replace("!", "/").replace("\\", "%5C")
+    path = _REPOSITORY.sub(r"\1%2E\2", path)
     return splitext(path)[0] + _SUFFIXES[document.language]
 
 

@@ -1,0 +1,188 @@
+"""Files that are no model, or an empty one, get an answer that says what they are."""
+
+import io
+import zipfile
+
+import pytest
+from click.testing import CliRunner
+
+from sysmlc.cli.group import sysmlc
+from sysmlc.language import library
+
+UML = (
+    '<uml:Model xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001" '
+    'xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmi:id="m" name="M"/>'
+)
+PLANT = "<CAEXFile FileName='a.aml' SchemaVersion='3.0'><{} Name='x'/></CAEXFile>"
+BOM = "\ufeff"
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Run a command in a folder and return exit code and output in one line a diagnostic."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+
+    def invoke(*args):
+        form = [] if args[0] in ("build", "explain") else ["--format", "concise"]
+        ended = CliRunner().invoke(sysmlc, [*args, *form])
+        return ended.exit_code, ended.stdout + ended.stderr
+
+    return invoke
+
+
+@pytest.mark.parametrize("suffix", ["uml", "xmi", "xml", "aml", "amlx", "mdzip", "kpar", "md"])
+@pytest.mark.parametrize("content", ["", " \n\t\n", BOM])
+def test_an_empty_file_is_an_error(run, tmp_path, suffix, content):
+    (tmp_path / f"m.{suffix}").write_text(content, encoding="utf-8")
+    code, report = run("check", f"m.{suffix}")
+    assert (code, report.splitlines()[0]) == (
+        1,
+        f"m.{suffix}: error[SM171 unrecognised-content]: 'm.{suffix}' is not a model: it is empty",
+    )
+
+
+@pytest.mark.parametrize("suffix", ["sysml", "kerml"])
+@pytest.mark.parametrize("content", ["", " \n\t\n", BOM])
+def test_an_empty_text_of_sysml_v2_is_a_warning(run, tmp_path, suffix, content):
+    (tmp_path / f"m.{suffix}").write_text(content, encoding="utf-8")
+    code, report = run("check", f"m.{suffix}")
+    assert (code, report.splitlines()) == (
+        0,
+        [
+            f"m.{suffix}: warning[SM157 empty-file]: 'm.{suffix}' is empty: it defines nothing",
+            "1 warning in 1 file",
+        ],
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("m.sysml", "package P;"), ("m.uml", UML), ("m.aml", PLANT.format("InstanceHierarchy"))],
+)
+def test_a_model_is_clean(run, tmp_path, name, content):
+    (tmp_path / name).write_text(content)
+    assert run("check", name) == (0, "")
+
+
+def test_an_empty_text_has_no_errors_of_our_library(run, tmp_path, monkeypatch):
+    """With the bundled core 54 names of sysmlc's own library were reported as unknown."""
+    monkeypatch.setattr(library, "_installed", lambda: None)
+    monkeypatch.setattr("sysmlc.backends.sysmlx.backend._library", lambda _: library.core())
+    (tmp_path / "empty.sysml").touch()
+    text = "package P { private import SysMLC::*; }"
+    (tmp_path / "uses.sysml").write_text(text)
+    for name, messages in {"empty.sysml": ["SM157"], "uses.sysml": ["SM207"]}.items():
+        code, report = run("check", name, "--emit", "+sysmlx")
+        assert code == 0
+        assert [m for m in messages if m not in report] == []
+        assert "SM205" not in report
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "description"),
+    [
+        ("README.md", b"# Model\n\nA model; see {docs}.\n", "plain text"),
+        ("notes.txt", b"part of the documentation of a plant\n", "plain text"),
+        ("a.png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "a PNG image"),
+        ("plant.uml", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "a PNG image"),
+        ("a.pdf", b"%PDF-1.7\n1 0 obj\n", "a PDF document"),
+        ("a.json", b'{"a": 1}', "JSON"),
+        ("plant.xmi", b"<!DOCTYPE html><html/>", "an HTML page"),
+        ("pom.xml", b"<?xml version='1.0'?><project/>", "XML with the root element 'project'"),
+        ("a.bin", bytes(range(256)), "binary data"),
+    ],
+)
+def test_other_content_is_named(run, tmp_path, name, data, description):
+    (tmp_path / name).write_bytes(data)
+    code, report = run("check", name)
+    assert code == 1
+    assert report.startswith(
+        f"{name}: error[SM171 unrecognised-content]: '{name}' is not a model: it is {description}\n"
+    )
+
+
+def test_text_of_sysml_v2_is_recognised_by_content(run, tmp_path):
+    (tmp_path / "plant.txt").write_text("#derivation connection { }\npart def Gate;\n")
+    assert "SM171" not in run("check", "plant.txt")[1]
+
+
+def test_an_archive_without_a_model_is_reported(run, tmp_path):
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        archive.writestr("readme.txt", "hello")
+    (tmp_path / "a.zip").write_bytes(stream.getvalue())
+    code, report = run("check", "a.zip")
+    assert code == 1
+    assert "'a.zip' cannot be read: the archive holds no model" in report
+
+
+def test_files_in_a_folder_are_skipped_with_the_reason(run, tmp_path):
+    (tmp_path / "models").mkdir()
+    (tmp_path / "models" / "plant.sysml").write_text("package P;")
+    (tmp_path / "models" / "pom.xml").write_text("<project/>")
+    code, report = run("check", "models")
+    assert code == 0
+    assert "'pom.xml' is named like a model but is none: it is XML with the root" in report
+
+
+def test_a_folder_without_models_is_an_error(run, tmp_path):
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "readme.md").write_text("hello")
+    code, report = run("check", "docs")
+    assert (code, report.splitlines()[0]) == (
+        1,
+        "docs: error[SM173 nothing-to-compile]: 'docs' holds no model",
+    )
+
+
+def test_libraries_without_a_plant_are_an_info(run, tmp_path):
+    (tmp_path / "lib.aml").write_text(PLANT.format("RoleClassLib"))
+    (tmp_path / "plant.aml").write_text(PLANT.format("InstanceHierarchy"))
+    assert "info[SM158 only-caex-libraries]: 'lib.aml' holds only" in run("check", "lib.aml")[1]
+    assert run("check", "lib.aml", "plant.aml") == (0, "")
+
+
+def test_an_output_that_is_a_file_is_refused(run, tmp_path):
+    (tmp_path / "m.sysml").write_text("package P;")
+    code, report = run("build", "m.sysml", "-o", "m.sysml")
+    assert code == 2
+    assert "Directory 'm.sysml' is a file" in report
+    assert (tmp_path / "m.sysml").read_text() == "package P;"
+    assert run("build", "m.sysml", "-o", "out")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "present", "absent"),
+    [
+        (["--emit", "graph", "--emit", "ir"], {"graph.json", "graph.ir"}, {"contracts"}),
+        (["--emit", "graph", "--emit", "+ir"], {"graph.json", "graph.ir"}, {"contracts"}),
+        (["--emit", "+graph", "--emit", "+ir"], {"graph.json", "graph.ir", "diagrams"}, set()),
+        (["--emit", "ir"], {"graph.ir"}, {"graph.json", "diagrams"}),
+    ],
+)
+def test_repeated_emit_options_add_up(run, tmp_path, options, present, absent):
+    (tmp_path / "m.sysml").write_text("package P { part def A { part b : B; } part def B; }")
+    assert run("build", "m.sysml", "-o", "out", *options)[0] == 0
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert present <= names
+    assert not absent & names
+
+
+@pytest.mark.parametrize(
+    ("args", "advice"),
+    [
+        (["chekc", "m.sysml"], "did you mean 'check'?"),
+        (["check", "m.sysml", "--emit", "plantulm"], "did you mean 'plantuml'?"),
+        (["check", "m.sysml", "--emt", "graph"], "Did you mean one of: '--emit'"),
+        (["check", "n.sysml"], "did you mean 'm.sysml'?"),
+        (["check", "m.sysml", "--print-after", "clasify"], "did you mean 'classify'?"),
+        (["explain", "emty-file"], "did you mean 'empty-file'?"),
+    ],
+)
+def test_misspelt_words_get_a_suggestion(tmp_path, monkeypatch, args, advice):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.sysml").write_text("package P;")
+    ended = CliRunner().invoke(sysmlc, args)
+    assert ended.exit_code == 2
+    assert advice in ended.stderr

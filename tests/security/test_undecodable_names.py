@@ -1,0 +1,87 @@
+"""File names that are not UTF-8 are escaped in outputs and messages; no command fails on them."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+V2 = b"package P { part def A; part a : B; }"
+IR = b'Class a "A"\n  -> specializes a\n'
+NAME = b"pl\xffnt"
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="other systems refuse file names that are not UTF-8"
+)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Run ``sysmlc`` with arguments as bytes in a folder with files of undecodable names."""
+    (tmp_path / ".git").mkdir()
+    for name, data in {
+        b"models/" + NAME + b".sysml": V2,
+        b"models/back\\slash.sysml": b"package Q;",
+        NAME + b".ir": IR,
+        NAME + b".toml": b"nonsense = 1\n",
+        NAME + b".yaml": b"nonsense: 1\n",
+        NAME + b".ltl": b"G (a -> X b)\n",
+        b"clean.ir": b'Class a "A"\n',
+    }.items():
+        path = tmp_path / os.fsdecode(name)
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(data)
+
+    def invoke(*args):
+        command = [os.fsencode(sys.executable), b"-m", b"sysmlc", *args]
+        ended = subprocess.run(command, cwd=tmp_path, capture_output=True)
+        text = ended.stdout.decode() + ended.stderr.decode()  # raises if it is not UTF-8
+        assert ended.returncode in (0, 1, 2)
+        assert "Traceback" not in text
+        assert "fault of sysmlc" not in text
+        return text
+
+    return invoke
+
+
+@pytest.mark.parametrize("form", [b"text", b"concise", b"github", b"json", b"sarif"])
+def test_every_format_names_the_file(run, form):
+    report = run(b"check", b"models", b"--format", form)
+    assert ("pl%5Cxffnt" if form == b"sarif" else r"pl\xffnt.sysml") in report.replace(r"\\", "\\")
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        [b"check", NAME + b".ir"],
+        [b"check", b"missing" + NAME],
+        [b"check", b"clean.ir", b"--config", NAME + b".toml"],
+        [b"check", b"clean.ir", b"--overlay", NAME + b".yaml"],
+        [b"check", b"clean.ir", b"--library", NAME],
+        [b"check", b"clean.ir", b"--emit", NAME],
+        [b"check", b"clean.ir", b"--templates", NAME],
+        [b"simulate", b"clean.ir", NAME + b".yaml"],
+        [b"contracts", b"check", NAME + b".ltl"],
+        [b"format", b"models/" + NAME + b".sysml", b"--diff"],
+        [b"show", NAME + b".ir"],
+        [b"coverage", b"models", b"--format", b"json"],
+        [b"explain", NAME],
+        [NAME],
+    ],
+    ids=lambda args: os.fsdecode(args[0]) if len(args) == 1 else None,
+)
+def test_commands_answer(run, args):
+    run(*args)
+
+
+def test_outputs_are_utf_8_and_hold_the_escaped_name(run, tmp_path):
+    emitted = b"+graph,+ir,+sysml,+sysmlx,+uml,+ecore"
+    run(b"build", b"models", b"-o", b"out" + NAME, b"--emit", emitted)
+    output = tmp_path / os.fsdecode(b"out" + NAME)
+    texts = {path.name: path.read_text("utf-8") for path in output.rglob("*") if path.is_file()}
+    assert [file["path"] for file in json.loads(texts["manifest.json"])["inputs"]] == [
+        r"back\slash.sysml",
+        r"pl\xffnt.sysml",
+    ]
+    assert {"back%5Cslash.sysmlx", "pl%5Cxffnt.sysmlx"} <= texts.keys()
