@@ -15,23 +15,75 @@ from sysmlc.logic.machines.machine import AfterTicks, OnEvent, Transition, Verte
 
 _LIMIT = 4096
 """Valuations tried to see whether two guards exclude one another; more count as possible."""
+MAX_VALUATIONS = 2_000_000
+"""Valuations tried for all guards of a machine, about 2 s of work: every transition may have to be
+compared with every other."""
 
 
-def may_compete(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) -> bool:
-    """Whether two transitions that leave the vertex can be enabled at once."""
+class TooManyValuationsError(Exception):
+    """The guards of a machine have too many combinations of values to be compared."""
+
+
+class GuardComparison:
+    """Compares guards of the transitions of one machine, with a bound on the work in all."""
+
+    def __init__(self, scope: Scope) -> None:
+        self._scope = scope
+        self._remaining = MAX_VALUATIONS
+        self._guards: dict[str, tuple[Formula, dict[str, Domain]]] = {}
+        """The guard of each transition, by its id, and the domains of the variables in it."""
+
+    def are_compatible(self, left: Transition, right: Transition) -> bool:
+        """Return whether some values of the variables satisfy both guards.
+
+        If one comparison has more than ``_LIMIT`` valuations, the answer is yes. Raises
+        TooManyValuationsError beyond the bound for the machine.
+        """
+        left_guard, left_domains = self._read_guard(left)
+        right_guard, right_domains = self._read_guard(right)
+        formula = f.both(left_guard, right_guard)
+        if formula == f.FALSE:
+            return False
+        variables = left_domains | right_domains
+        count = domains.count(variables)
+        if count > _LIMIT:
+            return True
+        self._remaining -= count
+        if self._remaining < 0:
+            raise TooManyValuationsError
+        is_true = evaluation(formula)
+        return any(is_true(values, None) for values in domains.valuations(variables))
+
+    def _read_guard(self, transition: Transition) -> tuple[Formula, dict[str, Domain]]:
+        guard = transition.guard
+        if guard is None:
+            return f.TRUE, {}
+        if transition.id not in self._guards:
+            variables = dict(_find_domains(guard, self._scope))
+            self._guards[transition.id] = condition(guard, self._scope), variables
+        return self._guards[transition.id]
+
+
+def may_compete(
+    outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
+) -> bool:
+    """Return whether two transitions that leave the vertex can be enabled at once."""
     if vertex.kind == "initial":
         return False
     is_state = vertex.kind == "state"
     return any(
-        (not is_state or coincide(one, other)) and compatible(one, other, scope)
+        (not is_state or coincide(one, other)) and comparison.are_compatible(one, other)
         for one, other in combinations(outgoing, 2)
     )
 
 
-def have_common_cause(outgoing: tuple[Transition, ...], vertex: Vertex, scope: Scope) -> bool:
-    """Whether two of them can be enabled by one and the same occurrence."""
+def have_common_cause(
+    outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
+) -> bool:
+    """Return whether two of the transitions can be enabled by one and the same occurrence."""
     return any(
-        (vertex.kind != "state" or _have_same_trigger(one, other)) and compatible(one, other, scope)
+        (vertex.kind != "state" or _have_same_trigger(one, other))
+        and comparison.are_compatible(one, other)
         for one, other in combinations(outgoing, 2)
     )
 
@@ -70,27 +122,9 @@ def simultaneous(one: Transition, other: Transition) -> bool:
     return bool(events) or coincide(one, other)
 
 
-def compatible(one: Transition, other: Transition, scope: Scope) -> bool:
-    """Whether some values of the variables satisfy both guards."""
-    guards = [guard for guard in (one.guard, other.guard) if guard is not None]
-    return is_satisfiable(f.both(*(condition(guard, scope) for guard in guards)), guards, scope)
-
-
-def is_satisfiable(formula: Formula, sources: list[Expression], scope: Scope) -> bool:
-    """Whether some values make it true; beyond the limit of valuations the answer is yes."""
-    if formula == f.FALSE:
-        return False
-    found = dict(_domains(sources, scope))
-    if domains.count(found) > _LIMIT:
-        return True
-    truth = evaluation(formula)
-    return any(truth(values, None) for values in domains.valuations(found))
-
-
-def _domains(sources: list[Expression], scope: Scope) -> Iterator[tuple[str, Domain]]:
-    for source in sources:
-        for part in walk(source):
-            name = name_of(part)
-            symbol = None if name is None else scope(name)
-            if symbol is not None and symbol.domain is not None:
-                yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
+def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:
+    for part in walk(source):
+        name = name_of(part)
+        symbol = None if name is None else scope(name)
+        if symbol is not None and symbol.domain is not None:
+            yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))

@@ -6,7 +6,7 @@ from itertools import combinations
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import samples
-from sysmlc.logic.machines.competition import compatible, simultaneous
+from sysmlc.logic.machines.competition import GuardComparison, simultaneous
 from sysmlc.logic.machines.machine import Action, Assign, Machine, Transition, element_id
 from sysmlc.logic.machines.shape import common_state, segments
 from sysmlc.logic.samples import arrow, machine_of
@@ -59,14 +59,15 @@ CROSSING = rule(
 )
 
 
-def is_undisturbed(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Whether orthogonal regions react independently; what stands against it is reported."""
+def is_undisturbed(graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink) -> bool:
+    """Return whether orthogonal regions react independently; report the transitions if not."""
     is_orthogonal = len(machine.top) > 1 or any(
         len(one.regions) > 1 for one in machine.vertices.values()
     )
     if not is_orthogonal:
         return True
-    return not [*_races(graph, machine, sink), *_crossings(graph, machine, sink)]
+    races = _races(graph, machine, comparison, sink)
+    return not [*races, *_crossings(graph, machine, comparison, sink)]
 
 
 def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition, str]]:
@@ -84,10 +85,13 @@ def _common_state(machine: Machine, one: Transition, other: Transition) -> str |
     return None if None in found else found[0]
 
 
-def _races(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+def _races(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> Iterator[str]:
+    assigned = {one.id: _touched(machine, one) for one in machine.transitions()}
     for one, other, _ in _orthogonal_pairs(machine):
-        shared = [v for v in _touched(machine, one) if v in _touched(machine, other)]
-        if shared and compatible(one, other, machine.scope):
+        shared = [variable for variable in assigned[one.id] if variable in assigned[other.id]]
+        if shared and comparison.are_compatible(one, other):
             subject = graph.subject(graph[element_id(one.id)])
             sink.report(RACE, subject, first=one.words, second=other.words, variable=shared[0])
             yield one.id
@@ -111,10 +115,12 @@ def _on_start(machine: Machine, regions: tuple[str, ...]) -> list[Action]:
     return [action for one in begun for each in segments(machine, one) for action in each.effect]
 
 
-def _crossings(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+def _crossings(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> Iterator[str]:
     for one, other, state in _orthogonal_pairs(machine):
         for leaver, stayer in ((one, other), (other, one)):
-            if _leaves(machine, leaver, state) and compatible(one, other, machine.scope):
+            if _leaves(machine, leaver, state) and comparison.are_compatible(one, other):
                 subject = graph.subject(graph[element_id(leaver.id)])
                 sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
                 yield leaver.id

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic.machines.competition import compatible
+from sysmlc.logic.machines.competition import GuardComparison
 from sysmlc.logic.machines.machine import Machine, OnEvent, Transition, element_id
 from sysmlc.logic.samples import arrow, machine_of, region, state
 
@@ -32,17 +32,21 @@ OVERRIDDEN = rule(
 )
 
 
-def report_overrides(graph: Graph, machine: Machine, sink: Sink) -> None:
+def report_overrides(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> None:
     """Report each transition whose event can be passed over without a trace."""
     for outer in machine.transitions():
-        inner = list(_before(machine, outer))
+        inner = list(_before(machine, outer, comparison))
         if inner:
             named = ", ".join(f"'{one.words}'" for one in inner)
             subject = graph.subject(graph[element_id(outer.id)])
             sink.report(OVERRIDDEN, subject, transition=f"'{outer.words}'", inner=named)
 
 
-def _before(machine: Machine, outer: Transition) -> Iterator[Transition]:
+def _before(
+    machine: Machine, outer: Transition, comparison: GuardComparison
+) -> Iterator[Transition]:
     """Transitions from inside its source that can come in one step with what triggers it.
 
     Of two events only one comes in a step; times and changes come with anything.
@@ -56,5 +60,5 @@ def _before(machine: Machine, outer: Transition) -> Iterator[Transition]:
         without_event = [one for one in inner.occurrences if not isinstance(one, OnEvent)]
         is_unasked = bool(without_event) or not inner.occurrences
         can_meet = waits_for_more or (waits_for_event and is_unasked)
-        if can_meet and compatible(outer, inner, machine.scope):
+        if can_meet and comparison.are_compatible(outer, inner):
             yield inner

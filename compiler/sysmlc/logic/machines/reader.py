@@ -5,7 +5,12 @@ from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.machines.actions import Reading
-from sysmlc.logic.machines.competition import have_common_cause, may_compete
+from sysmlc.logic.machines.competition import (
+    GuardComparison,
+    TooManyValuationsError,
+    have_common_cause,
+    may_compete,
+)
 from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element_id
 from sysmlc.logic.machines.orthogonal import is_undisturbed
 from sysmlc.logic.machines.overrides import report_overrides
@@ -30,6 +35,19 @@ NONDETERMINISTIC = rule(
     help="make the guards exclude one another",
     wrong=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "level > 2")),
     right=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "not ready")),
+)
+TOO_MANY_GUARDS = rule(
+    "SM485",
+    "too-many-guards-to-compare",
+    Severity.WARNING,
+    "the guards of '{machine}' have too many combinations of values to be compared; the component "
+    "gets no contract",
+    why="Guards of transitions that can be taken in one step are compared for all values of their "
+    "variables. A machine with hundreds of them, on variables of wide ranges, would take hours.",
+    help="make the ranges of the variables smaller, use different events, or split the machine",
+    wrong="400 transitions on one event in 20 regions, with guards such as 'x == 7 and y == 12' on "
+    "two properties of the range 0..60",
+    right="the same transitions on 20 events",
 )
 COINCIDING = rule(
     "SM432",
@@ -82,11 +100,18 @@ def read_machine(
     completing = {one.source for one in drawn.transitions() if not one.occurrences}
     if not (has_ends(graph, drawn, sink) and join_up(graph, drawn, sink)):
         return None
-    _complete_states(parts, drawn, completing)
-    made = _assemble(parts, top)
-    if not is_well_formed(graph, made, sink) or not is_undisturbed(graph, made, sink):
+    comparison = GuardComparison(drawn.scope)
+    try:
+        _complete_states(parts, drawn, completing, comparison)
+        made = _assemble(parts, top)
+        if not is_well_formed(graph, made, sink):
+            return None
+        if not is_undisturbed(graph, made, comparison, sink):
+            return None
+        report_overrides(graph, made, comparison, sink)
+    except TooManyValuationsError:
+        sink.report(TOO_MANY_GUARDS, graph.subject(machine), machine=machine.name)
         return None
-    report_overrides(graph, made, sink)
     return made
 
 
@@ -102,7 +127,9 @@ def _start(graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions) 
 # -- the whole ---------------------------------------------------------------------------------
 
 
-def _complete_states(parts: Parts, machine: Machine, completing: set[str]) -> None:
+def _complete_states(
+    parts: Parts, machine: Machine, completing: set[str], comparison: GuardComparison
+) -> None:
     """Give states and branching pseudostates the variables that their transitions need.
 
     ``completing`` are the vertices that something leaves when they are complete.
@@ -119,20 +146,26 @@ def _complete_states(parts: Parts, machine: Machine, completing: set[str]) -> No
         if vertex.do and id in completing:
             told = vertex.do.replace("do_", "done_", 1)
             done = reading.told(f"end {id}", told, element.id)
-        if not machine.is_split(id) and may_compete(outgoing, vertex, reading.scope):
-            pick = _pick(parts, id, name, outgoing)
+        if not machine.is_split(id) and may_compete(outgoing, vertex, comparison):
+            pick = _pick(parts, id, name, outgoing, comparison)
         if timer or done or pick:
             parts.vertices[id] = replace(vertex, timer=timer, done=done, pick=pick)
 
 
-def _pick(parts: Parts, id: str, name: str, outgoing: tuple[Transition, ...]) -> str:
+def _pick(
+    parts: Parts,
+    id: str,
+    name: str,
+    outgoing: tuple[Transition, ...],
+    comparison: GuardComparison,
+) -> str:
     reading = parts.reading
     literals = tuple(one.literal for one in outgoing)
     domain = EnumerationDomain((NO_EVENT, *literals))
     pick = reading.make(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
     named = ", ".join(f"'{one.words}'" for one in outgoing)
     subject = reading.graph.subject(parts.element(id))
-    same = have_common_cause(outgoing, parts.vertices[id], reading.scope)
+    same = have_common_cause(outgoing, parts.vertices[id], comparison)
     broken = NONDETERMINISTIC if same else COINCIDING
     reading.sink.report(broken, subject, transitions=named, vertex=name, pick=pick)
     return pick
