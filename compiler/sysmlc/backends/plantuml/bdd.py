@@ -41,11 +41,28 @@ def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All block definition diagrams, in the order of the packages."""
     every = [relation for relation in relations(graph) if _is_between_boxes(graph, relation)]
     homes = _homes(graph)
-    drawn = {item.id for items in homes.values() for item in items}
+    relations_of = _group_by_package(every, homes)
     for package, classifiers in homes.items():
         own = tuple(item.id for item in classifiers)
-        ours = tuple(relation for relation in every if _is_ours(relation, set(own), drawn))
+        ours = tuple(relations_of.get(package, ()))
         yield from _of_package(graph, package, own, ours)
+
+
+def _group_by_package(
+    every: Iterable[Relation], homes: Mapping[str | None, list[Element]]
+) -> dict[str | None, list[Relation]]:
+    """Return the relations that the diagrams of each package show, in their order.
+
+    A relation belongs to the package of its source; if no diagram shows the source, to the package
+    of its target.
+    """
+    package_of = {item.id: package for package, items in homes.items() for item in items}
+    groups: dict[str | None, list[Relation]] = {}
+    for relation in every:
+        end = relation.source if relation.source in package_of else relation.target
+        if end in package_of:
+            groups.setdefault(package_of[end], []).append(relation)
+    return groups
 
 
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:
@@ -111,13 +128,6 @@ def _of_package(
             about=package or "",
             footer=plain(split.footer(index, len(parts), whole)),
         )
-
-
-def _is_ours(relation: Relation, own: set[str], drawn: set[str]) -> bool:
-    """A line belongs to the package of its source; if that is in no diagram, of its target."""
-    if relation.source in own:
-        return True
-    return relation.source not in drawn and relation.target in own
 
 
 def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
