@@ -12,21 +12,24 @@ _FEATURES = frozenset({"Redefinition", "Subsetting", "ReferenceSubsetting"})
 
 
 def types_of(low: "Lowering", node: Node) -> list[Node]:
-    """Definitions that type a feature, those that it inherits when it states none."""
-    return _types(low, node, set()) if node.relations else []
+    """Return the definitions that type a feature: its own or those of the features above it.
 
-
-def _types(low: "Lowering", node: Node, seen: set[int]) -> list[Node]:
-    if id(node) in seen:
-        return []
-    seen.add(id(node))
-    for relation in node.relations:
-        if relation.kind in _TYPES:
-            stated = [low.target(node, one) for one in node.relations if one.kind in _TYPES]
-            return [one for one in stated if one is not None]
-    inherited: dict[int, Node] = {}
-    for relation in node.relations:
-        general = low.target(node, relation) if relation.kind in _FEATURES else None
-        for type_ in () if general is None else _types(low, general, seen):
-            inherited.setdefault(id(type_), type_)
-    return list(inherited.values())
+    The search is depth-first and follows a chain of redefinitions of any length.
+    """
+    types: dict[int, Node] = {}
+    visited: set[int] = set()
+    pending = [node]
+    while pending:
+        feature = pending.pop()
+        if id(feature) in visited:
+            continue
+        visited.add(id(feature))
+        typings = [relation for relation in feature.relations if relation.kind in _TYPES]
+        for relation in typings:
+            type_ = low.target(feature, relation)
+            if type_ is not None:
+                types.setdefault(id(type_), type_)
+        if not typings:
+            targets = [low.target(feature, r) for r in feature.relations if r.kind in _FEATURES]
+            pending += [target for target in reversed(targets) if target is not None]
+    return list(types.values())
