@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, cast
 from sysmlc import resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
-from sysmlc.sources import Roots
+from sysmlc.sources import Roots, SourceError
+from sysmlc.sources.limits import DOCUMENT_LIMITS
+from sysmlc.sources.whole import read_whole
 from sysmlc.suggest import did_you_mean
 from sysmlc.toml_text import TomlError, parse_toml
 from sysmlc.values import dataclass
@@ -192,9 +194,12 @@ def _table(file: Path, text: str) -> dict[str, Any]:
 
 def _read(file: Path) -> str:
     try:
-        return file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as problem:
+        text = read_whole(file, str(file), DOCUMENT_LIMITS).decode("utf-8")
+    except SourceError as problem:
+        raise ConfigError(f"{file}: {problem.message}") from problem
+    except UnicodeDecodeError as problem:
         raise ConfigError(f"{file}: cannot be read: {problem}") from problem
+    return text.replace("\r\n", "\n")
 
 
 def _parsed(file: Path, text: str) -> dict[str, Any]:

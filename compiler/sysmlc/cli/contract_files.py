@@ -99,16 +99,19 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Sink
     from sysmlc.logic import formats
-    from sysmlc.sources import Source
+    from sysmlc.sources import Source, SourceError
+    from sysmlc.sources.limits import DOCUMENT_LIMITS
+    from sysmlc.sources.whole import read_whole
 
     if language and not (language in formats.FORMS and formats.FORMS[language].is_read):
         known = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
         fail(f"'{language}' is no form that is read; known are {known}")
     try:
-        source = Source(escape_undecodable(file.as_posix()), file.read_bytes())
+        name = escape_undecodable(file.as_posix())
+        source = Source(name, read_whole(file, name, DOCUMENT_LIMITS))
         text = source.data.decode("utf-8-sig") + _parts_beside(file, source.data)
-    except OSError as problem:
-        fail(f"cannot read '{file}': {problem.strerror}")
+    except SourceError as problem:
+        fail(f"cannot read '{problem.file}': {problem.message}")
     except UnicodeDecodeError:
         fail(f"'{file}' is neither a model that is known nor a text in UTF-8")
     sink = Sink(config.rules)
@@ -122,17 +125,20 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
 def _parts_beside(file: Path, formula: bytes) -> str:
     """What the ``.part`` file beside a formula says of who decides, unless the formula says it.
 
-    A link out of the project root is not followed. Raises OSError and UnicodeDecodeError.
+    A link out of the project root is not followed. Raises SourceError and UnicodeDecodeError.
     """
     from sysmlc.config import find_project_root
     from sysmlc.sources import Roots
+    from sysmlc.sources.limits import DOCUMENT_LIMITS
+    from sysmlc.sources.whole import read_whole
 
     parts = file.with_suffix(".part")
     if file.suffix != ".ltl" or re.search(rb"^\s*\.(in|out)puts\b", formula, re.MULTILINE):
         return ""
     if not parts.is_file() or not Roots((find_project_root(file),)).allows(parts):
         return ""
-    return "\n" + parts.read_text("utf-8-sig")
+    content = read_whole(parts, parts.as_posix(), DOCUMENT_LIMITS)
+    return "\n" + content.decode("utf-8-sig")
 
 
 def _from_text(origin: str) -> "Subject":

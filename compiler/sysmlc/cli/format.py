@@ -120,7 +120,11 @@ def _read(path: Path, language: str | None) -> _Text:
         fail("standard input is closed")
     try:
         if name == "-":
-            return _formatted("-", None, sys.stdin.buffer.read(), language or "sysml")
+            limit = DEFAULT_LIMITS.file_size
+            content = sys.stdin.buffer.read(limit + 1)
+            if len(content) > limit:
+                fail(f"standard input has more than {limit} bytes")
+            return _formatted("-", None, content, language or "sysml")
         return _formatted(name, path, read_whole(path, name, DEFAULT_LIMITS), _of(path, language))
     except SourceError as problem:
         fail(f"{name} {problem.message}")

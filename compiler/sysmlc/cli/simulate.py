@@ -73,12 +73,15 @@ def command(
 
 def _read(scenario: Path) -> "Source":
     from sysmlc.cli.session import fail
-    from sysmlc.sources import Source
+    from sysmlc.sources import Source, SourceError
+    from sysmlc.sources.limits import DOCUMENT_LIMITS
+    from sysmlc.sources.whole import read_whole
 
+    name = escape_undecodable(scenario.as_posix())
     try:
-        return Source(escape_undecodable(scenario.as_posix()), scenario.read_bytes())
-    except OSError as problem:
-        fail(f"cannot read scenario '{scenario}': {problem.strerror}")
+        return Source(name, read_whole(scenario, name, DOCUMENT_LIMITS))
+    except SourceError as problem:
+        fail(f"cannot read scenario '{scenario}': {problem.message}")
 
 
 def _save(target: Path | None, text: str) -> None:

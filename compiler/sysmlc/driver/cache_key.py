@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from sysmlc import __version__, resources
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import Opened, Request
+from sysmlc.sources import DEFAULT_LIMITS, SourceError
+from sysmlc.sources.whole import read_whole
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -118,8 +120,8 @@ def _iter_files(folder: Path) -> Iterator[str]:
 
 def _digest_file(path: str) -> str:
     try:
-        content = Path(path).read_bytes()
-    except OSError:
+        content = read_whole(Path(path), path, DEFAULT_LIMITS)
+    except SourceError:
         return f"{path} unreadable"
     return f"{path} {sha256(content).hexdigest()}"
 

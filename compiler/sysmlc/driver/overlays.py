@@ -11,7 +11,7 @@ from sysmlc.driver.inputs import name_of
 from sysmlc.ir import Graph
 from sysmlc.overlay import SUFFIX
 from sysmlc.sources import Roots, Source, SourceError
-from sysmlc.sources.limits import DEFAULT_LIMITS
+from sysmlc.sources.limits import DOCUMENT_LIMITS
 from sysmlc.sources.whole import read_whole
 from sysmlc.values import dataclass
 
@@ -49,7 +49,7 @@ def load_overlay(
         sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         return None
     try:
-        source = Source(name, read_whole(path, name, DEFAULT_LIMITS))
+        source = Source(name, read_whole(path, name, DOCUMENT_LIMITS))
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return None

@@ -10,6 +10,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
 from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
+from sysmlc.sources.limits import DEFAULT_LIMITS
+from sysmlc.sources.whole import read_whole
 
 VARIABLE = "SYSML_LIBRARY_PATH"
 """Environment variable: the folder or .kpar of the standard library."""
@@ -198,12 +200,9 @@ def _label_of_installed(models: Path) -> str:
 
 def _read(path: Path) -> list[Source]:
     """The model files of a folder or archive, named relative to it. Raises SourceError."""
-    try:
-        if path.is_dir():
-            return _of_folder(path)
-        source = Source(path.name, path.read_bytes())
-    except OSError as problem:
-        raise SourceError(problem.strerror or "not there", str(path), fault=Fault.MISSING) from None
+    if path.is_dir():
+        return _of_folder(path)
+    source = Source(path.name, read_whole(path, str(path), DEFAULT_LIMITS))
     if is_archive(source.data):
         return entries(source, _is_model)
     return [source] if _is_model(path.name) else []
@@ -223,14 +222,17 @@ def _of_folder(folder: Path) -> list[Source]:
 
 
 def _source(path: Path, name: str) -> Source:
-    told = path.stat()
-    return _kept(path, name, told.st_size, told.st_mtime_ns)
+    try:
+        status = path.stat()
+    except OSError as problem:
+        raise SourceError(problem.strerror or "not there", str(path), fault=Fault.MISSING) from None
+    return _kept(path, name, status.st_size, status.st_mtime_ns)
 
 
 @lru_cache(_REMEMBERED)
 def _kept(path: Path, name: str, _size: int, _changed: int) -> Source:
     """The file as it was changed last: a process that compiles again need not read it."""
-    return Source(name, path.read_bytes())
+    return Source(name, read_whole(path, name, DEFAULT_LIMITS))
 
 
 def _is_model(name: str) -> bool:

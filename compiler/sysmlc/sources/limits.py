@@ -29,3 +29,8 @@ class Limits:
 
 
 DEFAULT_LIMITS = Limits()
+DOCUMENT_LIMITS = Limits(file_size=16 << 20)
+"""Limits of what people write by hand beside models: configuration, overlays, scenarios, contracts.
+
+The largest in the corpus has 100 KiB; the readers of some formats take a hundred times the size.
+"""

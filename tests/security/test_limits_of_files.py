@@ -1,0 +1,74 @@
+"""Every file that a repository or a user may give is read with a limit on its size."""
+
+import ast
+import os
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import sysmlc
+from sysmlc.cli import group
+from sysmlc.sources.limits import DOCUMENT_LIMITS
+
+ROOT = Path(sysmlc.__file__).parent
+SHIPPED = {
+    "backends/templates/files.py": "shipped templates",
+    "frontends/caex/standard.py": "shipped libraries",
+    "language/text/tables.py": "shipped tables",
+    "resources.py": "shipped files",
+}
+OUTPUTS = {"driver/publish.py", "output.py", "cache.py"}
+"""Modules that read files of earlier runs."""
+MODEL = """package P { part def Gate { attribute open : ScalarValues::Boolean; exhibit state s {
+    entry; then a; state a; } } }"""
+
+
+def read_unlimited() -> set[str]:
+    """Modules that call ``read_text`` or ``read_bytes``, which read a file of any size."""
+    modules = set()
+    for path in ROOT.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Attribute) and node.attr in ("read_text", "read_bytes"):
+                modules.add(path.relative_to(ROOT).as_posix())
+    return modules
+
+
+def test_only_shipped_files_and_outputs_are_read_without_limit():
+    assert read_unlimited() <= SHIPPED.keys() | OUTPUTS
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "plant.sysml").write_text(MODEL)
+    return tmp_path
+
+
+DOCUMENTS = {
+    "sysmlc.toml": ("check", "plant.sysml"),
+    "plant.overlay.yaml": ("check", "plant.sysml"),
+    "run.yaml": ("simulate", "plant.sysml", "--scenario", "run.yaml"),
+    "gate.contract.json": ("synth", "gate.contract.json", "--realizable"),
+    "gate.tlsf": ("synth", "gate.tlsf", "--realizable"),
+    "gate.spectra": ("contracts", "check", "gate.spectra"),
+}
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_a_huge_document_is_refused(project, name):
+    with (project / name).open("wb") as file:
+        file.truncate(DOCUMENT_LIMITS.file_size + 1)
+    result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
+    assert result.exit_code == 2
+    assert f"larger than {DOCUMENT_LIMITS.file_size} bytes" in result.output
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+@pytest.mark.parametrize("name", [name for name in DOCUMENTS if name != "sysmlc.toml"])
+def test_a_pipe_is_not_waited_for(project, name):
+    os.mkfifo(project / name)
+    result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
+    assert result.exit_code == 2
+    assert "is no regular file" in result.output
