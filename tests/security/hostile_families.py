@@ -207,12 +207,12 @@ def requirements(size: int) -> str:
 
 
 def small_packages(size: int) -> str:
-    """Packages of one line, each with two blocks and a diagram."""
+    """Packages of one line, each with three blocks and a diagram."""
     lines = []
     for i in range(size):
         following = (i + 1) % size
         block = f"part def B{i} {{ part a : P{following}::A{following}; }}"
-        lines.append(f"package P{i} {{ part def A{i}; {block} }}")
+        lines.append(f"package P{i} {{ part def A{i}; {block} part def C{i} :> A{i}; }}")
     return "\n".join(lines)
 
 

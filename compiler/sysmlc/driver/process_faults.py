@@ -35,4 +35,6 @@ CRASH = rule(
     "are short of memory do so with SIGKILL; libraries crash when they reach the memory limit.",
     help="try a lower --memory-limit after SIGKILL and a higher one after other signals; if that "
     "does not help, please report it with the command and the model",
+    wrong="sysmlc synth plant.uml --memory-limit 0.1, where CUDD does not survive the limit",
+    right="sysmlc synth plant.uml --memory-limit 8",
 )

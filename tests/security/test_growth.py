@@ -1,0 +1,95 @@
+"""The cost of hostile models grows at most with the square of their size, and nothing crashes."""
+
+import sys
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import hostile_families as families
+import pytest
+
+from sysmlc.backends.plantuml import bdd
+from sysmlc.driver import Request, backend_names, compile_model, load_backends
+from sysmlc.logic.machines import competition
+
+MAX_GROWTH = 4.5
+"""Times the cost, for twice the size; 4 is quadratic."""
+
+
+@cache
+def load_all_backends():
+    return tuple(load_backends(backend_names()))
+
+
+def compile_text(folder: Path, name: str, text: str):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return compile_model(Request((path,), backends=load_all_backends()))
+
+
+def find_codes(compilation) -> set[str]:
+    return {diagnostic.rule.code for diagnostic in compilation.diagnostics}
+
+
+def count_calls(folder: Path, name: str, text: str) -> int:
+    """Compile a model to all outputs; the number of calls of Python and C functions it takes."""
+    calls = 0
+
+    def count(_frame, event, _argument):
+        nonlocal calls
+        calls += event in ("call", "c_call")
+
+    sys.setprofile(count)
+    try:
+        compilation = compile_text(folder, name, text)
+    finally:
+        sys.setprofile(None)
+    assert "SM900" not in find_codes(compilation)
+    return calls
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("family", families.FAMILIES, ids=lambda family: family.__name__)
+def test_the_cost_of_a_family_grows_at_most_with_the_square(family, tmp_path):
+    name, size = families.FAMILIES[family]
+    compile_text(tmp_path, name, family(size))  # fills what is read once in a process
+    costs = [count_calls(tmp_path, name, family(size * factor)) for factor in (1, 2, 4)]
+    growth = [round(after / before, 2) for before, after in pairwise(costs)]
+    print(family.__name__, costs, growth)
+    assert max(growth) <= MAX_GROWTH
+
+
+def test_guards_are_compared_up_to_a_bound(tmp_path, monkeypatch):
+    monkeypatch.setattr(competition, "MAX_VALUATIONS", 50_000)
+    few = compile_text(tmp_path, "few.sysml", families.guarded_transitions(4))
+    assert "SM485" not in find_codes(few)
+    many = compile_text(tmp_path, "many.sysml", families.guarded_transitions(8))
+    (diagnostic,) = [found for found in many.diagnostics if found.rule.code == "SM485"]
+    assert diagnostic.message.startswith("the guards of 'm' have too many combinations of values")
+    assert diagnostic.subject.name == "P::A::m"
+
+
+def test_a_long_chain_of_redefinitions_is_read(tmp_path):
+    text = families.redefinitions(1200)
+    path = tmp_path / "chain.sysml"
+    path.write_text(text)
+    compilation = compile_model(Request((path,)))
+    assert not find_codes(compilation)
+
+
+def test_block_diagrams_of_many_packages_take_linear_time(tmp_path):
+    calls = dict.fromkeys((100, 200), 0)
+    backends = tuple(load_backends(["plantuml"]))
+    for size in calls:
+        path = tmp_path / f"packages{size}.sysml"
+        path.write_text(families.small_packages(size))
+
+        def count(frame, event, _argument, size=size):
+            calls[size] += event == "call" and frame.f_code.co_filename == bdd.__file__
+
+        sys.setprofile(count)
+        try:
+            compile_model(Request((path,), backends=backends))
+        finally:
+            sys.setprofile(None)
+    assert 0 < calls[200] <= 2.2 * calls[100]
