@@ -18,7 +18,7 @@ SHIPPED = {
     "language/text/tables.py": "shipped tables",
     "resources.py": "shipped files",
 }
-OUTPUTS = {"driver/publish.py", "output.py", "cache.py"}
+OUTPUTS = {"driver/publishing.py", "output.py", "cache.py"}
 """Modules that read files of earlier runs."""
 MODEL = """package P { part def Gate { attribute open : ScalarValues::Boolean; exhibit state s {
     entry; then a; state a; } } }"""
