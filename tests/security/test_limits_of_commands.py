@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from sysmlc.cli import group
 from sysmlc.cli.limits import LIMITS
 
-MODEL = """package Plant { part def Gate { port in; } }"""
+MODEL = "package Plant { part def Gate; }"
 PATIENCE = 120
 """Seconds that a test waits for a process; a machine under load needs many of them."""
 
@@ -126,6 +126,60 @@ def test_a_signal_to_the_command_ends_the_work(number):
     while is_alive(worker):
         assert time.monotonic() < end
         time.sleep(0.01)
+
+
+WATCH = """
+import os, signal, sys, time
+from pathlib import Path
+from sysmlc.cli import main, watching
+compile_all = watching.compiled
+def compile_or_fail(*args):
+    text = Path("plant.sysml").read_text()
+    if "Endless" in text:
+        while True: pass
+    if "Huge" in text:
+        bytes(1 << 40)
+    if "Crash" in text:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    return compile_all(*args)
+watching.compiled = compile_or_fail
+sys.argv = ["sysmlc", "watch", "plant.sysml", "-o", "out", "--time-limit", "4", "--settle", "0"]
+main()
+"""
+
+
+def wait_for(process, condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert process.poll() is None
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces memory limits")
+def test_watch_goes_on_after_a_limit_or_a_crash(project):
+    errors, lines = project / "errors.txt", project / "lines.txt"
+    model = project / "plant.sysml"
+    with errors.open("w") as stderr, lines.open("a") as stdout:
+        process = subprocess.Popen(
+            [sys.executable, "-u", "-c", WATCH],
+            stdout=stdout,
+            stderr=stderr,
+            start_new_session=True,
+        )
+    try:
+        wait_for(process, lambda: "out: " in lines.read_text())
+        for name, code in (("Endless", "SM904"), ("Huge", "SM905"), ("Crash", "SM906")):
+            model.write_text(MODEL.replace("Gate", name))
+            wait_for(process, lambda code=code: code in errors.read_text())
+            lines.write_text("")
+            model.write_text(MODEL.replace("Gate", "Repaired"))
+            wait_for(process, lambda: "out: " in lines.read_text())
+    finally:
+        process.send_signal(signal.SIGINT)
+    assert process.wait(PATIENCE) == 0
+    assert errors.read_text().count("error[SM90") == 3
 
 
 @pytest.fixture

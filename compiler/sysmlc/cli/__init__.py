@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NoReturn
 from sysmlc.cli.supervisor import can_supervise, supervise
 
 if TYPE_CHECKING:
-    from mmap import mmap
+    from sysmlc.cli.supervisor import SharedState
 
 _NEW_OBJECTS = 200_000
 """New objects before the garbage collector looks for cycles: a compilation makes hardly any."""
@@ -23,7 +23,7 @@ def main() -> None:
     _run(None)
 
 
-def _run(shared: "mmap | None") -> NoReturn:
+def _run(shared: "SharedState | None") -> NoReturn:
     """Run the command line in this process, with limits if a parent process shares memory.
 
     Imports make objects too, so the threshold of the garbage collector is set before them.

@@ -11,6 +11,7 @@ from sysmlc import __version__
 from sysmlc.cli import terminal
 from sysmlc.cli.limit_reports import report_memory_limit
 from sysmlc.cli.limits import LIMITS, add_limit_options
+from sysmlc.cli.supervisor import OUT_OF_MEMORY
 
 COMMANDS = (
     "build",
@@ -101,7 +102,7 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
     except MemoryError:
         LIMITS.release_memory()
         report_memory_limit(LIMITS.gibibytes)
-        sys.exit(2)
+        sys.exit(OUT_OF_MEMORY if LIMITS.is_enforced else 2)
     except Exception as problem:
         if isinstance(problem, OSError) and terminal.find_stream_problems():
             sys.exit(2)

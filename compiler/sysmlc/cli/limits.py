@@ -9,12 +9,12 @@ import os
 import signal
 import sys
 import time
-from contextlib import suppress
-from mmap import mmap
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 import click
 
-from sysmlc.cli.supervisor import write_time_limit
+from sysmlc.cli.supervisor import SharedState
 
 DEFAULT_SECONDS = 300.0
 DEFAULT_GIBIBYTES = 8.0
@@ -32,49 +32,88 @@ class Limits:
     def __init__(self) -> None:
         self.seconds = DEFAULT_SECONDS
         self.gibibytes = DEFAULT_GIBIBYTES
+        self._options = (self.seconds, self.gibibytes)
         self._start = time.monotonic()
-        self._shared: mmap | None = None
+        self._is_timed = True
+        self._shared: SharedState | None = None
 
-    def enforce(self, shared: mmap) -> None:
+    @property
+    def is_enforced(self) -> bool:
+        """Whether a parent process reports that this process has reached a limit."""
+        return self._shared is not None
+
+    def enforce(self, shared: SharedState) -> None:
         """Enforce limits in this process from now on; *shared* is read by the parent process."""
         self._shared = shared
+        self._start = time.monotonic()
         # A parent process may have left SIGALRM ignored or blocked.
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})
-        self.set_seconds(self.seconds)
+        self._set(*self._options)
 
-    def set_seconds(self, seconds: float) -> None:
-        """Set the time limit, counted from the start of the command."""
-        self.seconds = seconds
-        if self._shared is None:
-            return
-        elapsed = time.monotonic() - self._start
-        write_time_limit(self._shared, seconds)
-        signal.setitimer(signal.ITIMER_REAL, max(seconds - elapsed, _SHORTEST) if seconds else 0)
+    def set_time_option(self, seconds: float) -> None:
+        """Set the time limit of the command line, counted from the start of the command."""
+        self._options = (seconds, self._options[1])
+        self._set(*self._options)
 
-    def set_gibibytes(self, gibibytes: float) -> None:
-        """Set the memory limit."""
-        self.gibibytes = gibibytes
-        if self._shared is not None:
-            size = int(gibibytes * _GIBIBYTE) + _OWN_MEMORY if gibibytes else None
-            _set_memory_limit(size)
+    def set_memory_option(self, gibibytes: float) -> None:
+        """Set the memory limit of the command line."""
+        self._options = (self._options[0], gibibytes)
+        self._set(*self._options)
 
     def lower(self, seconds: float, gibibytes: float) -> None:
         """Lower the limits to those of a configuration, which cannot raise them; 0 is no limit."""
-        if seconds and (not self.seconds or seconds < self.seconds):
-            self.set_seconds(seconds)
-        if gibibytes and (not self.gibibytes or gibibytes < self.gibibytes):
-            self.set_gibibytes(gibibytes)
+        self._set(_lower(self.seconds, seconds), _lower(self.gibibytes, gibibytes))
 
     def stop_timer(self) -> None:
         """End the time limit: from now on the command waits for its user."""
+        self._is_timed = False
+        self._set(self.seconds, self.gibibytes)
+
+    def has_ended_build(self, input_digest: int) -> bool:
+        """Return whether a limit has ended a build of inputs in this state, in an earlier child."""
+        return self._shared is not None and self._shared.input_digest == input_digest
+
+    @contextmanager
+    def limit_build(self, input_digest: int) -> Iterator[None]:
+        """Apply the limits to a build of a command that watches files.
+
+        The parent process starts the command again when the build reaches a limit.
+        """
         if self._shared is not None:
-            signal.setitimer(signal.ITIMER_REAL, 0)
+            self._shared.start_build(input_digest)
+        with self.timed():
+            yield
+
+    @contextmanager
+    def timed(self) -> Iterator[None]:
+        """Apply the limits to the work of the block, which may read configurations anew."""
+        self._start, self._is_timed = time.monotonic(), True
+        self._set(*self._options)
+        try:
+            yield
+        finally:
+            self.stop_timer()
+
+    def _set(self, seconds: float, gibibytes: float) -> None:
+        self.seconds, self.gibibytes = seconds, gibibytes
+        if self._shared is None:
+            return
+        self._shared.time_limit = seconds
+        remaining = max(seconds - (time.monotonic() - self._start), _SHORTEST)
+        is_limited = self._is_timed and seconds
+        signal.setitimer(signal.ITIMER_REAL, remaining if is_limited else 0)
+        _set_memory_limit(int(gibibytes * _GIBIBYTE) + _OWN_MEMORY if gibibytes else None)
 
     def release_memory(self) -> None:
         """End the memory limit, so that a diagnostic about it can be printed."""
         if self._shared is not None:
             _set_memory_limit(None)
+
+
+def _lower(limit: float, other: float) -> float:
+    """Return the lower of two limits, of which 0 is none."""
+    return min(limit, other) if limit and other else limit or other
 
 
 LIMITS = Limits()
@@ -121,7 +160,7 @@ def check_amount(_ctx: click.Context, _param: click.Parameter, value: float) -> 
 
 def _time_limit_option() -> click.Option:
     def set_limit(ctx: click.Context, parameter: click.Parameter, value: float) -> None:
-        LIMITS.set_seconds(check_amount(ctx, parameter, value))
+        LIMITS.set_time_option(check_amount(ctx, parameter, value))
 
     return click.Option(
         ["--time-limit"],
@@ -137,7 +176,7 @@ def _time_limit_option() -> click.Option:
 
 def _memory_limit_option() -> click.Option:
     def set_limit(ctx: click.Context, parameter: click.Parameter, value: float) -> None:
-        LIMITS.set_gibibytes(check_amount(ctx, parameter, value))
+        LIMITS.set_memory_option(check_amount(ctx, parameter, value))
 
     return click.Option(
         ["--memory-limit"],

@@ -9,17 +9,67 @@ import os
 import signal
 import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from mmap import mmap
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
+_SENT_BY_USERS = [
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
+    if hasattr(signal, name)
+]
 _FORWARDED = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT", "SIGUSR1", "SIGUSR2")
-_TIME_LIMIT = struct.Struct("d")
+OUT_OF_MEMORY = 75
+"""Exit code of a child that has reported its memory limit; the command exits with 2."""
 
-Run = Callable[[mmap], NoReturn]
-"""Runs a command in the child and ends the process. The command writes its time limit, in seconds,
-to the beginning of the memory that it shares with the parent."""
+
+class SharedState:
+    """What a command tells the parent process, and a later child, in memory that they share."""
+
+    _LAYOUT = struct.Struct("d?I")
+
+    def __init__(self) -> None:
+        self._memory = mmap(-1, self._LAYOUT.size)
+
+    @property
+    def time_limit(self) -> float:
+        """Seconds after which the child ends; the parent names them in its report."""
+        return float(self._read()[0])
+
+    @time_limit.setter
+    def time_limit(self, seconds: float) -> None:
+        self._LAYOUT.pack_into(self._memory, 0, seconds, *self._read()[1:])
+
+    @property
+    def is_watching(self) -> bool:
+        """Whether the child watches files: the command goes on in a new child after a limit.
+
+        It does not if a limit is reached before, which would happen again and again.
+        """
+        return bool(self._read()[1])
+
+    @property
+    def input_digest(self) -> int:
+        """The state of the inputs that were compiled last."""
+        return int(self._read()[2])
+
+    def start_build(self, input_digest: int) -> None:
+        """Note that the command watches files and now compiles them in the state of the digest."""
+        self._LAYOUT.pack_into(self._memory, 0, self.time_limit, True, input_digest)
+
+    def start_child(self) -> None:
+        """Note that a new child has not yet come to watch files."""
+        self._LAYOUT.pack_into(self._memory, 0, self.time_limit, False, self.input_digest)
+
+    def _read(self) -> tuple[Any, ...]:
+        return self._LAYOUT.unpack_from(self._memory)
+
+
+_Handler = Callable[[int, FrameType | None], Any] | int | None
+Run = Callable[[SharedState], NoReturn]
+"""Runs a command in the child and ends the process."""
 
 
 def can_supervise() -> bool:
@@ -31,23 +81,38 @@ def can_supervise() -> bool:
 
 
 def supervise(run: Run) -> NoReturn:
-    """Run a command in a child process and end as it ends; report a limit or a crash (code 2)."""
-    shared = mmap(-1, _TIME_LIMIT.size)
+    """Run a command in a child process and end as it ends; report a limit or a crash (code 2).
+
+    A command that watches files goes on in a new child after a limit or a crash.
+    """
+    shared = SharedState()
+    handlers = _find_forwarded_signals()
+    while True:
+        shared.start_child()
+        child = _fork(run, shared, handlers)
+        _forward_signals(handlers, child)
+        code = _wait_for(child)
+        is_over = code >= 0 and code != OUT_OF_MEMORY
+        if is_over or -code in _SENT_BY_USERS:
+            _end_as(code)
+        _report_end(code, shared)
+        if not shared.is_watching:
+            os._exit(2)
+
+
+def _fork(run: Run, shared: SharedState, handlers: Mapping[int, "_Handler"]) -> int:
+    """Start a child process that runs the command with the signal *handlers*; return its id."""
     lifeline, held_end = os.pipe()
     parent = os.getpid()
     child = os.fork()
     if child == 0:
         os.close(held_end)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
         _end_with_parent(lifeline, parent)
         run(shared)
     os.close(lifeline)
-    _forward_signals(child)
-    _end_as(_wait_for(child), shared)
-
-
-def write_time_limit(shared: mmap, seconds: float) -> None:
-    """Let the parent know the time limit, which it names when the limit is reached."""
-    _TIME_LIMIT.pack_into(shared, 0, seconds)
+    return child
 
 
 def _end_with_parent(lifeline: int, parent: int) -> None:
@@ -66,17 +131,24 @@ def _end_with_parent(lifeline: int, parent: int) -> None:
         os._exit(2)
 
 
-def _forward_signals(child: int) -> None:
+def _find_forwarded_signals() -> "dict[int, _Handler]":
+    """Return the signals that are passed on, with their handlers; ignored ones are not."""
+    numbers = [getattr(signal, name) for name in _FORWARDED]
+    handlers = {number: signal.getsignal(number) for number in numbers}
+    return {number: one for number, one in handlers.items() if one is not signal.SIG_IGN}
+
+
+def _forward_signals(numbers: Iterable[int], child: int) -> None:
     """Pass signals on to the child; a key press such as Ctrl-C reaches the child by itself."""
 
     def forward(number: int, _frame: FrameType | None) -> None:
         if number not in (signal.SIGINT, signal.SIGQUIT) or not _is_in_foreground():
-            os.kill(child, number)
+            # The child may have ended a moment ago.
+            with suppress(ProcessLookupError):
+                os.kill(child, number)
 
-    for name in _FORWARDED:
-        number = getattr(signal, name)
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, forward)
+    for number in numbers:
+        signal.signal(number, forward)
 
 
 def _is_in_foreground() -> bool:
@@ -94,20 +166,19 @@ def _wait_for(child: int) -> int:
     return os.waitstatus_to_exitcode(status)
 
 
-def _end_as(code: int, shared: mmap) -> NoReturn:
-    """End this process as the child ended; a signal that the user did not send is a fault."""
-    number = -code
-    if number == signal.SIGALRM:
-        from sysmlc.cli.limit_reports import report_time_limit
-
-        report_time_limit(_TIME_LIMIT.unpack_from(shared)[0])
-        code = 2
-    elif number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
-        signal.signal(number, signal.SIG_DFL)
-        os.kill(os.getpid(), number)
-    elif number > 0:
-        from sysmlc.cli.limit_reports import report_crash
-
-        report_crash(number)
-        code = 2
+def _end_as(code: int) -> NoReturn:
+    """End this process as the child ended: with its exit code, or by the same signal."""
+    if code < 0:
+        signal.signal(-code, signal.SIG_DFL)
+        os.kill(os.getpid(), -code)
     os._exit(code)
+
+
+def _report_end(code: int, shared: SharedState) -> None:
+    """Report why a child has ended early, unless it has done so itself."""
+    from sysmlc.cli.limit_reports import report_crash, report_time_limit
+
+    if -code == signal.SIGALRM:
+        report_time_limit(shared.time_limit)
+    elif code < 0:
+        report_crash(-code)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options
+from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
@@ -54,14 +55,16 @@ def command(
     """Compile MODEL... now and at every save; keep the last good outputs.
 
     Files that are still being saved are waited for. While the model has errors nothing in the
-    output folder changes, but with --keep-going.
+    output folder changes, but with --keep-going. The time and memory limits hold for each time
+    that MODEL... are compiled; after a limit the command waits for the next save.
     """
     from sysmlc.cli import session
     from sysmlc.cli.watching import Watch
 
     watched = Watch(models, output, session.Settings(**given), settle / 1000, keep_going)
     saves = _saves(watched.folders())
-    watched.build()
+    LIMITS.stop_timer()
+    watched.start()
     for saved in saves:
         watched.build_if_changed(saved)
 

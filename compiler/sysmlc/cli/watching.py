@@ -5,8 +5,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
+from zlib import crc32
 
 from sysmlc.cli import terminal
+from sysmlc.cli.limits import LIMITS
 from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
@@ -89,6 +91,21 @@ class Watch:
             else:
                 self.rest()
 
+    def start(self) -> None:
+        """Compile, unless a limit has just ended that; then wait for the next save."""
+        from sysmlc.cli.settling import stamps
+
+        if LIMITS.has_ended_build(self._digest_inputs()):
+            self._built = stamps(self._paths)
+        else:
+            self.build()
+
+    def _digest_inputs(self) -> int:
+        """Return a digest of size and time of the named inputs."""
+        from sysmlc.cli.settling import stamps
+
+        return crc32(repr(sorted(stamps(self._named).items())).encode("utf-8", "surrogatepass"))
+
     def build(self) -> None:
         """Compile what has come to rest, show it, and write it when it has no errors."""
         is_first = not self._built
@@ -98,8 +115,9 @@ class Watch:
             if stamp is None and path not in self._named:
                 del self._paths[path]
         self._built = {path: self._built.get(path) for path in self._paths}
-        for one in made:
-            publish(one, self._settings, self._keep_going)
+        with LIMITS.timed():
+            for one in made:
+                publish(one, self._settings, self._keep_going)
         self._left += 1
         if self._left >= _MOST:
             self._collect()
@@ -130,7 +148,8 @@ class Watch:
 
         for _ in range(_ROUNDS):
             before = settling.rested(self._paths, self._rest())
-            made = compiled(self._models, self._output, self._settings)
+            with LIMITS.limit_build(self._digest_inputs()):
+                made = compiled(self._models, self._output, self._settings)
             if settling.stamps(before) != before:
                 continue
             new = dict.fromkeys(path for one in made for path in _read_by(one.outcome))
@@ -154,8 +173,9 @@ class Watch:
 
         if not made:
             return True
-        config = session.load_config(self._models, self._settings)
-        units = open_units(self._models, config, self._settings, self._output)
+        with LIMITS.timed():
+            config = session.load_config(self._models, self._settings)
+            units = open_units(self._models, config, self._settings, self._output)
         return [unit.opened.inputs() for unit in units] == [one.outcome.inputs for one in made]
 
     def _rest(self) -> float:
