@@ -67,8 +67,8 @@ def test_a_warning_is_exit_code_0_and_with_strict_1(here, option, code):
         (["show", "plant.ir", "-e", "Gata"], "no element 'Gata'; did you mean 'Gate'?"),
         (["build"], "name a model, or list [[model]] units in sysmlc.toml"),
         (["check"], "name a model, or list [[model]] units in sysmlc.toml"),
-        (["plant.ir", "-o", "plant.ir", "--emit", "graph"], "cannot write"),
-        (["plant.ir", "--config", "no.toml"], "no.toml: cannot be read"),
+        (["plant.ir", "-o", "plant.ir", "--emit", "graph"], "Directory 'plant.ir' is a file"),
+        (["plant.ir", "--config", "no.toml"], "no.toml: cannot be opened"),
     ],
 )
 def test_what_cannot_be_done_is_one_sentence_and_exit_code_2(here, args, sentence):

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.corpus
 
 SUFFIXES = {".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".aml", ".amlx"}
 ARCHIVES = (".mdzip", ".amlx")
-OF_FILES = {"SM100", "SM110", "SM141", "SM142", "SM148", "SM171", "SM172", "SM178"}
+OF_FILES = {"SM100", "SM110", "SM141", "SM142", "SM148", "SM158", "SM171", "SM172", "SM178"}
 """Rules about a file as a whole, which is no element."""
 LARGE = 700_000
 MUTANTS = 3
