@@ -1,5 +1,6 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from pathlib import Path
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
     from jsonschema import ValidationError
 
 FILE_NAME = "sysmlc.toml"
+_MAX_PARTS = 100
+_MAX_BYTES = 240
+"""Folders in a path of the configuration, and bytes in the name of one: file systems allow 255,
+and outputs add suffixes."""
 _LONGEST_MESSAGE = 300
 _EXCERPT = 100
 """Characters of either end of a longer message that are shown."""
@@ -129,6 +134,7 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
 
     A repository must not choose what is read or written elsewhere on the machine.
     """
+    _check_lengths(file, text, config)
     entries = [("templates", config.templates)]
     outputs = [config.output, *(unit.output for unit in config.models)]
     for unit in config.models:
@@ -144,6 +150,19 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
                 f"{file}:{_line(text, key)}: '{key}': '{value}' leads out of the project root "
                 f"'{config.root}'; only paths on the command line may do that"
             )
+
+
+def _check_lengths(file: Path, text: str, config: Config) -> None:
+    """Refuse paths that no file system can hold. Raises ConfigError."""
+    entries = [("output", config.output), ("templates", config.templates)]
+    for unit in config.models:
+        entries += [("name", unit.name), ("output", unit.output)]
+        entries += [("files", pattern) for pattern in unit.files]
+    for key, value in entries:
+        parts = Path(value).parts
+        if len(parts) > _MAX_PARTS or any(len(os.fsencode(part)) > _MAX_BYTES for part in parts):
+            message = f"'{value[:_EXCERPT]}...' is longer than file systems allow"
+            raise ConfigError(f"{file}:{_line(text, key)}: '{key}': {message}")
 
 
 def _is_inside(name: str) -> bool:

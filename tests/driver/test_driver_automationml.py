@@ -23,7 +23,9 @@ def build(*paths, backends=()):
 
 
 def told(made):
-    return [f"{found.rule.code}: {found.message}" for found in made.diagnostics]
+    """The diagnostics, without the one that these files have no plant (SM158)."""
+    rows = [f"{found.rule.code}: {found.message}" for found in made.diagnostics]
+    return [row for row in rows if not row.startswith("SM158")]
 
 
 def test_files_that_aliases_lead_to_are_part_of_the_unit(tmp_path):

@@ -198,3 +198,15 @@ def test_an_interrupted_build_is_visible_to_check(tmp_path, monkeypatch):
     with pytest.raises(ZeroDivisionError):
         publish(SECOND, target)
     assert "trace.json" in compare(SECOND, target)
+
+
+def test_files_are_synced_one_by_one_where_no_thread_starts(tmp_path, monkeypatch):
+    """As under a limit on memory or on processes."""
+
+    def refuse(_):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", refuse)
+    outcome = make_outcome(**{f"file{number}_txt": str(number) for number in range(40)})
+    assert not publish(outcome, Target(tmp_path / "out", boundary=tmp_path)).is_refused
+    assert len(list((tmp_path / "out").glob("*.txt"))) == 40

@@ -1,5 +1,7 @@
 """Configuration that would exhaust the TOML parser ends in a message with file and line."""
 
+import subprocess
+import sys
 import time
 
 import pytest
@@ -38,6 +40,36 @@ def test_hostile_toml_is_a_located_message(tmp_path, monkeypatch, name, attack):
     assert message in ended.stderr
     assert len(ended.stderr) < 1_000
     assert time.process_time() - start < 5
+
+
+@pytest.mark.parametrize("path", ["a" * 241, "/".join("a" * 101), "ä" * 121])
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [
+        ("output", 'output = "{}"'),
+        ("templates", 'templates = "{}"'),
+        ("name", '[[model]]\nname = "{}"\nfiles = ["m.ir"]'),
+        ("files", '[[model]]\nname = "m"\nfiles = ["{}*"]'),
+    ],
+)
+def test_paths_that_no_file_system_holds_are_refused(tmp_path, monkeypatch, key, text, path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.ir").write_text('Class a "A"\n')
+    (tmp_path / "sysmlc.toml").write_text(text.format(path))
+    ended = CliRunner().invoke(sysmlc, ["check", "m.ir"])
+    assert ended.exit_code == 2
+    assert f"'{key}': '{path[:100]}...' is longer than file systems allow" in ended.stderr
+
+
+@pytest.mark.parametrize("option", ["", "--config", "--overlay", "--schema"])
+def test_long_paths_on_the_command_line_are_no_fault_of_sysmlc(tmp_path, monkeypatch, option):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.ir").write_text('Class a "A"\n')
+    command = [sys.executable, "-m", "sysmlc", "check", "m.ir", *filter(None, [option]), "a" * 300]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    assert ended.returncode == 2
+    assert "Please report" not in ended.stderr
+    assert "a" * 100 in ended.stderr
 
 
 def test_ordinary_toml_is_within_the_limits():

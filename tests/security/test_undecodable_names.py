@@ -75,6 +75,14 @@ def test_commands_answer(run, args):
     run(*args)
 
 
+@pytest.mark.parametrize("twin", [b"models/pl\\xffnt.sysml", b"models/e\xcc\x81.sysml"])
+def test_a_file_is_not_hidden_by_another_of_the_same_shown_name(run, tmp_path, twin):
+    (tmp_path / "models" / "é.sysml").write_text("package É;")
+    assert "SM159" not in run(b"check", b"models")
+    (tmp_path / os.fsdecode(twin)).write_bytes(V2)
+    assert "error[SM159 same-file-name]: a second file is called" in run(b"check", b"models")
+
+
 def test_outputs_are_utf_8_and_hold_the_escaped_name(run, tmp_path):
     emitted = b"+graph,+ir,+sysml,+sysmlx,+uml,+ecore"
     run(b"build", b"models", b"-o", b"out" + NAME, b"--emit", emitted)

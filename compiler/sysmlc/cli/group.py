@@ -103,9 +103,12 @@ def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
         LIMITS.release_memory()
         report_memory_limit(LIMITS.gibibytes)
         sys.exit(OUT_OF_MEMORY if LIMITS.is_enforced else 2)
+    except OSError as problem:
+        if not terminal.find_stream_problems():
+            name = f" '{problem.filename}'" if problem.filename else ""
+            terminal.echo(f"sysmlc: cannot use{name}: {problem.strerror or problem}", err=True)
+        sys.exit(2)
     except Exception as problem:
-        if isinstance(problem, OSError) and terminal.find_stream_problems():
-            sys.exit(2)
         fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
     terminal.echo(f"sysmlc: {fault}", err=True)
     click.echo("Please report it with the command and the model.", err=True)

@@ -126,6 +126,17 @@ EMPTY = rule(
     wrong="sysmlc plant.sysml, which has 0 bytes",
     right="sysmlc plant.sysml, which has 'package Plant;'",
 )
+SAME_NAME = rule(
+    "SM159",
+    "same-file-name",
+    Severity.ERROR,
+    "a second file is called '{path}' in outputs and messages; it is not read",
+    why="Names of files are shown in Unicode's composed form (NFC), with escapes for bytes that "
+    "are not UTF-8. Two files whose names differ only in such a way cannot be told apart.",
+    help="rename one of the files",
+    wrong="Größe.sysml twice in one folder, once with 'ö' and once with 'o' and a diaeresis",
+    right="Größe.sysml and Höhe.sysml",
+)
 CHANGING = rule(
     "SM127",
     "changing-file",

@@ -303,8 +303,12 @@ def _sync_all(paths: Collection[str]) -> None:
         return
     from concurrent.futures import ThreadPoolExecutor
 
-    with ThreadPoolExecutor(_SYNCS) as pool:
-        list(pool.map(sync, paths))
+    try:
+        with ThreadPoolExecutor(_SYNCS) as pool:
+            list(pool.map(sync, paths))
+    except RuntimeError:  # a limit on memory or processes leaves no room for threads
+        for path in paths:
+            sync(path)
 
 
 def _remove(folder: Path, path: str) -> bool:

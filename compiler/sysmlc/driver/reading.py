@@ -109,7 +109,11 @@ class _Reader:
             self._named.add(real)
         sources = _sources(path, self._root, self._sink)
         for found in recognise(sources, self._frontends, otherwise, self._sink):
-            self.found[found.source.name] = found
+            name = found.source.name
+            if name in self.found:
+                self._sink.report(faults.SAME_NAME, faults.about_file(name), path=name)
+                continue
+            self.found[name] = found
             self._sources.setdefault(real, []).append(found.source.name)
             self._waiting.append((path, found))
         overlay = beside(path) if sources else None
