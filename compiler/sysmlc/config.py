@@ -83,6 +83,18 @@ def find_project_root(start: Path) -> Path:
     return folder
 
 
+def find_boundary(output: Path) -> Path:
+    """Return the folder outside which a run with ``-o output`` writes nothing.
+
+    A user may name any folder. But where the path as it is written lies in a project, a symbolic
+    link in it must not lead out of the project, because the repository may contain that link.
+    """
+    for folder in Path(os.path.abspath(output)).parents:  # noqa: PTH100 - links stay as written
+        if (folder / FILE_NAME).is_file() or (folder / ".git").exists():
+            return folder
+    return output
+
+
 def find(start: Path) -> Path | None:
     """Return the configuration file of the project that holds *start*, if it has one.
 

@@ -66,7 +66,8 @@ class Selection:
     """Files and folders that were named, or a ``[[model]]``, and where their outputs go.
 
     ``name`` is that of the ``[[model]]``; without one the files may be several compile units.
-    Nothing is written outside ``boundary``: the project root, or the folder that the user named.
+    Nothing is written outside ``boundary``: the project root, or what ``find_boundary`` returns for
+    a folder that the user named.
     """
 
     files: tuple[Path, ...]
@@ -133,6 +134,8 @@ def select(
     A named file that a ``[[model]]`` lists brings the whole unit with it, and so does a named
     folder that such a file lies in. What else was named comes last.
     """
+    from sysmlc.config import find_boundary
+
     folder = config.folder or Path.cwd()
     declared = [(unit, _expand(config, unit.files)) for unit in config.models]
     chosen = [
@@ -140,7 +143,7 @@ def select(
             tuple(files),
             output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
             emit or unit.emit or config.emit,
-            output or config.root or Path.cwd(),
+            find_boundary(output) if output else config.root or Path.cwd(),
             unit.name,
         )
         for unit, files in declared
@@ -150,7 +153,7 @@ def select(
     rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
     if rest:
         plain = output or (folder / config.output if config.folder else Path(config.output))
-        boundary = output or config.root or Path.cwd()
+        boundary = find_boundary(output) if output else config.root or Path.cwd()
         chosen.append(Selection(rest, plain, emit or config.emit, boundary))
     if not chosen:
         raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")

@@ -20,7 +20,7 @@ class Unit:
     """A compile unit whose files have been read, and where its outputs go.
 
     ``name`` is unique in the run and safe as a folder name. Nothing is written outside
-    ``boundary``: the project root, or the folder that the user named.
+    ``boundary``: the project root, or what ``find_boundary`` returns for a named folder.
     """
 
     request: "Request"
@@ -46,14 +46,18 @@ def open_units(
     is compiled as if it were named alone. One unit is written to the output folder itself, several
     units to a folder each.
     """
+    from sysmlc.config import find_boundary
+
     units = _give_unique_names(_open_project(models, config, settings, output))
     if output is None:
         return units
+    boundary = find_boundary(output)
     if len(units) == 1:
         # The unit may be that of a project below the named folder.
-        is_placed = units[0].boundary == output
-        return units if is_placed else [replace(units[0], output=output, boundary=output)]
-    return [replace(unit, output=output / unit.name, boundary=output) for unit in units]
+        # The unit may be that of a project below the named folder.
+        is_placed = units[0].boundary == boundary
+        return units if is_placed else [replace(units[0], output=output, boundary=boundary)]
+    return [replace(unit, output=output / unit.name, boundary=boundary) for unit in units]
 
 
 def find_leftover_outputs(units: Sequence[Unit]) -> list[Path]:
