@@ -47,7 +47,7 @@ def contracts(graph):
 def recipes(graph):
     """The recipe document, without inputs."""
     for found in graph.derived(Model):
-        yield json.dumps(json.loads(document(found, ())), indent=1, ensure_ascii=False)
+        yield json.dumps(document(found, ()), indent=1, ensure_ascii=False)
 
 
 SHOWN = {"activities": tokens, "contracts": contracts, "recipe": recipes}

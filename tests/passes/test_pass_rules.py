@@ -10,7 +10,7 @@ for name in STRUCTURAL:
     pipeline.load(name)
 
 MODULES = {
-    "resolve": (*range(150, 154), *range(157, 160), 166, 167),
+    "resolve": (*range(150, 154), 166, 167),
     "inherit": range(200, 205),
     "classify": (156, *range(210, 221)),
     "ports": (*range(121, 123), *range(300, 310)),

@@ -123,7 +123,7 @@ def test_what_is_wrong_in_a_standard_library_that_the_file_holds_is_told_at_its_
     source = aml(roles(held, "AutomationMLBaseRoleClassLib"))
     (tmp_path / "plant.aml").write_bytes(source.data)
     made = compile_model(Request((tmp_path / "plant.aml",)))
-    (found,) = made.diagnostics
+    (found,) = [one for one in made.diagnostics if one.rule.code != "SM158"]
     assert found.message.startswith(
         "'AutomationMLBaseRoleClassLib::R' of the standard library 'AutomationMLBaseRoleClassLib'"
         f" refers to {problem}"

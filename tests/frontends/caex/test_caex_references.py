@@ -129,7 +129,7 @@ def test_a_file_that_is_not_there_is_told_once_with_all_that_it_takes_down():
         "SM132: the file 'libs/gone.aml' is not part of the compile unit; "
         "2 elements refer to classes of it"
     ]
-    (found,) = reading.sink
+    (found,) = [one for one in reading.sink if one.rule.code != "SM158"]
     assert found.notes == (
         "Roles::Gate (plant/main.aml:1:165)",
         "Roles::Door (plant/main.aml:1:223)",
