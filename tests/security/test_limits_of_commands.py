@@ -113,7 +113,17 @@ def is_alive(pid: int) -> bool:
         return False
 
 
+@pytest.fixture
+def default_signals():
+    """Let child processes start with default handlers: nohup leaves these signals ignored."""
+    handlers = {number: signal.signal(number, signal.SIG_DFL) for number in (1, 2)}
+    yield
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.usefixtures("default_signals")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT, signal.SIGHUP])
 def test_a_signal_to_the_command_ends_the_work(number):
     work = "print(os.getpid(), flush=True)\nwhile True: pass"
