@@ -51,7 +51,7 @@ class Ended:
     @property
     def is_fault(self) -> bool:
         """Whether it ended otherwise than with findings: killed, a traceback, a fault of ours."""
-        signs = ("Traceback (most recent", "fault of sysmlc", "SM900", "SM901", "enough memory")
+        signs = ("Traceback (most recent", "fault of sysmlc", "SM900", "SM901", "SM905")
         said = self.out + self.err
         return self.code not in (0, 1, 2) or any(sign in said for sign in signs)
 
