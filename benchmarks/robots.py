@@ -15,12 +15,12 @@ import time
 from measuring import Report
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.floors.outcome import Outcome, allocated
-from sysmlc.floors.robot import robot_contract
-from sysmlc.floors.strategy import ANY, answers_of, measured, synthesise, travels
-from sysmlc.floors.study import Grid, Robot, Study, Target
-from sysmlc.floors.system import system_contract
 from sysmlc.logic.contract import Contract
+from sysmlc.robots.outcome import Outcome, allocated
+from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.strategy import ANY, answers_of, measured, synthesise, travels
+from sysmlc.robots.study import Grid, Robot, Study, Target
+from sysmlc.robots.system import system_contract
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.synthesise import Synthesis, synthesised

@@ -27,7 +27,7 @@ LAYERS = [
     {"ir"},
     {"logic", "recipe", "overlay", "language"},
     {"synthesis", "simulation"},
-    {"floors"},
+    {"robots"},
     {"frontends", "passes", "backends"},
     {"driver", "config"},
     {"lsp"},

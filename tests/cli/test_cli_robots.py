@@ -105,7 +105,7 @@ def test_help_has_examples(option):
 def test_new_targets_take_the_robots_of_the_run_before(tmp_path, tmp_path_factory, monkeypatch):
     """Through the cache folder, as the compiler uses it; without it all is made anew."""
     from sysmlc.driver import cache_key
-    from sysmlc.floors import outcome
+    from sysmlc.robots import outcome
 
     monkeypatch.setattr(cache_key, "compute_tool_digest", lambda: "this version")
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path_factory.mktemp("user") / "cache"))

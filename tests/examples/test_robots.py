@@ -4,11 +4,11 @@ import json
 
 from examples.compiling import ROOT, compile_example, findings, outputs
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.floors.outcome import studied
-from sysmlc.floors.report import files, summary
-from sysmlc.floors.study import Study
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
+from sysmlc.robots.outcome import studied
+from sysmlc.robots.report import files, summary
+from sysmlc.robots.study import Study
 from sysmlc.synthesis.decide import Options, decide
 
 MODELS = [ROOT / "examples" / "robots" / name for name in ("hall.sysml", "hall.uml")]

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     from sysmlc.config import Config
     from sysmlc.driver import Compilation
-    from sysmlc.floors.keeping import Keeper
-    from sysmlc.floors.outcome import Outcome
+    from sysmlc.robots.keeping import Keeper
+    from sysmlc.robots.outcome import Outcome
     from sysmlc.synthesis.decide import Options
 
 
@@ -90,9 +90,9 @@ def _studied(
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.render import make_report
-    from sysmlc.floors.outcome import studied
-    from sysmlc.floors.report import files, summary
-    from sysmlc.floors.study import Study
+    from sysmlc.robots.outcome import studied
+    from sysmlc.robots.report import files, summary
+    from sysmlc.robots.study import Study
 
     def place(origin: str) -> Subject:
         element = made.graph.get(origin)
@@ -118,7 +118,7 @@ def _open_keeper(models: "Sequence[Path]", config: "Config") -> "Keeper | None":
     """Return the store of controllers and travel times in the user's cache, if there is a cache."""
     from sysmlc.cli import session
     from sysmlc.driver.cache_key import compute_tool_digest
-    from sysmlc.floors.keeping import Keeper
+    from sysmlc.robots.keeping import Keeper
 
     cache = session.open_cache(models, config)
     return None if cache is None else Keeper(cache, compute_tool_digest())

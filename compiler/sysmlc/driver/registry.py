@@ -58,7 +58,7 @@ _RULE_PACKAGES = (
     "overlay",
     "simulation",
     "synthesis",
-    "floors",
+    "robots",
     "passes",
     "backends",
     "driver",

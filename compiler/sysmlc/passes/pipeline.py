@@ -24,7 +24,7 @@ NAMES = (
     "recipe",
     "platform",
     "contracts",
-    "floors",
+    "robots",
     "views",
 )
 """Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""

@@ -1,0 +1,25 @@
+"""All contracts of a floor, by the names under which they are written (thesis, 4.3)."""
+
+from collections.abc import Iterator
+
+from sysmlc.logic.contract import Contract
+from sysmlc.robots.environment import environment_contract
+from sysmlc.robots.mission import mission_contract
+from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.study import Study
+from sysmlc.robots.system import system_contract
+from sysmlc.robots.travel import Travel, shortest
+
+
+def contracts_of(study: Study, travel: Travel | None = None) -> Iterator[Contract]:
+    """C_S, C_E, C_R of each robot (alone, and among others), and C_M when there are targets.
+
+    Without travel times that were measured the mission assumes those of shortest ways.
+    """
+    yield system_contract(study)
+    yield environment_contract(study)
+    for robot in study.robots:
+        yield robot_contract(study, robot)
+        yield robot_contract(study, robot, is_alone=False)
+    if study.targets:
+        yield mission_contract(study, travel or shortest(study))

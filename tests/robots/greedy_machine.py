@@ -1,0 +1,42 @@
+"""A machine of a robot written by hand: to a way that leads nearer and is shown, else it stays."""
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Owner
+from sysmlc.robots import words
+from sysmlc.robots.answers import Answers
+from sysmlc.robots.strategy import ANY, controller_contract
+from sysmlc.robots.study import STAY, WAYS
+from sysmlc.synthesis.controllers.mealy import Machine, Move
+
+
+def greedy_machine(study):
+    """State 1 is for a robot that was not in its target in the step before."""
+    contract = controller_contract(study)
+    sides = [tuple(one for one in contract.variables if one.owner is owner) for owner in Owner]
+    here, goal = (f.primed(f.var(name(ANY))) for name in (words.position, words.target))
+    is_home = f.eq(here, goal)
+    moves = [_move(is_home, STAY, 0), *_going(study), _move(f.TRUE, STAY, 1)]
+    resting = (_move(is_home, STAY, 0), _move(f.TRUE, STAY, 1))
+    return Machine(*sides, (), (resting, tuple(moves)))
+
+
+def _move(when, command, state):
+    return Move(when, (f.const(command),), state)
+
+
+def _going(study):
+    grid = study.grid
+    for way in WAYS:
+        for goal in grid.cells:
+            cells = [cell for cell in grid.cells if way in grid.nearer(cell, goal)]
+            if cells:
+                is_there = words.one_of(words.position(ANY), cells)
+                sees = f.var(words.sensor(ANY, way))
+                when = f.both(is_there, sees, words.is_(words.target(ANY), goal))
+                yield _move(f.primed(when), way, 1)
+
+
+def greedy_answers(study):
+    """Its answers for all robots of a floor."""
+    machine = greedy_machine(study)
+    return (Answers(machine, ANY, study.grid),) * len(study.robots)

@@ -1,0 +1,72 @@
+"""Floors for the tests: squares of cells with robots; the corpus's names for their contracts."""
+
+import os
+import re
+from pathlib import Path
+
+from sysmlc.logic.printing import print_formula
+from sysmlc.robots.environment import Sharing, environment_contract
+from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.study import Grid, Order, Robot, Study, Target
+from sysmlc.robots.system import Encoding, system_contract
+
+CORPUS = Path(os.environ.get("SYSMLC_CORPUS", "")) / "gr1" / "robots"
+_SHARING = {
+    "literal": Sharing.LITERAL,
+    "assume": Sharing.ASSUMED,
+    "arbitrated": Sharing.ARBITRATED,
+}
+_ENCODING = {"thesis": Encoding.THESIS, "smart": Encoding.COMMANDS, "move": Encoding.MOVES}
+_WORDS = {
+    "pos": "position",
+    "tgt": "target",
+    "su": "sensor_up",
+    "sd": "sensor_down",
+    "sl": "sensor_left",
+    "sr": "sensor_right",
+    "cmd": "command",
+    "tm": "timer",
+}
+
+
+def floor(side, *starts, targets=(), orders=(), blocked=(), rows=None, **more):
+    """A floor with robots r0, r1 ... (None starts anywhere) and targets t0, t1 ... in cells."""
+    return Study(
+        "Hall",
+        "hall",
+        Grid(side, rows or side, tuple(blocked)),
+        tuple(Robot(f"r{at}", f"r{at}", f"R{at}", start) for at, start in enumerate(starts)),
+        tuple(Target(f"t{at}", f"t{at}", cell, f"T{at}") for at, cell in enumerate(targets)),
+        tuple(Order(*one) for one in orders),
+        obstacles=tuple(f"O{cell}" for cell in blocked),
+        **more,
+    )
+
+
+def contract_like(name):
+    """Our contract for the floor of a file of corpus/gr1/robots."""
+    kind, *rest = name.split("_")
+    if kind == "robot":
+        study = floor(int(int(rest[0]) ** 0.5), None)
+        return robot_contract(study, study.robots[0])
+    cells, robots = map(int, rest[0].split("x"))
+    within = int(rest[2][1:]) if len(rest) > 2 else None
+    study = floor(int(cells**0.5), *(None,) * robots, within=within)
+    if kind == "env":
+        return environment_contract(study, _SHARING[rest[1]])
+    return system_contract(study, _ENCODING[rest[1]])
+
+
+def said(contract):
+    """All conjuncts as text, with class and side."""
+    sides = (("assumed", contract.assumptions), ("promised", contract.guarantees))
+    return {
+        (side, one.class_, print_formula(one.formula)) for side, known in sides for one in known
+    }
+
+
+def renamed(text):
+    """A formula of the corpus in our names."""
+    text = re.sub(r"\bfree(\d+)", r"free_\1", text)
+    found = rf"\b({'|'.join(_WORDS)})(\d*)(?!\w)"
+    return re.sub(found, lambda one: f"r{one[2] or 0}_{_WORDS[one[1]]}", text)

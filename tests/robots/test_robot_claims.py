@@ -1,0 +1,165 @@
+"""Robots, environment and mission together: what of C_S they keep, judged by listed states."""
+
+from functools import partial
+
+import pytest
+from listed_floor import STAY, Listed
+from small_floors import floor
+
+from sysmlc.logic.formula import variables
+from sysmlc.robots import words
+from sysmlc.robots.among import among_all, breaks
+from sysmlc.robots.environment import environment_contract
+from sysmlc.robots.joined import missioned
+from sysmlc.robots.mission import mission_contract
+from sysmlc.robots.relations import relations
+from sysmlc.robots.study import WAYS
+from sysmlc.robots.together import Together
+from sysmlc.robots.travel import shortest
+from sysmlc.synthesis import Limits
+from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.decide import Options
+from sysmlc.values import replace
+
+FLOORS = {
+    "one cell": floor(1, None),
+    "two cells": floor(2, None, rows=1),
+    "two cells, two robots": floor(2, None, None, rows=1),
+    "corridor": floor(3, None, rows=1),
+    "corridor, two robots": floor(3, None, None, rows=1),
+    "corridor in two parts": floor(3, None, rows=1, blocked=(1,)),
+    "corridor in two parts, two robots": floor(3, None, None, rows=1, blocked=(1,)),
+    "square": floor(2, None),
+    "square, two robots": floor(2, None, None),
+    "angle, two robots": floor(2, None, None, blocked=(3,)),
+    "angle": floor(2, None, blocked=(0,)),
+    "two rows": floor(3, None, rows=2, blocked=(4,)),
+}
+new_manager = partial(Manager, "", Limits(), lambda *given: None)
+
+
+def together(study):
+    return Together(study, new_manager)
+
+
+@pytest.mark.parametrize("name", FLOORS)
+def test_what_is_decided_is_what_listed_states_say(name):
+    study = FLOORS[name]
+    asked, listed = together(study), Listed(study)
+    assert (asked.stepwise_failure() is None) == listed.is_safe()
+    assert (asked.offered_failure() is not None) == listed.is_ever_stuck()
+    assert (asked.endless() is not None) == listed.is_ever_away()
+
+
+@pytest.mark.parametrize("name", FLOORS)
+def test_a_run_that_fails_is_one_of_the_listed_states(name):
+    study = FLOORS[name]
+    found, listed = together(study).offered_failure(), Listed(study)
+    if found is not None:
+        steps = [state(study, one) for one in found.run.steps]
+        onward = [*steps[1:], steps[found.run.loop]]
+        assert all(then in listed.after[now] for now, then in zip(steps, onward, strict=True))
+        loop = steps[found.run.loop :]
+        assert not any(listed.is_near(one, 0) for one in loop)
+        for robot in listed.robots:
+            assert any(listed.is_served(one, robot) for one in loop)
+
+
+def state(study, values):
+    """The values of a step as a listed state."""
+    return tuple(
+        (
+            values[words.position(one)],
+            values[words.target(one)],
+            frozenset(way for way in WAYS if values[words.sensor(one, way)]),
+            values[words.command(one)],
+        )
+        for one in study.robots
+    )
+
+
+def test_floors_of_both_kinds_are_judged():
+    answers = {together(study).offered_failure() is None for study in FLOORS.values()}
+    assert answers == {True, False}
+    assert {together(study).endless() is None for study in FLOORS.values()} == {True, False}
+
+
+@pytest.mark.parametrize(("side", "robots"), [(3, 2), (4, 2), (5, 2), (4, 4), (5, 5)])
+def test_floors_of_the_thesis_are_decided_one_robot_or_two_at_a_time(side, robots):
+    study = floor(side, *(None,) * robots)
+    asked = together(study)
+    assert asked.stepwise_failure() is None
+    assert asked.recurring_failure() is None
+    found = asked.offered_failure()
+    assert found.conjunct.text == "Again and again 'r0' is in its target, or may go nearer."
+    assert list(breaks(found.run, (found.conjunct,))) == [found.conjunct]
+    promised = list(breaks(found.run, asked.joined.system.guarantees))
+    assert [one.text for one in promised] == ["'r0' reaches its targets."]
+
+
+def test_without_its_promise_to_go_on_free_ways_only_a_robot_breaks_what_is_assumed_of_it():
+    asked = together(floor(3, None, None))
+    first, *others = asked.joined.robots
+    kept = [one for one in first.guarantees if "only when the way is free" not in one.text]
+    asked.joined.robots = [replace(first, guarantees=tuple(kept)), *others]
+    asked.joined.parts = (asked.joined.environment, *asked.joined.robots)
+    asked._steps = {(one.class_, one.formula) for one in asked.joined.steps()}
+    broken = [one for one in asked.joined.environment.assumptions if not asked._follows(one)]
+    assert [one.text for one in broken] == [
+        f"'r0' goes {way} only when the way is free." for way in WAYS
+    ]
+
+
+def test_nothing_says_how_soon_a_robot_comes_to_its_target():
+    found = together(floor(3, None, None, within=4)).stepwise_failure()
+    assert found.conjunct.text == "'r0' reaches a target within 4 steps."
+    assert [one["r0_timer"] for one in found.run.steps][:8] == [0, 0, 0, 1, 2, 3, 4, 5]
+    assert together(floor(1, None, within=4)).stepwise_failure() is None
+
+
+def test_targets_of_a_mission_stay_and_can_be_reached():
+    """What joins the contracts keeps what C_R and C_S assume of targets, on any floor."""
+    for study in FLOORS.values():
+        asked = together(study)
+        goals = {words.target(one) for one in study.robots}
+        for part in asked.joined.robots:
+            of_targets = [one for one in part.assumptions if goals & names(one)]
+            assert all(asked._follows(one) for one in of_targets if one.class_ != "liveness")
+
+
+def names(conjunct):
+    return {one.name for one in variables(conjunct.formula)}
+
+
+def test_others_rest_in_nobodys_way():
+    study = floor(3, None, None, None)
+    found = together(study).offered_failure()
+    contract = environment_contract(study)
+    assert list(breaks(found.run, (*contract.assumptions, *contract.guarantees))) == []
+    assert list(breaks(found.run, missioned(study))) == []
+    assert {one["r2_command"] for one in found.run.steps} == {STAY}
+
+
+def test_where_there_is_no_room_a_run_of_few_robots_is_none_of_all():
+    study = floor(2, None, None, None, None)
+    few = replace(study, robots=study.robots[:1])
+    run = together(few).offered_failure().run
+    contract = environment_contract(study)
+    for one in among_all(study, few.robots, run):
+        assert list(breaks(one, contract.guarantees)) != []
+
+
+def test_a_floor_that_is_full_is_not_decided_in_no_time():
+    study = floor(2, *(None,) * 4)
+    options = Options(limits=Limits(seconds=0.1))
+    found = {one.claim: one for one in relations(study, shortest(study), options)}
+    whole = found["C_R, C_E and C_M together refine C_S"]
+    assert whole.holds is None
+    assert "limit" in whole.reason
+
+
+def test_the_mission_as_it_is_written_keeps_what_every_mission_does():
+    """C_M of a study promises, of goals, what the study of all missions relies on."""
+    study = floor(3, None, None, targets=(0, 4, 8), orders=((0, 1, True),))
+    texts = {one.text for one in mission_contract(study, shortest(study)).guarantees}
+    assert {"At first 'r0' has no target.", "'r0' keeps a target until it has reached it."} <= texts

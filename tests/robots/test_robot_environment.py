@@ -1,0 +1,151 @@
+"""The compiled environment and the robots keep their contracts: each conjunct, in whole runs.
+
+A run ends in a loop in which all rest; so that what is to hold again and again is looked at, too.
+"""
+
+from itertools import permutations
+
+import pytest
+from greedy_machine import greedy_answers
+from small_floors import floor
+from test_robot_simulation import some_floor
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.logic.evaluate import violation
+from sysmlc.robots import words
+from sysmlc.robots.environment import environment_contract
+from sysmlc.robots.planes import Runs, but
+from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.simulation import Simulation
+from sysmlc.robots.strategy import answers_of, synthesise
+from sysmlc.robots.study import STAY, WAYS
+from sysmlc.robots.system import system_contract
+from sysmlc.robots.world import World
+from sysmlc.synthesis.decide import Options
+from sysmlc.values import replace
+
+
+class Told(World):
+    """A world of one run that notes in every step what the variables of the contracts are."""
+
+    def _answer_all(self):
+        self.shown = set()
+        super()._answer_all()
+        self.trace = [*getattr(self, "trace", ()), self.now()]
+
+    def _shown(self, number, known, goal, step, given):
+        if given:
+            self.shown.add((number, step[0]))
+        super()._shown(number, known, goal, step, given)
+
+    def now(self):
+        found = {}
+        for number, (robot, body) in enumerate(zip(self.study.robots, self.bodies, strict=True)):
+            (memory,) = [one for one, plane in body.memory.items() if plane]
+            commands = [way for way, plane in body.commands.items() if plane]
+            found[words.position(robot)] = body.places.index(1)
+            found[words.target(robot)] = memory.goal
+            found[words.command(robot)] = commands[0] if commands else STAY
+            found |= {words.sensor(robot, way): (number, way) in self.shown for way in WAYS}
+        return found | {words.free(cell): not one for cell, one in enumerate(self.taken)}
+
+
+def run_of(study, allocation, answers, start, world=Told):
+    """What the variables are in each step, and the step to which the last one returns."""
+    cells = range(study.grid.size)
+    placed = tuple(tuple(int(cell == one) for cell in cells) for one in start)
+    made = world(study, allocation, answers, Runs(1, 0, placed, but))
+    assert Simulation(made).run() is None
+    period = len(study.robots)
+    assert made.trace[-1] == made.trace[-1 - period]
+    return made.trace[:-1], len(made.trace) - 1 - period
+
+
+def broken(contract, trace, loop, is_promise=True):
+    """The conjuncts that do not hold in a run."""
+    known = contract.guarantees if is_promise else contract.assumptions
+    return [one.text for one in known if violation(one, trace, loop) is not None]
+
+
+def starts_of(study, count=7):
+    """Some of the starts, far from one another."""
+    known = list(permutations(study.grid.cells, len(study.robots)))
+    return known[:: max(1, len(known) // count)]
+
+
+@pytest.mark.parametrize("seed", range(1, 10))
+def test_all_contracts_are_kept_in_whole_runs(seed):
+    study, allocation = some_floor(seed)
+    answers = greedy_answers(study)
+    for start in starts_of(study):
+        trace, loop = run_of(study, allocation, answers, start)
+        environment = environment_contract(study)
+        assert broken(environment, trace, loop) == []
+        assert broken(environment, trace, loop, is_promise=False) == []
+        assert broken(system_contract(study), trace, loop) == []
+        for robot in study.robots:
+            shared = robot_contract(study, robot, is_alone=False)
+            assert broken(shared, trace, loop, is_promise=False) == []
+            assert broken(shared, trace, loop) == []
+
+
+def test_the_synthesised_machine_keeps_them_as_well():
+    study = floor(3, None, None, targets=(0, 8, 4))
+    made = synthesise(study, lambda origin: Subject(), Sink(), Options())
+    trace, loop = run_of(study, ((0, 2), (1,)), answers_of(study, made), (4, 5))
+    assert broken(environment_contract(study), trace, loop) == []
+    assert broken(robot_contract(study, study.robots[0], is_alone=False), trace, loop) == []
+
+
+class Silent(Told):
+    """An environment that shows nothing to robots at rest."""
+
+    def _in_turn(self, number, known, given):
+        return given
+
+
+def test_without_a_turn_for_robots_at_rest_the_environment_breaks_its_promise():
+    study = floor(3, None, None, targets=(0, 8))
+    run = run_of(study, ((0,), (1,)), greedy_answers(study), (4, 5), Silent)
+    assert broken(environment_contract(study), *run) == [
+        "Again and again a way is offered to 'r0', if one is free.",
+        "Again and again a way is offered to 'r1', if one is free.",
+    ]
+
+
+def test_two_robots_with_one_cell_between_them_have_it_in_turn():
+    study = floor(3, None, None, rows=1, targets=(0, 2))
+    trace, loop = run_of(study, ((0,), (1,)), greedy_answers(study), (0, 2))
+    assert broken(environment_contract(study), trace, loop) == []
+    rights = [one["r0_sensor_right"] for one in trace[loop:]]
+    lefts = [one["r1_sensor_left"] for one in trace[loop:]]
+    assert sorted(zip(rights, lefts, strict=True)) == [(False, True), (True, False)]
+
+
+@pytest.mark.parametrize("start", [(1, 5), (4, 5), (2, 6), (8, 0), (5, 3)])
+def test_ways_are_too_long_exactly_where_a_timer_of_the_system_says_so(start):
+    study = floor(3, None, None, targets=(0, 8))
+    answers = greedy_answers(study)
+    trace, _ = run_of(study, ((0,), (1,)), answers, start)
+    longest = max(timers(study, trace))
+    assert longest > 1
+    for within, is_slow in ((longest, False), (longest - 1, True)):
+        bounded = replace(study, within=within)
+        world = World(bounded, ((0,), (1,)), answers, placed(study, start))
+        failure = Simulation(world).run()
+        assert (failure is not None and failure.is_slow) is is_slow
+
+
+def timers(study, trace):
+    """How long robots have had their targets, in each step."""
+    for robot in study.robots:
+        timer = 0
+        for one in trace:
+            yield timer
+            is_home = one[words.position(robot)] == one[words.target(robot)]
+            timer = 0 if is_home else timer + 1
+
+
+def placed(study, start):
+    cells = range(study.grid.size)
+    return Runs(1, 0, tuple(tuple(int(cell == one) for cell in cells) for one in start), but)

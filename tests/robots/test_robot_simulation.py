@@ -1,0 +1,165 @@
+"""Many runs at once: each is what a plain simulation of one start comes to."""
+
+import random
+from itertools import permutations
+
+import pytest
+from greedy_machine import greedy_answers
+from plain_world import Plain
+from small_floors import floor
+
+from sysmlc.robots import validate as validating
+from sysmlc.robots.diagrams import started
+from sysmlc.robots.merging import States
+from sysmlc.robots.planes import apart, patterns
+from sysmlc.robots.simulation import Simulation
+from sysmlc.robots.starts import chunks
+from sysmlc.robots.validate import symbolic, validate
+from sysmlc.robots.world import World
+from sysmlc.values import replace
+
+STEPS = 60
+
+
+def some_floor(seed):
+    """A floor with two or three robots and some targets, dealt out to them in turn."""
+    rnd = random.Random(seed)
+    side, rows, robots = rnd.choice([(3, 3, 2), (3, 2, 2), (3, 3, 3), (4, 2, 3)])
+    cells = list(range(side * rows))
+    blocked = (4,) if rnd.random() < 0.3 and rows == 3 else ()
+    targets = rnd.sample([one for one in cells if one not in blocked], rnd.randint(2, 4))
+    orders = [(0, 1)] if rnd.random() < 0.5 else []
+    study = floor(
+        side, *(None,) * robots, targets=targets, orders=orders, blocked=blocked, rows=rows
+    )
+    numbers = range(len(targets))
+    return study, tuple(tuple(one for one in numbers if one % robots == r) for r in range(robots))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_run_is_the_plain_one(seed):
+    study, allocation = some_floor(seed)
+    answers = greedy_answers(study)
+    (runs,) = chunks(study)
+    world = World(study, allocation, answers, runs)
+    starts = list(permutations(study.grid.cells, len(study.robots)))
+    plain = {start: Plain(study, allocation, start) for start in starts}
+    bits = {start: _bit(runs, start) for start in starts}
+    assert runs.all.bit_count() == len(starts)
+    for _ in range(STEPS):
+        world.step()
+        for start, one in plain.items():
+            one.step()
+            assert one.told() == _told(world, bits[start])
+    assert world.wrong == 0
+
+
+def _bit(runs, start):
+    found = runs.all
+    for robot, cell in zip(runs.starts, start, strict=True):
+        found &= robot[cell]
+    assert found.bit_count() == 1
+    return found
+
+
+def _told(world, bit):
+    cells = tuple(
+        next(cell for cell, one in enumerate(body.places) if one & bit) for body in world.bodies
+    )
+    return cells, frozenset(at for at, one in enumerate(world.done) if one & bit)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_decision_diagrams_come_to_the_same(seed):
+    study, allocation = some_floor(seed)
+    answers = greedy_answers(study)
+    assert symbolic(study, allocation, answers) == validate(study, allocation, answers)
+
+
+def test_starts_are_all_placements_of_robots_in_different_cells():
+    starts = patterns((3, 3))
+    assert [f"{one:09b}" for one in starts[0]] == ["001001001", "010010010", "100100100"]
+    assert [f"{one:09b}" for one in starts[1]] == ["000000111", "000111000", "111000000"]
+    assert apart(starts, (1 << 9) - 1).bit_count() == 6
+    runs, count = started(floor(3, None, 4, None))
+    assert count == 8 * 7
+    assert runs.starts[1][3] == runs.none
+
+
+def test_given_starts_are_no_choice():
+    (runs,) = chunks(floor(3, 0, None))
+    assert runs.all.bit_count() == 8
+    (runs,) = chunks(floor(3, 0, 1))
+    assert runs.all.bit_count() == 1
+
+
+def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
+    study, allocation = some_floor(3)
+    whole = validate(study, allocation, greedy_answers(study))
+    monkeypatch.setattr(validating, "CHUNK", 16)
+    assert validate(study, allocation, greedy_answers(study)) == whole
+
+
+def merged(monkeypatch, steps, most=1 << 17):
+    """States are gone on with once from this step on, so many in one operation."""
+    monkeypatch.setattr(validating, "MERGED", steps)
+    monkeypatch.setattr(validating, "FEW", 0)
+    monkeypatch.setattr(validating, "CHUNK", most)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_states_that_many_runs_come_to_are_gone_on_with_once(seed, monkeypatch):
+    study, allocation = some_floor(seed)
+    answers = greedy_answers(study)
+    whole = validate(study, allocation, answers)
+    for steps, most in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
+        merged(monkeypatch, steps, most)
+        found = validate(study, allocation, answers)
+        if whole.is_good:
+            assert found == whole
+        else:
+            assert (found.is_good, found.steps, found.late) == (False, whole.steps, whole.late)
+
+
+def test_states_are_fewer_than_runs():
+    study, allocation = some_floor(3)
+    (runs,) = chunks(study)
+    world = World(study, allocation, greedy_answers(study), runs)
+    assert Simulation(world).run(until=6) is None
+    states = States(len(study.robots))
+    states.add(world, range(runs.all.bit_length()))
+    assert 1 < len(states) < runs.all.bit_count() / 2
+    (batch,) = states.batches(1 << 17, world)
+    again = World(study, allocation, greedy_answers(study), batch.runs, batch.state, 6)
+    for bit, origin in enumerate(batch.origins):
+        assert _told(again, 1 << bit) == _told(world, 1 << origin)
+
+
+@pytest.mark.parametrize("deadline", [7, 9, 11, 13])
+def test_a_failing_state_leads_back_to_a_start_that_fails(deadline, monkeypatch):
+    study = floor(3, None, None, None, targets=(0, 8, 4, 2), deadline=deadline)
+    allocation = ((0, 3), (1,), (2,))
+    answers = greedy_answers(study)
+    merged(monkeypatch, 2, 50)
+    found = validate(study, allocation, answers)
+    assert found.late is not None
+    robots = zip(study.robots, found.failed, strict=True)
+    placed = replace(study, robots=tuple(replace(one, start=cell) for one, cell in robots))
+    again = validate(placed, allocation, answers)
+    assert (again.failed, again.late, again.steps) == (found.failed, found.late, deadline)
+
+
+def test_robots_that_cannot_pass_one_another_fail_with_a_start():
+    study = floor(3, None, None, rows=1, targets=(0, 2), deadline=30)
+    found = validate(study, ((0,), (1,)), greedy_answers(study))
+    assert not found.is_good
+    first, second = found.failed
+    assert first > second
+
+
+def test_a_deadline_that_is_too_short_names_the_target_that_is_late():
+    study = floor(3, 0, targets=(8,), deadline=5)
+    found = validate(study, ((0,),), greedy_answers(study))
+    assert (found.is_good, found.late, found.steps) == (False, 0, 5)
+    study = floor(3, 0, targets=(8,), deadline=6)
+    assert validate(study, ((0,),), greedy_answers(study)).is_good
