@@ -13,7 +13,7 @@ from agreement import Agreement, Difference
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
-from sysmlc.frontends.xmi.snapshot_parts import split
+from sysmlc.frontends.xmi.snapshots.file_parts import split
 from sysmlc.ir import Graph
 from sysmlc.passes import pipeline
 from sysmlc.sources import load

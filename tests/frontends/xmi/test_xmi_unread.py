@@ -4,7 +4,7 @@ import pytest
 from lxml import etree
 from reading_xmi import magicdraw, papyrus, read, source
 
-from sysmlc.frontends.xmi import naming
+from sysmlc.frontends.xmi import feature_names as naming
 from sysmlc.frontends.xmi.uml_features import is_misplaced
 
 CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="{}" name="{}" {}/>'

@@ -4,7 +4,7 @@ import pytest
 from lxml import etree
 from reading_xmi import magicdraw, papyrus, read
 
-from sysmlc.frontends.xmi import unread_tags
+from sysmlc.frontends.xmi import unknown_tags as unread_tags
 
 PROPERTY = """<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">
  <ownedAttribute xmi:id="p" name="p"/><ownedAttribute xmi:id="q" name="q"/></packagedElement>"""

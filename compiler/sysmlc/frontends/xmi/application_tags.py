@@ -3,7 +3,7 @@
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of
+from sysmlc.frontends.xmi.enterprise_architect.profiles import id_of
 from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.values import value_of
 from sysmlc.ir import AttrValue, Element

@@ -4,7 +4,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import application_tags, metaclasses
 from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.enterprise_architect_profiles import stereotype_of
+from sysmlc.frontends.xmi.enterprise_architect.profiles import stereotype_of
 from sysmlc.frontends.xmi.unit import Lowered
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id

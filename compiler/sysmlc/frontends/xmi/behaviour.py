@@ -3,13 +3,14 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses, naming
+from sysmlc.frontends.xmi import feature_names as naming
+from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context, Event
 from sysmlc.frontends.xmi.dangling import look_inside
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.structure import tell_lost
 from sysmlc.frontends.xmi.unit import Lowered, Unit
-from sysmlc.frontends.xmi.value_rows import keep_alternatives, lone_value_in, value_in
+from sysmlc.frontends.xmi.value_features import keep_alternatives, lone_value_in, value_in
 from sysmlc.frontends.xmi.values import ValueText, opaque, text_of, value_of
 from sysmlc.ir import AttrValue, Edge, Element
 

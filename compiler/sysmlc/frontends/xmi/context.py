@@ -4,7 +4,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Sink, Subject, Verdict
-from sysmlc.frontends.xmi import metaclasses, naming, rules
+from sysmlc.frontends.xmi import feature_names as naming
+from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.keys import KEYS, PASSED_OVER
 from sysmlc.frontends.xmi.loose import Loose, Names

@@ -6,7 +6,8 @@ what no file of the unit has is told once for each element and feature.
 """
 
 from sysmlc.diagnostics import Place, Subject
-from sysmlc.frontends.xmi import naming, rules
+from sysmlc.frontends.xmi import feature_names as naming
+from sysmlc.frontends.xmi import rules
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.loose import Loose, Names
 from sysmlc.frontends.xmi.vocabulary import snake

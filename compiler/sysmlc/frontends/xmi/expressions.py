@@ -5,7 +5,7 @@ from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.elements import Reader
 from sysmlc.frontends.xmi.making import make
-from sysmlc.frontends.xmi.value_rows import value_in
+from sysmlc.frontends.xmi.value_features import value_in
 from sysmlc.ir import Kind
 
 

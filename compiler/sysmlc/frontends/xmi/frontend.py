@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.base import FileNames
-from sysmlc.frontends.xmi import detect
-from sysmlc.frontends.xmi.snapshot import is_snapshot
+from sysmlc.frontends.xmi import detection as detect
+from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
 
@@ -55,7 +55,7 @@ class XmiFrontend:
 
     def companions(self, name: str) -> Sequence[str]:
         """Papyrus' notation file, MagicDraw's entries with shapes."""
-        from sysmlc.frontends.xmi import drawings
+        from sysmlc.frontends.xmi.diagrams import reading as drawings
 
         return drawings.companions(name)
 
@@ -63,7 +63,7 @@ class XmiFrontend:
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
         """Keep the diagrams of authors for the pass ``views``."""
-        from sysmlc.frontends.xmi import drawings
+        from sysmlc.frontends.xmi.diagrams import reading as drawings
         from sysmlc.ir.drawing import Drawing
 
         ordered = sorted(sources, key=lambda source: source.name)

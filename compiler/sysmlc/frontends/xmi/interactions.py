@@ -6,7 +6,7 @@ from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.elements import Reader, reading
 from sysmlc.frontends.xmi.unit import Lowered
-from sysmlc.frontends.xmi.value_rows import value_in
+from sysmlc.frontends.xmi.value_features import value_in
 from sysmlc.frontends.xmi.values import text_of
 from sysmlc.ir import Edge, Element, Kind
 

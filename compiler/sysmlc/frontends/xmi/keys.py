@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.naming import WORDS
+from sysmlc.frontends.xmi.feature_names import WORDS
 from sysmlc.ir import AttrValue, Element
 
 _FLAG: Mapping[str, AttrValue] = MappingProxyType({**dict.fromkeys(v.TRUE, True), "0": None})

@@ -12,9 +12,9 @@ from sysmlc.frontends.xmi import (
     structure,
     templates,
     usecases,
-    value_rows,
     vocabulary,
 )
+from sysmlc.frontends.xmi import value_features as value_rows
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.making import make
 from sysmlc.frontends.xmi.unit import Lowered, Unit

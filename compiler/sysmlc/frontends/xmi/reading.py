@@ -4,25 +4,17 @@ from collections.abc import Sequence
 
 from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.xmi import (
-    account,
-    applications,
-    behaviour,
-    comments,
-    dangling,
-    enterprise_architect_profiles,
-    lowering,
-    odd_values,
-    parts,
-    rules,
-    unread,
-    unread_tags,
-)
+from sysmlc.frontends.xmi import applications, behaviour, comments, dangling, lowering, parts, rules
+from sysmlc.frontends.xmi import coverage as account
+from sysmlc.frontends.xmi import unknown_attributes as unread
+from sysmlc.frontends.xmi import unknown_tags as unread_tags
+from sysmlc.frontends.xmi import unknown_values as odd_values
 from sysmlc.frontends.xmi.columns import read_document
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.enterprise_architect import profiles as enterprise_architect_profiles
 from sysmlc.frontends.xmi.finishing import finish
-from sysmlc.frontends.xmi.snapshot import is_snapshot
+from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
@@ -56,7 +48,9 @@ def _add_libraries(
     coverage: Coverage,
 ) -> None:
     """Add what the models take from snapshots of used projects, beside or inside them."""
-    from sysmlc.frontends.xmi import snapshot_parts, snapshot_unread, snapshot_use
+    from sysmlc.frontends.xmi.snapshots import file_parts as snapshot_parts
+    from sysmlc.frontends.xmi.snapshots import libraries as snapshot_use
+    from sysmlc.frontends.xmi.snapshots import unknown_attributes as snapshot_unread
 
     models, inside = snapshot_parts.split(models)
     found = [*beside, *inside]
@@ -79,9 +73,9 @@ def _finish(unit: Unit, contexts: list[Context], sink: Sink, coverage: Coverage)
         applications.lower(context)
         if context.extensions:
             # Readers of what only some tools write are imported when it is there.
-            from sysmlc.frontends.xmi import enterprise_architect
+            from sysmlc.frontends.xmi.enterprise_architect import extension
 
-            enterprise_architect.finish(context)
+            extension.finish(context)
         behaviour.finish(context)
     unit.flush()
     for context in contexts:

@@ -3,7 +3,9 @@
 from collections.abc import Callable, Collection
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses, naming, value_rows
+from sysmlc.frontends.xmi import feature_names as naming
+from sysmlc.frontends.xmi import metaclasses
+from sysmlc.frontends.xmi import value_features as value_rows
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.dangling import look_inside

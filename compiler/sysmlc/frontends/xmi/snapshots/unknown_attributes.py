@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Iterable
 
 from sysmlc.diagnostics import Place, Sink, Subject
-from sysmlc.frontends.xmi.naming import FEATURES
-from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
-from sysmlc.frontends.xmi.snapshot_closure import type_of
+from sysmlc.frontends.xmi.feature_names import FEATURES
 from sysmlc.frontends.xmi.snapshot_rules import UNKNOWN_IN_LIBRARY
+from sysmlc.frontends.xmi.snapshots.closure import type_of
+from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots
 from sysmlc.frontends.xmi.unit import Unit
-from sysmlc.frontends.xmi.unread import WITH_READERS
+from sysmlc.frontends.xmi.unknown_attributes import WITH_READERS
 from sysmlc.sources import Source
 from sysmlc.sources.xml import SEPARATOR, parse, parser
 from sysmlc.suggest import did_you_mean

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 
-from sysmlc.frontends.xmi import drawing_relations
-from sysmlc.frontends.xmi.drawing_relations import Relation, Relations
-from sysmlc.frontends.xmi.drawing_shapes import Shapes
-from sysmlc.frontends.xmi.drawing_types import diagram_word
+from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
+from sysmlc.frontends.xmi.diagrams.contents import Relation, Relations
+from sysmlc.frontends.xmi.diagrams.shapes import Shapes
+from sysmlc.frontends.xmi.diagrams.types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser

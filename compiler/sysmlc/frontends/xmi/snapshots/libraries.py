@@ -9,11 +9,11 @@ from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.xmi import hrefs
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.profiles import last_segment, mangled
-from sysmlc.frontends.xmi.snapshot import Snapshots
-from sysmlc.frontends.xmi.snapshot_closure import needed
-from sysmlc.frontends.xmi.snapshot_elements import LibraryElements
 from sysmlc.frontends.xmi.snapshot_rules import BROKEN_SNAPSHOT
-from sysmlc.frontends.xmi.snapshot_unread import by_file
+from sysmlc.frontends.xmi.snapshots.closure import needed
+from sysmlc.frontends.xmi.snapshots.entries import Snapshots
+from sysmlc.frontends.xmi.snapshots.library_elements import LibraryElements
+from sysmlc.frontends.xmi.snapshots.unknown_attributes import by_file
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.sources import Source, SourceError
 

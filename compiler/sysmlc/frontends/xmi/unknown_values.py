@@ -5,7 +5,7 @@ from itertools import islice
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import rules
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.naming import VALUES
+from sysmlc.frontends.xmi.feature_names import VALUES
 
 _MOST = 50
 """So many are told one by one, the others as a number."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
-from sysmlc.frontends.xmi.snapshot import Entry, Snapshots, place
+from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots, place
 
 PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 METACLASSES = "http://www.omg.org/spec/UML/20161101/UML.xmi#"

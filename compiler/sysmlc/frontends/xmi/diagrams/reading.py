@@ -5,8 +5,10 @@ from contextlib import suppress
 from typing import TypeVar
 
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
-from sysmlc.frontends.xmi import drawings_ea, drawings_magicdraw, drawings_papyrus
-from sysmlc.frontends.xmi.drawing_shapes import Shapes
+from sysmlc.frontends.xmi.diagrams import enterprise_architect as drawings_ea
+from sysmlc.frontends.xmi.diagrams import magicdraw as drawings_magicdraw
+from sysmlc.frontends.xmi.diagrams import papyrus as drawings_papyrus
+from sysmlc.frontends.xmi.diagrams.shapes import Shapes
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source, SourceError
 

@@ -9,7 +9,7 @@ from itertools import compress, islice
 from sysmlc.diagnostics import Rule, Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.naming import FEATURES
+from sysmlc.frontends.xmi.feature_names import FEATURES
 from sysmlc.frontends.xmi.uml_features import is_misplaced
 from sysmlc.frontends.xmi.vocabulary import NOTATION_FEATURES
 from sysmlc.sources import DEFAULT_LIMITS

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.enterprise_architect_constraints import constraints
-from sysmlc.frontends.xmi.enterprise_architect_profiles import id_of, qualified
+from sysmlc.frontends.xmi.enterprise_architect.constraints import constraints
+from sysmlc.frontends.xmi.enterprise_architect.profiles import id_of, qualified
 from sysmlc.frontends.xmi.profiles import mangled
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id

@@ -7,7 +7,7 @@ without their declarations.
 import re
 from collections.abc import Iterator, Sequence
 
-from sysmlc.frontends.xmi.snapshot import is_snapshot
+from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.sources import Source
 
 _START = re.compile(rb"<filePart\s+name=(?:'([^'<]*)'|\"([^\"<]*)\")[^<>]*(?<!/)>")

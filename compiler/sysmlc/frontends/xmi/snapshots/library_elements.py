@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable, Mapping
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.metaclasses import OWNERS, kind_of
 from sysmlc.frontends.xmi.profiles import mangled
-from sysmlc.frontends.xmi.snapshot import Entry, Snapshots
-from sysmlc.frontends.xmi.snapshot_closure import APPLICATION, canonical, type_of
+from sysmlc.frontends.xmi.snapshots.closure import APPLICATION, canonical, type_of
+from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.identity import derived_id
 

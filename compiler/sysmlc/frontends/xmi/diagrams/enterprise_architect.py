@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import field
 
-from sysmlc.frontends.xmi import drawing_relations
-from sysmlc.frontends.xmi.drawing_types import diagram_word
+from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
+from sysmlc.frontends.xmi.diagrams.types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from sysmlc.frontends.xmi.drawing_shapes import target_of
+from sysmlc.frontends.xmi.diagrams.shapes import target_of
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES
 from sysmlc.ir import Edge
 from sysmlc.sources import Source

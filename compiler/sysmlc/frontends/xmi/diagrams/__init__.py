@@ -1,0 +1,1 @@
+"""Diagrams as their authors drew them, by the tool that keeps them."""

@@ -1,0 +1,1 @@
+"""Content of the extension elements that Enterprise Architect writes."""

@@ -1,0 +1,1 @@
+"""Snapshots of used projects, which MagicDraw stores in its archives."""
