@@ -132,17 +132,11 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
 
 
 def _stereotype(context: Context, row: int) -> tuple[str, str, Element | None]:
-    """Name, namespace and stereotype of an application; nearly always its tag says all three."""
+    """Name, namespace and stereotype of an application."""
     document = context.document
-    tag, says_itself = document.tags[row], "__EAStereoName" in document.attributes[row]
-    known = None if says_itself else context.stereotypes.get(tag)
-    if known is None:
-        written = document.namespace(row), document.features[row]
-        stereotype = context.unit.profiles.find(context.graph, *written)
-        known = (*stereotype_of(context, row), stereotype)
-        if not says_itself:
-            context.stereotypes[tag] = known
-    return known
+    namespace, feature = document.namespace(row), document.features[row]
+    stereotype = context.unit.profiles.find(context.graph, namespace, feature)
+    return (*stereotype_of(context, row), stereotype)
 
 
 def _specialities(

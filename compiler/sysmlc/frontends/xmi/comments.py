@@ -3,8 +3,6 @@
 Their readers take in all that is below such a row; a comment belongs to the nearest element then.
 """
 
-from itertools import compress
-
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.making import make
@@ -17,10 +15,7 @@ _FEATURE = "ownedComment"
 def restore(context: Context) -> None:
     """Make the comments that the walk passed over; references must not be flushed yet."""
     document = context.document
-    shapes = enumerate(document.shapes)
-    wanted = {at for at, (feature, _, _) in shapes if feature == _FEATURE}
-    numbers = document.shape_numbers
-    for row in compress(range(len(numbers)), map(wanted.__contains__, numbers)):
+    for row in [row for row, feature in enumerate(document.features) if feature == _FEATURE]:
         is_swallowed = context.verdicts[row] is Verdict.MAPPED and not context.lowered.own[row]
         if is_swallowed and not _is_reference(context, row):
             make(context, row, Kind.COMMENT, "", "Comment", _FEATURE)

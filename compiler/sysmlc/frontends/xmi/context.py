@@ -8,7 +8,7 @@ from sysmlc.frontends.xmi import feature_names as naming
 from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.keys import KEYS, PASSED_OVER
-from sysmlc.frontends.xmi.loose import Loose, Names
+from sysmlc.frontends.xmi.loose import Loose
 from sysmlc.frontends.xmi.rows import Rows
 from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
 from sysmlc.frontends.xmi.values import ValueText, bound
@@ -37,10 +37,6 @@ class Context(Rows):
     def __init__(self, unit: Unit, lowered: Lowered, sink: Sink) -> None:
         super().__init__(unit, lowered, sink)
         self.applications: list[int] = []
-        self.applied: set[str] = set()
-        """Tags whose rows, as roots, are applications of stereotypes."""
-        self.stereotypes: dict[str, tuple[str, str, Element | None]] = {}
-        """Name, namespace and, where it is in the unit, the stereotype that a tag means."""
         self.extensions: list[int] = []
         self.parts: list[int] = []
         self.triggers: list[tuple[Element, int]] = []
@@ -56,8 +52,6 @@ class Context(Rows):
         """Rows with an attribute whose value is none that UML knows for it."""
         self.baseless: list[int] = []
         self.loose: list[Loose] = []
-        self.naming: dict[Names, list[bool]] = {}
-        """Which shapes can name an element, by the names that count for some reader."""
         self.flow_targets: frozenset[str] | None = None
         self.computed: set[str] = set()
         """Elements with a bound that is an expression."""

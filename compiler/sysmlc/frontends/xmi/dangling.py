@@ -21,11 +21,8 @@ def look_inside(context: Context, row: int, lost: Names = ()) -> None:
 
     Those that ``lost`` names are said nowhere else.
     """
-    document, numbers = context.document, context.document.shape_numbers
-    is_naming = context.naming.get(lost) or _naming_shapes(context, lost)
+    document = context.document
     for at in range(row, document.ends[row]):
-        if not is_naming[numbers[at]]:
-            continue
         for name, value in document.attributes[at].items():
             if name in naming.NAMING or name in lost:
                 context.look(at, name, value, name not in lost)
@@ -33,14 +30,6 @@ def look_inside(context: Context, row: int, lost: Names = ()) -> None:
         if idref and at != row:
             feature = document.features[at]
             context.look(document.parents[at], feature, idref, feature not in lost)
-
-
-def _naming_shapes(context: Context, lost: Names) -> list[bool]:
-    """For each shape whether its rows can name an element; the last is for rows without one."""
-    names = {*naming.NAMING, *lost, context.document.idref_key}
-    found = [not names.isdisjoint(written) for _, _, written in context.document.shapes]
-    context.naming[lost] = [*found, True]
-    return context.naming[lost]
 
 
 def existing(context: Context, element: Element, key: str, targets: list[str]) -> list[str]:

@@ -3,9 +3,6 @@
 from collections import Counter
 from collections.abc import Iterator
 
-Shape = tuple[str, str, tuple[str, ...]]
-"""What decides what becomes of a row: feature, type, and names of the attributes in order."""
-
 
 class Document:
     """Columns of one file; a row stands for one XML element.
@@ -13,7 +10,7 @@ class Document:
     ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
     the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
     ``xmi:type`` (or empty), which is no longer in ``attributes``; ``ends[row]`` is the first
-    row after the row's content; ``shapes[shape_numbers[row]]`` is the row's shape;
+    row after the row's content; ``retyped`` are rows whose type the file does not write;
     ``referring`` are the features of the rows that refer to others;
     ``declared`` are the namespaces that the file declares outside drawings.
     """
@@ -32,8 +29,7 @@ class Document:
         "parents",
         "referring",
         "repeated",
-        "shape_numbers",
-        "shapes",
+        "retyped",
         "tags",
         "texts",
         "type_key",
@@ -51,9 +47,8 @@ class Document:
         self.drawn: Counter[str] = Counter()
         self.features: list[str] = []
         self.types: list[str] = []
-        self.shapes: list[Shape] = []
         self.referring: frozenset[str] = frozenset()
-        self.shape_numbers: list[int] = []
+        self.retyped: set[int] = set()
         self.ids: dict[str, int] = {}
         self.repeated: dict[str, list[int]] = {}
         self.declared: tuple[str, ...] = ()
@@ -100,9 +95,9 @@ class Document:
         return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
 
     def retype(self, row: int, type_name: str) -> None:
-        """Give the row another type; what its shape said no longer counts."""
+        """Give the row a type that the file omits."""
         self.types[row] = type_name
-        self.shape_numbers[row] = -1
+        self.retyped.add(row)
 
     def tokens(self, value: str) -> list[str]:
         """Ids in an attribute; Enterprise Architect's ids may hold spaces."""

@@ -1,9 +1,7 @@
-"""What the columns of a document are looked into for: features, types, shapes, ids."""
-
-from typing import cast
+"""What the columns of a document are looked into for: features, types, ids."""
 
 from sysmlc.frontends.xmi import namespaces
-from sysmlc.frontends.xmi.document import Document, Shape
+from sysmlc.frontends.xmi.document import Document
 
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 """Its ``type`` says what ``xmi:type`` says where EMF saves without the options of UML2."""
@@ -12,8 +10,7 @@ XSI = "http://www.w3.org/2001/XMLSchema-instance"
 def index(document: Document, declared: tuple[str, ...]) -> None:
     """Look into columns as the parser fills them; types leave the attributes."""
     document.declared = declared
-    local = {tag: _local(tag) for tag in dict.fromkeys(document.tags)}
-    document.features = list(map(local.__getitem__, document.tags))
+    document.features = [_local(tag) for tag in document.tags]
     spaces = [uri for uri in declared if namespaces.is_xmi(uri)]
     xmi = spaces[0] if spaces else ""
     for other in spaces[1:]:
@@ -21,7 +18,7 @@ def index(document: Document, declared: tuple[str, ...]) -> None:
     _set_keys(document, xmi)
     _index_types(document)
     _index_ids(document)
-    _index_shapes(document)
+    _index_referring(document)
 
 
 def _set_keys(document: Document, xmi: str) -> None:
@@ -41,53 +38,20 @@ def _index_types(document: Document) -> None:
 
 
 def _types(document: Document, key: str) -> list[str]:
-    short = _Short()
-    return [short[values.pop(key, "")] for values in document.attributes]
+    return [values.pop(key, "").rpartition(":")[2] for values in document.attributes]
 
 
-class _Short(dict[str, str]):
-    """Names of types without prefix, one string for each name."""
-
-    def __missing__(self, name: str) -> str:
-        short = self[name] = name.rpartition(":")[2]
-        return short
-
-
-def _index_shapes(document: Document) -> None:
-    """Number the shapes of the rows, in the order in which they are met."""
-    numbers = _Numbers()
-    shapes = zip(document.features, document.types, map(tuple, document.attributes), strict=True)
-    document.shape_numbers = list(map(numbers.__getitem__, shapes))
-    document.shapes = list(numbers)
-    references = {document.idref_key, "href"}
-    referring = (feature for feature, _, names in numbers if not references.isdisjoint(names))
-    document.referring = frozenset(referring)
-
-
-class _Numbers(dict[Shape, int]):
-    """Shapes, numbered as they are met."""
-
-    def __missing__(self, shape: Shape) -> int:
-        self[shape] = number = len(self)
-        return number
+def _index_referring(document: Document) -> None:
+    rows = zip(document.features, document.attributes, strict=True)
+    key = document.idref_key
+    document.referring = frozenset(f for f, values in rows if key in values or "href" in values)
 
 
 def _index_ids(document: Document) -> None:
-    key = document.id_key
-    written = [values.get(key) for values in document.attributes]
-    # The numbers of the ordinals are shared where they are those of the rows.
-    numbers = range(len(written)) if document.drawn else document.ordinals
-    rows = dict(zip(written, numbers, strict=True))
-    rows.pop(None, None)
-    document.ids = cast("dict[str, int]", rows)
-    if len(rows) < len(written) - written.count(None):
-        _index_repeated(document, written)
-
-
-def _index_repeated(document: Document, written: list[str | None]) -> None:
     """Of several elements with one id the first has it."""
-    document.ids = {}
-    for row, id in enumerate(written):
+    key = document.id_key
+    for row, values in enumerate(document.attributes):
+        id = values.get(key)
         if id is not None:
             first = document.ids.setdefault(id, row)
             if first != row:

@@ -51,9 +51,6 @@ def lower(unit: Unit, lowered: Lowered, sink: Sink) -> Context:
 
 def _root(context: Context, row: int) -> int:
     document = context.document
-    if document.tags[row] in context.applied:
-        context.applications.append(row)
-        return document.ends[row]
     namespace = document.namespace(row)
     feature = document.features[row]
     if namespaces.is_uml(namespace):
@@ -62,8 +59,6 @@ def _root(context: Context, row: int) -> int:
         return context.subtree(row, Verdict.IGNORED_NOTATION)
     if not namespace or namespaces.is_xmi(namespace):
         return _row(context, row)
-    if not namespaces.is_settings(namespace):
-        context.applied.add(document.tags[row])
     context.applications.append(row)
     return document.ends[row]
 

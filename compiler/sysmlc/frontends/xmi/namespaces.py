@@ -1,5 +1,7 @@
 """Namespaces of XMI and UML in all their versions, and which files they make ours."""
 
+from functools import lru_cache
+
 from sysmlc.patterns import pattern
 
 _XMI = pattern(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
@@ -15,16 +17,19 @@ _SYSML = pattern(
 _SETTINGS = pattern(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[IC]/?$|/spec/MOF/")
 
 
+@lru_cache(256)
 def is_xmi(namespace: str) -> bool:
     """Whether it is a namespace of XMI 2."""
     return _XMI.match(namespace) is not None
 
 
+@lru_cache(256)
 def is_uml(namespace: str) -> bool:
     """Whether it is a namespace of UML 2 (a profile of UML is not)."""
     return _UML.match(namespace) is not None
 
 
+@lru_cache(256)
 def is_settings(namespace: str) -> bool:
     """Whether its elements say how a tool shows or stores the model, and nothing else."""
     return _SETTINGS.search(namespace) is not None

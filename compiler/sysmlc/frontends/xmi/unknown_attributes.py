@@ -1,10 +1,7 @@
-"""Attributes that neither UML nor XMI has, or UML elsewhere: each is told once for each file.
+"""Attributes that neither UML nor XMI has, or UML elsewhere: each is told once for each file."""
 
-Only the shapes of rows are looked at; the rows themselves where a shape has such a name.
-"""
-
-from collections.abc import Iterator
-from itertools import compress, islice
+from collections.abc import Iterable, Iterator
+from itertools import islice
 
 from sysmlc.diagnostics import Rule, Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
@@ -36,11 +33,13 @@ def report(context: Context) -> None:
     Tags of stereotypes, what tools keep in extensions, and attributes in namespaces of their
     own are no attributes of UML.
     """
-    shapes = [_unknown(*shape) for shape in context.document.shapes]
-    if not any(shapes):
+    document = context.document
+    elements = zip(document.types, document.attributes, strict=True)
+    written = {(type_name, name) for type_name, values in elements for name in values}
+    if not any(_unknown(type_name, [name]) for type_name, name in written):
         return
     found: dict[_Odd, list[int]] = {}
-    for row, odd in _rows(context, shapes):
+    for row, odd in _rows(context):
         _approximate(context, row, odd)
         for one in odd:
             found.setdefault(one, []).append(row)
@@ -49,38 +48,33 @@ def report(context: Context) -> None:
         _report(context, one, rows, more if number == _MOST else 0)
 
 
-def _unknown(_: str, metaclass: str, names: tuple[str, ...]) -> tuple[_Odd, ...]:
+def _unknown(metaclass: str, names: Iterable[str]) -> tuple[_Odd, ...]:
     looked_at = tuple(islice(names, DEFAULT_LIMITS.attributes))
-    unknown = [(name, "") for name in looked_at if name not in FEATURES and not _is_known(name)]
+    unknown = [(name, "") for name in looked_at if not _is_known(name)]
     known = [name for name in looked_at if name in FEATURES and name not in WITH_READERS]
     return (*unknown, *((name, metaclass) for name in known if is_misplaced(metaclass, name)))
 
 
 def _is_known(name: str) -> bool:
+    if name in FEATURES:
+        return True
     namespace, _, local = name.rpartition("}")
     if namespaces.is_xmi(namespace):
         return local in _OF_XMI
     return bool(namespace) or name in WITH_READERS
 
 
-def _rows(
-    context: Context, shapes: list[tuple[_Odd, ...]]
-) -> Iterator[tuple[int, tuple[_Odd, ...]]]:
+def _rows(context: Context) -> Iterator[tuple[int, tuple[_Odd, ...]]]:
     """Rows that are of UML and have such attributes, with these."""
     document, applied = context.document, frozenset(context.applications)
-    numbers = document.shape_numbers
-    # The last one is for rows whose shape no longer counts.
-    is_wanted = [*map(bool, shapes), True]
-    for row in compress(range(len(numbers)), map(is_wanted.__getitem__, numbers)):
-        odd = shapes[numbers[row]] if numbers[row] >= 0 else _unknown_of(context, row)
+    for row, (type_name, values) in enumerate(
+        zip(document.types, document.attributes, strict=True)
+    ):
+        # Of a row that was given another type than is written: what no metaclass has.
+        odd = _unknown("" if row in document.retyped else type_name, values)
         is_read = bool(odd) and row not in applied and context.verdicts[row] in _READ
         if is_read and not _is_beside_the_model(context, row, applied):
             yield row, odd
-
-
-def _unknown_of(context: Context, row: int) -> tuple[_Odd, ...]:
-    """Of a row that was given another type than is written: what no metaclass has."""
-    return _unknown("", "", tuple(context.document.attributes[row]))
 
 
 def _is_beside_the_model(context: Context, row: int, applied: frozenset[int]) -> bool:

@@ -39,10 +39,9 @@ def is_known(tag: str) -> bool:
 def report(context: Context) -> None:
     """Report them; the applications that have them are approximated."""
     document = context.document
-    shapes = [tuple(_unknown(names)) for _, _, names in document.shapes]
     found: dict[tuple[str, str], list[int]] = {}
     for row in context.applications:
-        names = shapes[document.shape_numbers[row]]
+        names = tuple(_unknown(document.attributes[row]))
         if document.ends[row] != row + 1:
             names += tuple(_unknown(document.features[at] for at in document.children(row)))
         is_read = bool(names) and context.gids[row] in context.graph

@@ -44,11 +44,6 @@ def _upper(context: Context, row: int) -> None:
 
 
 def _bound(context: Context, row: int) -> AttrValue:
-    written = context.document.attributes[row].get("value", "")
-    known = _BOUNDS.get(written)
-    if known is not None and context.document.types[row] in _WHOLE:
-        context.subtree(row, Verdict.MAPPED)
-        return known
     value = lone_value_in(context, row)
     if not value.is_literal:
         context.computed.add(context.gids[row])
@@ -137,10 +132,6 @@ def _argument(context: Context, row: int) -> None:
     if owner is not None:
         _append(owner, "arguments", text)
 
-
-_BOUNDS: dict[str, AttrValue] = {"": 0, "0": 0, "1": 1, "*": "*"}
-_WHOLE = frozenset({"LiteralInteger", "LiteralUnlimitedNatural"})
-"""Nearly all bounds are these: a fifth of the elements of a large activity model."""
 
 FEATURES: dict[str, _Reader] = {
     "lowerValue": _lower,

@@ -1,7 +1,6 @@
 """Value specifications: literals as JSON values, expressions as text."""
 
 import re
-from functools import lru_cache
 from math import isfinite
 from typing import NamedTuple
 
@@ -73,7 +72,7 @@ def value_of(document: Document, row: int) -> ValueText:
 def _value(document: Document, row: int, inner: _Inner) -> ValueText:
     type_name = document.types[row]
     if type_name in _LITERALS:
-        return _literal_value(type_name, document.get(row, "value"))
+        return ValueText(_literal(type_name, document.get(row, "value")), is_literal=True)
     if type_name in _NAMES:
         return _instance(document, row, _NAMES[type_name])
     if type_name in _EXPRESSIONS:
@@ -155,11 +154,6 @@ def _texts(document: Document, row: int) -> tuple[list[str], list[str]]:
     if "language" in values:
         languages = [values["language"]]
     return bodies, languages
-
-
-@lru_cache(4096)
-def _literal_value(type_name: str, text: str) -> ValueText:
-    return ValueText(_literal(type_name, text), is_literal=True)
 
 
 def _literal(type_name: str, text: str) -> AttrValue:
