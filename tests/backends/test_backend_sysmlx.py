@@ -107,6 +107,7 @@ def test_what_the_text_cannot_say_is_told():
     assert emitted(graph)[1] == ["SM730"]
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_the_ice_laboratory_is_valid_for_the_metamodel(corpus, tmp_path):
     from pyecore.resources import URI, ResourceSet

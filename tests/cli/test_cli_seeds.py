@@ -5,6 +5,8 @@ import re
 import subprocess
 import sys
 
+import pytest
+
 from sysmlc.synthesis import check, rules, together_rules
 
 GRANTS = """\
@@ -57,6 +59,7 @@ def made(folder, seed):
     return found, re.sub(r"[0-9.]+ m?s\b", "", done.stdout), done.stderr
 
 
+@pytest.mark.long
 def test_three_hash_seeds_give_the_same_controllers_runs_and_reports(tmp_path):
     files, said, told = made(tmp_path / "1", "1")
     assert re.findall(r"^(\S+) (\d)$", said, re.MULTILINE) == [

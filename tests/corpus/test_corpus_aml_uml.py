@@ -29,6 +29,7 @@ def read_back(text):
     return graph
 
 
+@pytest.mark.long
 def test_every_difference_has_a_reason(corpus, golden):
     lines = []
     for name, paths in sorted(units(corpus).items()):

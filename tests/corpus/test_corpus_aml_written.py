@@ -41,6 +41,7 @@ def schema(corpus):
     return etree.XMLSchema(etree.parse(corpus / "aml" / "schema" / "CAEX_ClassModel_V.3.0.xsd"))
 
 
+@pytest.mark.long
 def test_every_difference_has_a_reason(corpus, schema, golden):
     lines = []
     for name, paths in sorted(units(corpus).items()):
@@ -72,6 +73,7 @@ def test_baygate_comes_back_without_any_difference(name, corpus):
     assert diff(graph, read_back(texts), IGNORED) == []
 
 
+@pytest.mark.long
 def test_what_is_written_again_is_the_same(corpus):
     for name, paths in sorted(units(corpus).items()):
         texts, _ = written(refined(sources(corpus, paths)))

@@ -24,6 +24,7 @@ def place(graph):
     return lambda id: graph.subject(graph[id])
 
 
+@pytest.mark.long
 def test_every_contract_of_the_ice_laboratory_can_be_kept_and_none_is_suspicious(laboratory):
     found, sink = laboratory.derived(Contract), Sink()
     results = list(check(found, found, place(laboratory), sink, Options()))

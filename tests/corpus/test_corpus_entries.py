@@ -53,6 +53,7 @@ def build(corpus, name, output):
     return done.exit_code, json.loads(done.stdout)["diagnostics"], len(made)
 
 
+@pytest.mark.long
 def test_exit_codes_and_findings_of_every_entry(outcomes, golden):
     lines = [line(name, *outcome) for name, outcome in outcomes.items()]
     assert len(lines) + len(ELSEWHERE) == ENTRIES

@@ -129,6 +129,7 @@ def test_the_combined_fragment_of_tank_control(corpus):
     assert len(sequence.covered(graph, fragment)) == 1
 
 
+@pytest.mark.long
 def test_every_binding_of_the_alf_library_leads_to_its_template(corpus):
     path = corpus / "xmi" / "papyrus" / "Alf.library.uml"
     graph, sink = compiled(path)

@@ -8,6 +8,7 @@ import pytest
 
 from dialects.mutate import mutate
 from fuzz.aml_changes import AML_CHANGES
+from long_runs import quick_first
 from sysmlc.diagnostics.render import make_report
 from sysmlc.diagnostics.xpath import is_xml
 from sysmlc.driver import Request, compile_model, select_backends
@@ -52,7 +53,7 @@ def _is_whole(finding, xml) -> bool:
     return bool(is_named and finding.line and finding.column and finding.xpath)
 
 
-@pytest.mark.parametrize("path", models(), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", quick_first(models(), 30), ids=lambda path: path.name)
 def test_findings_of_models_have_a_whole_place(path):
     backends = tuple(select_backends(()))
     assert incomplete(path, backends=backends, diagrams="both") == []

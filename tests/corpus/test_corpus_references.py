@@ -93,6 +93,7 @@ def references(path, features):
     return [one for source in models for one in written(source.data, features)]
 
 
+@pytest.mark.long
 def test_seven_references_dangle_of_all_that_are_written(documents):
     dangling = Counter(
         (name, one.source, one.feature)

@@ -22,6 +22,7 @@ NAME = "names of stereotypes are as XML tags show them"
 UNSAID = "UML has no such attribute (SM722)"
 
 
+@pytest.mark.long
 def test_every_difference_has_a_reason(corpus, tmp_path, golden):
     lines = []
     for path in models(corpus):
@@ -34,6 +35,7 @@ def test_every_difference_has_a_reason(corpus, tmp_path, golden):
     golden.check("uml", {"corpus.txt": "\n".join(lines) + "\n"})
 
 
+@pytest.mark.long
 def test_papyrus_models_keep_to_the_metamodel(corpus):
     metamodel = Metamodel(corpus / "xmi" / "metamodel" / "uml.ecore")
     for path in sorted((corpus / "xmi" / "papyrus").glob("*.uml")):

@@ -59,6 +59,7 @@ def differences(files):
     return [str(one) for one in compare(once, again, ("id",))]
 
 
+@pytest.mark.long
 def test_text_that_is_read_and_written_again_is_the_same_model(corpus):
     found = {name: differences(files) for name, files in units(corpus).items()}
     assert len(found) == 64

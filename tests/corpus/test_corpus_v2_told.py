@@ -76,6 +76,7 @@ def made(files):
     return compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
 
 
+@pytest.mark.long
 def test_every_difference_is_told_as_a_loss_of_its_element(corpus):
     found = {}
     for name, files in units(corpus).items():
@@ -95,6 +96,7 @@ def rules_of(text):
     return {one.rule.code for one in sink if one.severity is not Severity.INFO}
 
 
+@pytest.mark.long
 def test_our_own_text_keeps_the_rules_of_sysml_v2(corpus):
     """What the model itself is told of, by rules of SysML v1, is no fault of the text."""
     found = {}

@@ -39,6 +39,7 @@ def test_nothing_of_an_interaction_is_left_out(seed, tmp_path):
         assert set(inside) <= set(drawn.trace)
 
 
+@pytest.mark.long
 @pytest.mark.plantuml
 def test_real_plantuml_renders_them(tmp_path, plantuml):
     made = {

@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from examples.compiling import ROOT, compile_example, findings, outputs
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
@@ -49,6 +51,7 @@ def without_ids(value):
     return [without_ids(one) for one in value] if isinstance(value, list) else value
 
 
+@pytest.mark.long
 def test_all_its_contracts_can_be_kept():
     contracts = compile_example(MODELS[0], "ir").graph.derived(Contract)
     verdicts = {

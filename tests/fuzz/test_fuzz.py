@@ -10,6 +10,7 @@ import pytest
 
 from fuzz.hunt import Hunter
 from fuzz.mutants import models, mutant, unspoilt
+from long_runs import quick_first
 
 BATCH = 20
 EXAMPLES = range(0, 60, BATCH)
@@ -34,27 +35,27 @@ def unanswered(hunter, seeds, among):
     ]
 
 
-@pytest.mark.parametrize("first", EXAMPLES)
+@pytest.mark.parametrize("first", quick_first(EXAMPLES))
 def test_spoilt_examples_are_answered_with_findings(hunter, first):
     assert unanswered(hunter, range(first, first + BATCH), models(None, 0)) == []
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("first", REAL)
+@pytest.mark.parametrize("first", quick_first(REAL))
 def test_spoilt_real_models_are_answered_with_findings(hunter, corpus, first):
     among = models(corpus / "xmi", LARGEST, ["xmi"])
     assert unanswered(hunter, range(first, first + BATCH), among) == []
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("first", PLANTS)
+@pytest.mark.parametrize("first", quick_first(PLANTS))
 def test_spoilt_plants_are_answered_with_findings(hunter, corpus, first):
     among = models(corpus / "aml", LARGEST, ["aml"])
     assert unanswered(hunter, range(first, first + BATCH), among) == []
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("first", V2)
+@pytest.mark.parametrize("first", quick_first(V2))
 def test_spoilt_texts_of_sysml_v2_are_answered_with_findings(hunter, corpus, first):
     among = models(corpus / "sysml2", LARGEST, ["v2"])
     assert unanswered(hunter, range(first, first + BATCH), among) == []
@@ -68,6 +69,7 @@ def test_models_that_are_wrong_in_some_known_way_are_answered_with_findings(hunt
     assert [f"{one.done}: {f.what}" for one in asked for f in hunter.look(one)] == []
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_spoilt_plants_are_wrong_and_right(hunter, corpus):
     among = models(corpus / "aml", LARGEST, ["aml"])

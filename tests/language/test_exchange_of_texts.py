@@ -5,6 +5,7 @@ from functools import partial
 
 import pytest
 
+from long_runs import quick_first
 from sysmlc.diagnostics import Sink
 from sysmlc.language.exchange import Files, interchange_path, link, read, write
 from sysmlc.language.library import find
@@ -72,7 +73,7 @@ def _root(node):
     return node
 
 
-@pytest.mark.parametrize("folder", ["omg-release/examples/Simple Tests", "showcase"])
+@pytest.mark.parametrize("folder", quick_first(["omg-release/examples/Simple Tests", "showcase"]))
 def test_texts_come_back_as_they_were(folder, corpus, library):
     documents, files, codes = written(corpus / "sysml2" / folder, library)
     assert codes == []
@@ -81,6 +82,7 @@ def test_texts_come_back_as_they_were(folder, corpus, library):
         assert before == after
 
 
+@pytest.mark.long
 def test_what_leads_nowhere_in_the_ice_laboratory_is_told(corpus, library):
     documents, files, codes = written(corpus / "sysml2/ice-lab", library)
     assert (len(files), set(codes)) == (18, {"SM758"})
@@ -104,6 +106,7 @@ def test_ids_of_the_library_text_are_those_of_its_releases(corpus, library):
     assert (same, other) == (6_419, 0)
 
 
+@pytest.mark.long
 def test_models_of_the_pilot_come_back_as_they_were(corpus, library):
     """Small models of every construct; those with faults that are meant are left out."""
     paths = sorted((corpus / "sysml2/pilot-xpect").rglob("*.xt"))
@@ -141,7 +144,7 @@ def loaded(files, folder, corpus):
 
 
 @pytest.mark.parametrize(
-    "folder", ["omg-release/training", "omg-release/examples/Simple Tests", "showcase"]
+    "folder", quick_first(["omg-release/examples/Simple Tests", "omg-release/training", "showcase"])
 )
 def test_texts_as_we_write_them_are_valid_for_the_metamodel(folder, corpus, library, tmp_path):
     _, files, codes = written(corpus / "sysml2" / folder, library)

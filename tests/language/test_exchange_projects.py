@@ -225,6 +225,7 @@ def test_versions_fit_constraints(constraint, yes):
     assert fits("1.2.0", constraint) == yes
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_the_ten_library_archives_are_as_released(corpus):
     sink = Sink()

@@ -314,6 +314,7 @@ def test_every_named_element_of_the_library_is_read(library):
         assert found == stated
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_the_library_is_the_same_tree_when_written_and_read_again(library):
     sink, (_, documents) = Sink(), library
@@ -340,6 +341,7 @@ def test_ids_of_the_library_are_those_of_the_standard(library):
     assert (same, other) == (14_774, 625)
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_the_library_as_we_write_it_is_valid_for_the_metamodel(library, corpus, tmp_path):
     from pyecore.resources import URI, ResourceSet

@@ -257,6 +257,7 @@ def plain(fact):
     return fact.replace("\r\n", "\n") if isinstance(fact, str) else fact
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_files_of_the_corpus_stay_what_they_are(corpus):
     paths = [
@@ -289,6 +290,7 @@ def test_models_of_the_pilot_stay_what_they_are(corpus):
     assert done > 400
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_lines_of_the_corpus_fit(corpus):
     """Only names, texts, comments and notes are longer than a line."""

@@ -84,6 +84,7 @@ def test_implied_specialisations_are_those_of_the_release(path):
     assert {name: sorted(implied(model, name)) for name in FACTS[path]} == FACTS[path]
 
 
+@pytest.mark.long
 def test_so_many_elements_are_compared():
     elements = [said for facts in FACTS.values() for said in facts.values()]
     assert (len(elements), sum(map(len, elements))) == (29, 15)

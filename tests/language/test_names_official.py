@@ -57,6 +57,7 @@ def test_no_name_of_the_official_models_is_unknown(folder, count):
     assert unresolved(made, library()) == []
 
 
+@pytest.mark.long
 def test_no_name_of_the_library_itself_is_unknown():
     assert len(documents(_LIBRARY)) == 94
     assert unresolved(_LIBRARY, Library([])) == []

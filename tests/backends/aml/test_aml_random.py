@@ -31,6 +31,7 @@ def has_no_reason(change):
     return not is_order and not is_repeated and not is_side
 
 
+@pytest.mark.long
 @given(SEEDS)
 def test_a_random_plant_comes_back(seed):
     graph = graph_of(seed)
@@ -57,6 +58,7 @@ NAMES = """AdditionalInformation Attribute AttributeNameMapping AttributeType At
 TAGS = set(NAMES.split())
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_what_is_written_of_random_plants_is_valid(corpus):
     """By the published schema, which the random plants themselves satisfy."""

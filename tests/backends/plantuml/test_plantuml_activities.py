@@ -69,6 +69,7 @@ def test_an_expansion_region_says_how_it_takes_the_elements():
     assert "«expansionNode»" in text
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.plantuml
 def test_activities_of_a_large_library_render(corpus, plantuml):

@@ -5,6 +5,7 @@ import re
 import pytest
 from drawing import emitted
 
+from long_runs import quick_first
 from sysmlc.backends.plantuml.split import LIMIT
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver.reading import read_unit
@@ -29,7 +30,7 @@ _MANY_NEIGHBOURS = 2 * LIMIT
 
 @pytest.mark.corpus
 @pytest.mark.plantuml
-@pytest.mark.parametrize("path", MODELS)
+@pytest.mark.parametrize("path", quick_first(MODELS))
 def test_a_real_model_renders(path, corpus, plantuml):
     graph = _compiled(corpus / "xmi" / path)
     files, sink = emitted(graph)

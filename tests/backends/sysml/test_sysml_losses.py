@@ -62,6 +62,7 @@ Package p "Plant"
     assert [one[:5] for one in told] == ["SM736", "SM736"]
 
 
+@pytest.mark.long
 def test_every_small_model_of_our_rules_can_be_loaded():
     graphs = [graph for graph in map(graph_of, texts()) if graph is not None]
     assert len(graphs) > 150

@@ -12,6 +12,7 @@ from toolkit import load, parts
 from writing import lines_of, refined, text_of, written
 
 from examples.compiling import PLANT, compile_example
+from long_runs import quick_first
 from sysmlc import resources
 from sysmlc.backends.sysml.library import IMPORTED, IMPORTS, UNITS, unit_name
 from sysmlc.backends.sysml.words import RESERVED, quoted
@@ -475,7 +476,9 @@ def visible(char):
     return "\ufffd" if is_control or is_no_character else char
 
 
-@pytest.mark.parametrize("name", ["part", "in", "a b", "1st", "it's", "\\", "a\nb", "Tür", "_x"])
+@pytest.mark.parametrize(
+    "name", quick_first(["it's", "part", "in", "a b", "1st", "\\", "a\nb", "Tür", "_x"], 2)
+)
 def test_the_toolkit_reads_our_names(name):
     loaded = load({"m.sysml": f"package {quoted(name)} {{ part {quoted(name)}; }}"})
     assert (name, name) in loaded.elements

@@ -13,6 +13,7 @@ from writing import read, refined, written
 
 from dialects.random_models import random_model
 from examples.compiling import ROOT, compile_example
+from long_runs import quick_first
 
 EXAMPLES = sorted((ROOT / "examples").glob("*/*.uml"))
 JUDGED = {
@@ -55,12 +56,12 @@ def agrees(graph):
     return count
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", quick_first(EXAMPLES), ids=lambda path: path.stem)
 def test_examples(path):
     assert agrees(compile_example(path, "ir").graph) == JUDGED[path.stem]
 
 
-@pytest.mark.parametrize("seed", range(0, 50, 10))
+@pytest.mark.parametrize("seed", quick_first(range(0, 50, 10)))
 def test_models_at_random(seed):
     graphs = [read(random_model(Random(seed + more), 2)) for more in range(10)]
     complaints, differences, count = judged_together(graphs)
@@ -69,20 +70,20 @@ def test_models_at_random(seed):
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("suffix", [".aml", ".amlx", "_caex215.aml", "_extlibs.aml"])
+@pytest.mark.parametrize("suffix", quick_first([".aml", ".amlx", "_caex215.aml", "_extlibs.aml"]))
 def test_the_gate_of_the_thesis(corpus, suffix):
     path = corpus / "aml" / "baygate" / f"BayGate{suffix}"
     assert agrees(compile_example(path, "ir").graph) == 28
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("name", AML)
+@pytest.mark.parametrize("name", quick_first(AML))
 def test_real_plants(corpus, name):
     assert agrees(compile_example(corpus / "aml" / "dev" / name, "ir").graph) > 1
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("name", XMI)
+@pytest.mark.parametrize("name", quick_first(XMI))
 def test_real_models(corpus, name):
     assert agrees(compile_example(corpus / "xmi" / name, "ir").graph) > 20
 
@@ -96,6 +97,7 @@ Package p "Plant"
 """
 
 
+@pytest.mark.long
 def test_the_judge_sees_what_is_missing_has_another_kind_or_another_type(monkeypatch):
     graph = refined(GATE)
     assert agrees(graph) == 4

@@ -250,6 +250,7 @@ def test_spoilt_files_are_a_graph_or_a_located_fault(tmp_path):
         assert not [f for f in made.diagnostics if f.rule.code.startswith("SM9")], seed
 
 
+@pytest.mark.long
 @pytest.mark.corpus
 def test_the_telescope_is_read(corpus):
     """94 MB: each record has one verdict, 94 percent of them are in the graph."""

@@ -181,6 +181,7 @@ def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
         assert name in [one.name for one in clamp.variables]
 
 
+@pytest.mark.long
 def test_what_nobody_asks_the_coordinator_for_is_told():
     text = machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
     verdict, found = composed(text)

@@ -1,5 +1,6 @@
 """Whatever is done to a file, reading it ends in a graph and findings, never in a traceback."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reading_xmi import magicdraw, papyrus, read
@@ -49,6 +50,7 @@ def test_damaged_bytes(model, data):
     check(model.data[:start] + patch + model.data[start + length :])
 
 
+@pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(st.sampled_from(MODELS), st.data())
 def test_exchanged_words(model, data):
