@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.element import AttrValue
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes.activities import Activities
 
 Block = tuple

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classes import classified
+from sysmlc.logic.classification import classified
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,

@@ -6,7 +6,7 @@ from activity_models import activity, tokens_of
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var

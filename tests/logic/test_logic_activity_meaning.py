@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import token_game
+from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal

@@ -10,10 +10,12 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import one_token, token_game, token_net
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities import net_safety as token_net
+from sysmlc.logic.activities import one_token
 from sysmlc.logic.activities.derivation import derive
 from sysmlc.logic.activities.net_reductions import reduce
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes import activity_drawing, activity_tokens
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_expressions import Scope

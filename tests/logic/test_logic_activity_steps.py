@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import print_text
 from sysmlc.logic import domains, evaluate
-from sysmlc.logic.activities import token_game, token_search
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities import reachability as token_search
 from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal

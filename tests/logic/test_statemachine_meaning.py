@@ -1,6 +1,6 @@
 """Derived contracts against the interpreter: the formulas allow exactly the steps it makes.
 
-The interpreter (``machines.step``) runs the drawing and reads no formula. Of its traces every
+The interpreter (``machines.interpreter``) runs the drawing and reads no formula. Of its traces every
 conjunct must hold; and of every trace that differs from one of them in one variable of one
 step the formulas must say what the interpreter says: legal when the changed step is among
 those that may follow, else violated. No mutation is exempt.
@@ -16,7 +16,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import violation
-from sysmlc.logic.machines import step
+from sysmlc.logic.machines import interpreter as step
 from sysmlc.logic.machines.derivation import derive
 from sysmlc.logic.machines.reader import read_machine
 

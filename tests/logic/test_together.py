@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from sysmlc.logic import evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities import token_game
-from sysmlc.logic.activities.game import Game
-from sysmlc.logic.activities.spread import Spread
-from sysmlc.logic.activities.together import Together
-from sysmlc.logic.activities.tokens import NodeKind, Store, Write
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.concurrency import Together
+from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.token_graph import NodeKind, Store, Write
+from sysmlc.logic.activities.value_analysis import Spread
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Const, Op

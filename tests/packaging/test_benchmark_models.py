@@ -9,7 +9,7 @@ from lxml import etree
 
 from sysmlc.driver.compilation import Request, compile_model
 from sysmlc.ir import Kind
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 
 GENERATOR = Path(__file__).parents[2] / "benchmarks" / "xmi_model.py"
 XMI_ID = "{http://www.omg.org/spec/XMI/20131001}id"

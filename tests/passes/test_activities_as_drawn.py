@@ -19,8 +19,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities import token_game
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.passes import pipeline

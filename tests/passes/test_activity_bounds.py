@@ -8,8 +8,9 @@ from drawn_activities import start as begin
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.activities import bound_search, bounds
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities import bounds
+from sysmlc.logic.activities import saturation as bound_search
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes import pipeline
 
 EACH = 250

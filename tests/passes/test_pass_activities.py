@@ -5,8 +5,8 @@ import pytest
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
-from sysmlc.logic.activities.token_game import State, is_complete
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.interpreter import State, is_complete
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activity_sketch import sketch
 

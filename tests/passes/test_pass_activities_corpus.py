@@ -12,9 +12,9 @@ from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.text import print_text
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import token_game
+from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.domains import values
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline

@@ -12,7 +12,7 @@ from sysmlc.backends.recipe.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline

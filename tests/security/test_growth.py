@@ -10,7 +10,7 @@ import pytest
 
 from sysmlc.backends.plantuml import bdd
 from sysmlc.driver import Request, backend_names, compile_model, load_backends
-from sysmlc.logic.machines import competition
+from sysmlc.logic.machines import conflicts as competition
 
 MAX_GROWTH = 4.5
 """Times the cost, for twice the size; 4 is quadratic."""

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.logic.writers import Writers
 from sysmlc.passes import activity_checks, activity_drawing, activity_search, activity_tokens

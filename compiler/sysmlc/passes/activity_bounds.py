@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.machines.moves import SATURATES
 
 

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,

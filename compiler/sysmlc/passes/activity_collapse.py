@@ -8,7 +8,7 @@ flows and nodes that it stands for. Tokens arrive earlier, never in another orde
 
 from collections.abc import Callable
 
-from sysmlc.logic.activities.tokens import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
 from sysmlc.values import replace
 
 _ALL_OUT = (Firing.ALL, Firing.WORK)

@@ -5,7 +5,7 @@ from itertools import pairwise
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.identity import derived_id
-from sysmlc.logic.activities.tokens import Guard, NodeKind, TokenEdge, TokenNode
+from sysmlc.logic.activities.token_graph import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.names import identifier
 from sysmlc.passes.activity_drawing import Drawing, Flow, flow_label
 from sysmlc.passes.activity_inputs import Answer, Inputs

@@ -9,7 +9,7 @@ from dataclasses import field
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_parts import NODES, Part, parts_of
 from sysmlc.passes.activity_regions import (

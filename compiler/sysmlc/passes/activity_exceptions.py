@@ -7,7 +7,7 @@ catches ends the activity.
 
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.identity import derived_id
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Guard, NodeKind
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Guard, NodeKind
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft
 from sysmlc.passes.activity_raising import CALLS, may_raise

@@ -1,7 +1,7 @@
 """Token nodes of what is drawn, with their variables; and what UML asks to be drawn otherwise."""
 
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.logic.activities.tokens import Duration, NodeKind, TokenNode
+from sysmlc.logic.activities.token_graph import Duration, NodeKind, TokenNode
 from sysmlc.logic.names import identifier
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft, least

@@ -7,8 +7,8 @@ flow may be empty again before the next token comes.
 
 from functools import lru_cache
 
-from sysmlc.logic.activities import token_net
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
+from sysmlc.logic.activities import net_safety as token_net
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.logic.names import Names
 from sysmlc.passes.activity_collapse import collapse
 from sysmlc.values import dataclass, replace
@@ -109,7 +109,7 @@ def _in_any_order(tokens: TokenGraph, limit: int) -> Found:
 
 
 def _step_by_step(tokens: TokenGraph, limit: int) -> Found:
-    from sysmlc.logic.activities import token_search
+    from sysmlc.logic.activities import reachability as token_search
 
     reached = token_search.explore(tokens, limit)
     moving = {node.id for node in tokens.nodes if node.firing is not Firing.NEVER}

@@ -5,7 +5,7 @@ from itertools import product
 
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
+from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.tokens import Firing, Guard, NodeKind, TokenNode
+from sysmlc.logic.activities.token_graph import Firing, Guard, NodeKind, TokenNode
 from sysmlc.logic.names import identifier
 from sysmlc.passes.activity_draft import Draft
 from sysmlc.passes.activity_parts import Part

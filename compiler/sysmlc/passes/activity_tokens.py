@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
 from sysmlc.ir.identity import derived_id
-from sysmlc.logic.activities.tokens import Interruptible, TokenGraph
+from sysmlc.logic.activities.token_graph import Interruptible, TokenGraph
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft
 from sysmlc.passes.activity_drawing import Drawing

@@ -144,7 +144,7 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
-    from sysmlc.logic.classes import classified
+    from sysmlc.logic.classification import classified
     from sysmlc.logic.reduction.reduce import is_reducible, remembering
     from sysmlc.logic.spelling import FormulaError
     from sysmlc.logic.texts.formal import read_formal, told

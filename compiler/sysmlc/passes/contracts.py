@@ -12,7 +12,7 @@ from typing import ClassVar
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities import derivation as activity_contract
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine

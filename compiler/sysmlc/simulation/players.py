@@ -7,8 +7,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import derivation as activity_contract
-from sysmlc.logic.activities import token_game
-from sysmlc.logic.activities.tokens import TokenGraph, TokenNode
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.token_graph import TokenGraph, TokenNode
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, values
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.machines import step
+from sysmlc.logic.machines import interpreter as step
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
 from sysmlc.values import dataclass

@@ -8,9 +8,9 @@ could be true only while the token is elsewhere in the loop.
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.game import Game, at
 from sysmlc.logic.activities.loops import Loop, loops
-from sysmlc.logic.activities.tokens import Duration, Firing, NodeKind, TokenNode
+from sysmlc.logic.activities.step_formulas import Game, at
+from sysmlc.logic.activities.token_graph import Duration, Firing, NodeKind, TokenNode
 from sysmlc.logic.contract import Class, Conjunct
 
 

@@ -7,10 +7,10 @@ looked at that the activity can reach, whatever the environment decides, unless 
 from functools import lru_cache
 
 from sysmlc.logic import domains
-from sysmlc.logic.activities.bound_search import reduced, search
-from sysmlc.logic.activities.spread import MOST_VALUES, Spread
-from sysmlc.logic.activities.together import Together
-from sysmlc.logic.activities.tokens import Store, TokenGraph, Write
+from sysmlc.logic.activities.concurrency import Together
+from sysmlc.logic.activities.saturation import reduced, search
+from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
+from sysmlc.logic.activities.value_analysis import MOST_VALUES, Spread
 from sysmlc.values import StrEnum
 
 _REMEMBERED = 256

@@ -10,10 +10,10 @@ from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import assumptions
-from sysmlc.logic.activities.game import Game, at
 from sysmlc.logic.activities.loops import endless_entries
+from sysmlc.logic.activities.step_formulas import Game, at
 from sysmlc.logic.activities.stores import starts, updates
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
     Guard,

@@ -3,7 +3,13 @@
 from collections.abc import Collection, Iterator
 
 from sysmlc.ir.components import strong_components
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import (
+    ACTIVITY_REGION,
+    Firing,
+    TokenEdge,
+    TokenGraph,
+    TokenNode,
+)
 from sysmlc.logic.formula import Const
 from sysmlc.values import dataclass
 

@@ -6,7 +6,7 @@ They are those of T. Murata, "Petri nets: properties, analysis and applications"
 
 from collections.abc import Iterable
 
-from sysmlc.logic.activities.net import Move, Net
+from sysmlc.logic.activities.petri_net import Move, Net
 
 
 def reduce(net: Net) -> None:

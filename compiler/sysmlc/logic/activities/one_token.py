@@ -6,8 +6,8 @@ walk along the flows finds, without a net.
 
 from collections.abc import Iterator
 
-from sysmlc.logic.activities.net import Safety
-from sysmlc.logic.activities.tokens import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.petri_net import Safety
+from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
 
 
 def walk(graph: TokenGraph, region: str) -> Safety | None:

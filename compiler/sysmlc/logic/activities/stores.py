@@ -7,8 +7,8 @@ Of several nodes that write one variable in the same step one is the last, which
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.game import Game
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, Store, Write
+from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Store, Write
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal

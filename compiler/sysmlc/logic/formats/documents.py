@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import NoReturn
 
-from sysmlc.logic.classes import within
+from sysmlc.logic.classification import within
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,

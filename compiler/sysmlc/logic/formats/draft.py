@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Rule
 from sysmlc.logic import formula as f
-from sysmlc.logic.classes import classified, within
+from sysmlc.logic.classification import classified, within
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Variable
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import SECTIONS

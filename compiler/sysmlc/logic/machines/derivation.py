@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.machines import words as words
+from sysmlc.logic.machines import descriptions as words
 from sysmlc.logic.machines.machine import (
     INACTIVE,
     NO_EVENT,

@@ -15,8 +15,8 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.domains import valuations
 from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.machines import words as words
-from sysmlc.logic.machines.competition import simultaneous
+from sysmlc.logic.machines import descriptions as words
+from sysmlc.logic.machines.conflicts import simultaneous
 from sysmlc.logic.machines.machine import (
     NO_EVENT,
     AfterTicks,

@@ -6,9 +6,9 @@ from itertools import combinations
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import samples
-from sysmlc.logic.machines.competition import GuardComparison, simultaneous
+from sysmlc.logic.machines.conflicts import GuardComparison, simultaneous
 from sysmlc.logic.machines.machine import Action, Assign, Machine, Transition, element_id
-from sysmlc.logic.machines.shape import common_state, segments
+from sysmlc.logic.machines.well_formedness import common_state, segments
 from sysmlc.logic.samples import arrow, machine_of
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic.machines.competition import GuardComparison
+from sysmlc.logic.machines.conflicts import GuardComparison
 from sysmlc.logic.machines.machine import Machine, OnEvent, Transition, element_id
 from sysmlc.logic.samples import arrow, machine_of, region, state
 

@@ -13,10 +13,10 @@ from sysmlc.logic.machines.machine import (
     element_id,
     id_within,
 )
-from sysmlc.logic.machines.shape import common_state
-from sysmlc.logic.machines.support import JOIN_BESIDE
+from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
 from sysmlc.logic.machines.triggers import Parts, occurrence_of
 from sysmlc.logic.machines.vertices import drawn_from
+from sysmlc.logic.machines.well_formedness import common_state
 from sysmlc.logic.names import unique
 from sysmlc.values import replace
 

@@ -4,7 +4,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
 from sysmlc.logic.machines.actions import read_behaviours
 from sysmlc.logic.machines.machine import INACTIVE, Region, Vertex, id_within
-from sysmlc.logic.machines.support import initial_of, submachine_of
+from sysmlc.logic.machines.supported_constructs import initial_of, submachine_of
 from sysmlc.logic.machines.triggers import Parts
 from sysmlc.logic.names import identifier, unique
 from sysmlc.values import replace

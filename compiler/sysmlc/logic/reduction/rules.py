@@ -8,7 +8,7 @@ Every rule is an equivalence in all traces in which the bits follow their rules.
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classes import classified
+from sysmlc.logic.classification import classified
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op

@@ -71,7 +71,7 @@ def _classified(
 def _parts(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[tuple[Class, Formula]]:
-    from sysmlc.logic.classes import classified
+    from sysmlc.logic.classification import classified
     from sysmlc.logic.requirements.meaning import is_temporal
 
     if is_temporal(statement.constraint):

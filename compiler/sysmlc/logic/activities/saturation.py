@@ -9,9 +9,9 @@ from typing import TypeVar
 
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities import token_game
-from sysmlc.logic.activities.game import Game
-from sysmlc.logic.activities.tokens import TokenGraph, TokenNode, Write
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.token_graph import TokenGraph, TokenNode, Write
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.simplify import is_satisfiable, substitute

@@ -12,9 +12,9 @@ borders of regions and data stores are no places of such a net.
 
 from collections.abc import Iterable
 
-from sysmlc.logic.activities.net import Net, Safety, net_of
 from sysmlc.logic.activities.one_token import walk
-from sysmlc.logic.activities.tokens import TokenGraph
+from sysmlc.logic.activities.petri_net import Net, Safety, net_of
+from sysmlc.logic.activities.token_graph import TokenGraph
 
 _SMALL = 2_000
 """Markings that are searched without reductions: some milliseconds."""

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import field
 from itertools import combinations
 
-from sysmlc.logic.activities.tokens import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
 from sysmlc.values import dataclass
 
 

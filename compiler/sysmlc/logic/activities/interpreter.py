@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol, TypeVar
 
 from sysmlc.logic import domains, evaluate
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
     Firing,

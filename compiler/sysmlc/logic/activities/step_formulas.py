@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.together import Together
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.concurrency import Together
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
     Firing,

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.game import Game
-from sysmlc.logic.activities.together import Move, Together, gone, takers
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.concurrency import Move, Together, gone, takers
+from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,

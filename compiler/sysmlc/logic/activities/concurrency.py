@@ -9,7 +9,7 @@ it may say that they are, of two that are it never says that they are not.
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import field
 from itertools import product
 
-from sysmlc.logic.activities.tokens import (
+from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
     Firing,
