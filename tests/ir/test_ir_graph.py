@@ -6,7 +6,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sysmlc.ir import Edge, Element, Graph, Kind, parse_text, verify
-from sysmlc.ir.shared import Shared
 
 LINE = """
 Package line
@@ -97,26 +96,26 @@ def test_any_sequence_of_changes_leaves_a_consistent_graph(graph, data):
         assert verify(graph) == []
 
 
-def test_elements_that_front_ends_make_stand_below_their_owner_in_order_however_many() -> None:
+def test_owned_elements_are_in_order_of_addition_however_many() -> None:
     graph = Graph()
     graph.add(Element("top", Kind.PACKAGE, "top"))
     names = [f"n{number}" for number in range(40)]
     for number, name in enumerate(names):
-        graph.new(name, Kind.CLASS, name, "top", number, "a.uml")
+        graph.add(Element(name, Kind.CLASS, name, "top", number, "a.uml"))
         assert [child.name for child in graph.owned(graph["top"])] == names[: number + 1]
-    assert graph.new("n3", Kind.CLASS, "again", "top", 40, "a.uml") is None
-    graph.add(Element("late", Kind.CLASS, "late", "top"))
-    assert [child.name for child in graph.owned(graph["top"])] == [*names, "late"]
 
 
-def test_attributes_that_elements_share_are_set_for_one_of_them_alone() -> None:
-    graph, attrs = Graph(), Shared(role="part")
-    for name in ("one", "two"):
-        graph.new(name, Kind.PROPERTY, name, None, 0, "a.aml", attrs)
-    graph.set(graph["one"], role=None, unit="m")
-    assert graph["one"].attrs == {"unit": "m"}
-    assert graph["two"].attrs == {"role": "part"}
-    with pytest.raises(TypeError):
-        graph["two"].attrs["role"] = "value"
-    with pytest.raises(TypeError):
-        graph["two"].attrs.update(role="value")
+@pytest.mark.parametrize("id", ["", "top"])
+def test_an_empty_or_used_id_is_refused(id) -> None:
+    graph = Graph()
+    graph.add(Element("top", Kind.PACKAGE))
+    with pytest.raises(ValueError, match="empty or taken"):
+        graph.add(Element(id, Kind.CLASS))
+    assert [element.kind for element in graph] == [Kind.PACKAGE]
+
+
+def test_an_owner_that_does_not_exist_is_refused() -> None:
+    graph = Graph()
+    with pytest.raises(KeyError, match="nowhere"):
+        graph.add(Element("part", Kind.PROPERTY, owner="nowhere"))
+    assert len(graph) == 0

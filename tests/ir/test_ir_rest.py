@@ -8,7 +8,6 @@ from sysmlc.backends.ecore import from_xmi, to_xmi
 from sysmlc.ir import Edge, Element, Graph, Kind, derived_id, parse_text, print_text, verify
 from sysmlc.ir.diff import Change, diff
 from sysmlc.ir.generate import generate
-from sysmlc.ir.views import networkx
 
 GATE = """\
 Package p "Plant"
@@ -45,8 +44,9 @@ def test_verify_finds_a_wrong_owner_and_a_lost_origin():
 
 
 def test_networkx_sees_only_the_edges_that_are_asked_for():
-    view = networkx(parse_text(GATE), Edge.TYPED_BY)
-    assert list(view.edges) == [("i", "m")]
+    view = parse_text(GATE).to_networkx(Edge.TYPED_BY)
+    assert list(view.edges(data="kind")) == [("i", "m", Edge.TYPED_BY)]
+    assert view.nodes["i"] == {"kind": Kind.PORT, "name": "in"}
 
 
 def test_equal_graphs_have_no_difference():

@@ -117,7 +117,7 @@ def structures(draw: st.DrawFn) -> Graph:
             graph.connect(edge, source, draw(st.sampled_from(ids)))
     pools = (EDGES, ids, TARGETS)
     for found in draw(st.lists(st.tuples(*map(st.sampled_from, pools)), max_size=6)):
-        graph.refer(Reference(*found))
+        graph.pending.append(Reference(*found))
     return graph
 
 

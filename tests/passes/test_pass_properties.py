@@ -53,7 +53,7 @@ def test_resolving_does_not_depend_on_the_order_of_references(graph, random):
     random.shuffle(pending)
     shuffled.pending.clear()
     for reference in pending:
-        shuffled.refer(reference)
+        shuffled.pending.append(reference)
     results = []
     for one in (parse_text(text), shuffled):
         sink = Sink()

@@ -67,7 +67,7 @@ def _merge(part: Graph, graph: Graph, source: Source, coverage: Coverage) -> Non
         if edge is not Edge.OWNS:
             graph.connect(edge, start, end)
     for reference in part.pending:
-        graph.refer(reference)
+        graph.pending.append(reference)
 
 
 def _placed(element: Element, source: Source) -> Element:

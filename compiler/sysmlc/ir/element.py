@@ -3,14 +3,15 @@
 from sysmlc.ir.kinds import Kind
 
 AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
-"""What an attribute may hold: JSON values, with tuples for lists."""
+"""Value of an attribute: a JSON value, with tuples for lists."""
 
 
 class Element:
     """One element of the model. It has identity and is changed only through its ``Graph``.
 
-    ``source`` is the file, relative to the unit's root, and ``ordinal`` the place in document
-    order; what a pass made has the empty source and the attribute ``origin``.
+    ``owner`` is the id of the owner. ``source`` is the file, relative to the root of the compile
+    unit, and ``ordinal`` the position in document order. A derived element has no source; its
+    attribute ``origin`` is the id of the element that it is derived from.
     """
 
     __slots__ = ("attrs", "id", "kind", "name", "ordinal", "owner", "source")
@@ -38,10 +39,10 @@ class Element:
 
     @property
     def role(self) -> str:
-        """What ``classify`` found it to be ("block", "part", ...), or the empty string."""
+        """The role that the pass ``classify`` assigned ("block", "part", ...), or ""."""
         return str(self.attrs.get("role", ""))
 
     @property
     def subkind(self) -> str:
-        """Subdivision of its kind ("decision", "call-operation", ...), or the empty string."""
+        """The subdivision of the kind ("decision", "call-operation", ...), or ""."""
         return str(self.attrs.get("subkind", ""))

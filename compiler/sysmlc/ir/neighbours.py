@@ -1,114 +1,73 @@
-"""Neighbours of elements by edges of one kind, compact: most elements have one, some thousands."""
+"""Neighbours of elements along edges of one kind, in order of addition.
 
-from collections.abc import Iterable, Sequence
-from operator import attrgetter
-from typing import cast
+Most elements have one neighbour and a few have thousands. A set for each element would need more
+memory than the elements themselves.
+"""
 
 from sysmlc.ir.element import Element
 
 Neighbours = Element | list[Element] | dict[Element, None]
-"""One neighbour stands for itself; several are a list, many a dict, each in order of addition."""
+"""A single neighbour itself, several as a list, many as a dict."""
 
 Index = dict[str, Neighbours]
-"""Neighbours by the id of the element that they belong to; no entry where there is none."""
+"""Neighbours by the id of an element. An element without neighbours has no entry."""
 
-_ID = attrgetter("id")
-
-MANY = 16
-"""From here on a dict, so that neither a search nor a removal looks at all neighbours."""
+_LONGEST_LIST = 16
+"""Longer lists become dicts, because search and removal in a list take linear time."""
 
 
-def put(index: Index, id: str, neighbour: Element) -> bool:
-    """Add a neighbour; False when it is there already."""
-    known = index.get(id)
-    if known is None:
+def add_neighbour(index: Index, id: str, neighbour: Element) -> bool:
+    """Add a neighbour of the element *id*. Return False when the index has it already."""
+    neighbours = index.get(id)
+    if neighbours is None:
         index[id] = neighbour
-    elif isinstance(known, Element):
-        if known is neighbour:
+    elif isinstance(neighbours, Element):
+        if neighbours is neighbour:
             return False
-        index[id] = [known, neighbour]
-    elif neighbour in known:
+        index[id] = [neighbours, neighbour]
+    elif neighbour in neighbours:
         return False
-    elif isinstance(known, dict):
-        known[neighbour] = None
-    elif len(known) < MANY:
-        known.append(neighbour)
+    elif isinstance(neighbours, dict):
+        neighbours[neighbour] = None
+    elif len(neighbours) < _LONGEST_LIST:
+        neighbours.append(neighbour)
     else:
-        index[id] = dict.fromkeys((*known, neighbour))
+        index[id] = dict.fromkeys((*neighbours, neighbour))
     return True
 
 
-def put_new(index: Index, id: str, neighbour: Element) -> None:
-    """Add a neighbour that cannot be there: it was made just now."""
-    known = index.get(id)
-    if known is None:
-        index[id] = neighbour
-    elif isinstance(known, list):
-        known.append(neighbour)
-        if len(known) > MANY:
-            index[id] = dict.fromkeys(known)
-    elif isinstance(known, dict):
-        known[neighbour] = None
-    else:
-        index[id] = [known, neighbour]
-
-
-def together(neighbours: list[Element]) -> Neighbours:
-    """All neighbours of an element, which differ; the list is taken over."""
-    if len(neighbours) == 1:
-        return neighbours[0]
-    return neighbours if len(neighbours) <= MANY else dict.fromkeys(neighbours)
-
-
-def put_each_new(
-    index: Index, ones: Sequence[Element | None], neighbours: Sequence[Element | None]
-) -> bool:
-    """Add a neighbour of each of many that have none; False, and none is added, when one has."""
-    if not (all(ones) and all(neighbours)):
+def remove_neighbour(index: Index, id: str, neighbour: Element) -> bool:
+    """Remove a neighbour of the element *id*. Return False when the index does not have it."""
+    neighbours = index.get(id)
+    if neighbours is None:
         return False
-    ids, before = list(map(_ID, ones)), len(index)
-    if index and not index.keys().isdisjoint(ids):
-        return False
-    index.update(cast("Iterable[tuple[str, Element]]", zip(ids, neighbours, strict=True)))
-    if len(index) == before + len(ids):
-        return True
-    for id in set(ids):
-        del index[id]
-    return False
-
-
-def drop(index: Index, id: str, neighbour: Element) -> bool:
-    """Remove a neighbour; False when it is not there."""
-    known = index.get(id)
-    if known is None:
-        return False
-    if isinstance(known, Element):
-        if known is not neighbour:
+    if isinstance(neighbours, Element):
+        if neighbours is not neighbour:
             return False
         del index[id]
         return True
-    if neighbour not in known:
+    if neighbour not in neighbours:
         return False
-    if isinstance(known, dict):
-        del known[neighbour]
+    if isinstance(neighbours, dict):
+        del neighbours[neighbour]
     else:
-        known.remove(neighbour)
-    if not known:
+        neighbours.remove(neighbour)
+    if not neighbours:
         del index[id]
     return True
 
 
-def every(index: Index, id: str) -> list[Element]:
-    """All neighbours, in order of addition."""
-    known = index.get(id)
-    if known is None:
+def list_neighbours(index: Index, id: str) -> list[Element]:
+    """Return all neighbours of the element *id*."""
+    neighbours = index.get(id)
+    if neighbours is None:
         return []
-    return [known] if isinstance(known, Element) else list(known)
+    return [neighbours] if isinstance(neighbours, Element) else list(neighbours)
 
 
-def first(index: Index, id: str) -> Element | None:
-    """The neighbour that was added first, or None."""
-    known = index.get(id)
-    if known is None or isinstance(known, Element):
-        return known
-    return next(iter(known))
+def first_neighbour(index: Index, id: str) -> Element | None:
+    """Return the neighbour of the element *id* that was added first, or None."""
+    neighbours = index.get(id)
+    if neighbours is None or isinstance(neighbours, Element):
+        return neighbours
+    return next(iter(neighbours))

@@ -133,7 +133,7 @@ class _Parser:
         else:
             target, kind = scanner.word(), scanner.enum(Kind)
             name = "" if scanner.at_end() else scanner.string()
-            self._graph.refer(Reference(edge, source, target, kind, name))
+            self._graph.pending.append(Reference(edge, source, target, kind, name))
 
     def _element(self, scanner: "_Scanner", indent: int) -> None:
         kind, id = scanner.enum(Kind), scanner.word()

@@ -11,7 +11,6 @@ from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.types import Missing, Type, Types
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
 from sysmlc.ir import AttrValue, Element, Graph, Kind
-from sysmlc.ir.shared import NOTHING, Shared
 
 Provide = Callable[["Context", Family, str], bool]
 """Adds a standard library to the graph; says whether there is one of that name."""
@@ -83,7 +82,7 @@ class Context:
             key: value for key, value in attrs.items() if value not in (None, "", ())
         }
         element = self.add_at(kind, document, node.row, owner, id)
-        element.attrs = {**element.attrs, **given}
+        element.attrs.update(given)
         return element
 
     def add_at(
@@ -93,7 +92,7 @@ class Context:
         row: int,
         owner: str | None,
         id: str = "",
-        attrs: dict[str, AttrValue] = NOTHING,
+        attrs: dict[str, AttrValue] | None = None,
     ) -> Element:
         """Add the element of a row."""
         name, ordinal = document.attributes[row].get("Name", ""), document.ordinals[row]
@@ -103,11 +102,10 @@ class Context:
                 id = self.id_at(document, row, owner)
         source = document.name
         if document.is_built_in:
-            source, ordinal, attrs = "", -1, Shared({**_BUILT_IN, **attrs})
-        element = self.graph.new(id, kind, name, owner, ordinal, source, attrs)
-        if element is None:
+            source, ordinal, attrs = "", -1, {**_BUILT_IN, **(attrs or {})}
+        if id in self.graph:
             id = self.free(id, document.node(row))
-            element = self.graph.add(Element(id, kind, name, owner, ordinal, source, attrs))
+        element = self.graph.add(Element(id, kind, name, owner, ordinal, source, {**(attrs or {})}))
         document.elements[row] = id
         document.verdicts[row] = _MAPPED
         return element

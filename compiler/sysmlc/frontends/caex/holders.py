@@ -4,16 +4,15 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.shared import Shared
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 # To look a member of an enumeration up takes twice as long as to look these up.
 _INSTANCE = Kind.INSTANCE
 _REPRESENTS = Edge.REPRESENTS
 
-_CLASS = Shared(subkind="internal-element", role="block")
-_PART = Shared(aggregation="composite", role="part")
-_VALUES = Shared(subkind="part")
+_CLASS: dict[str, AttrValue] = {"subkind": "internal-element", "role": "block"}
+_PART: dict[str, AttrValue] = {"aggregation": "composite", "role": "part"}
+_VALUES: dict[str, AttrValue] = {"subkind": "part"}
 
 
 def own(context: Context, site: Site) -> Type:
@@ -36,17 +35,19 @@ def own(context: Context, site: Site) -> Type:
 
 
 def _add(
-    context: Context, site: Site, id: str, kind: Kind, owner: str | None, attrs: Shared
+    context: Context,
+    site: Site,
+    id: str,
+    kind: Kind,
+    owner: str | None,
+    attrs: dict[str, AttrValue],
 ) -> Element:
     """An element that stands for an internal element beside the one that has its ID."""
     document = site.document
     ordinal = document.ordinals[site.row]
-    made = context.graph.new(id, kind, site.name, owner, ordinal, document.name, attrs)
-    if made is None:
+    if id in context.graph:
         id = context.free(id, site.node)
-        made = Element(id, kind, site.name, owner, ordinal, document.name, attrs)
-        context.graph.add(made)
-    return made
+    return context.graph.add(Element(id, kind, site.name, owner, ordinal, document.name, {**attrs}))
 
 
 def _redefine_part(context: Context, site: Site, above: Site, type_: Element) -> None:
@@ -95,7 +96,7 @@ def _add_instance(context: Context, site: Site) -> None:
     document = site.document
     id = context.id_at(document, site.row, owner) if site.is_known else f"{site.part}#values"
     made = _add(context, site, id, _INSTANCE, owner, _VALUES)
-    context.graph.connect_new(_REPRESENTS, made, context.graph[site.part])
+    context.graph.connect(_REPRESENTS, made, site.part)
     site.instance, site.instance_made = made.id, made
     if site.is_known:
         document.elements[site.row] = made.id

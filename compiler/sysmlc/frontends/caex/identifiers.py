@@ -6,7 +6,6 @@ from itertools import compress
 
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.paths import plain
-from sysmlc.ir.tables import large_table
 
 Place = tuple[Document, Node]
 """A node and the file that it stands in."""
@@ -34,7 +33,7 @@ class Identifiers:
 
     def _know(self, written: list[str]) -> None:
         rows = compress(range(len(written)), written)
-        numbers: dict[str, int] = large_table()
+        numbers: dict[str, int] = {}
         numbers.update(zip(filter(None, written), rows, strict=True))
         if len(numbers) < len(written) - written.count(""):
             numbers = {}

@@ -47,7 +47,8 @@ class Links:
                 for row in document.children(0):
                     if (document.tags[row] == "InstanceHierarchy") is are_instances:
                         self._lower_below(row, document)
-        self._context.graph.connect_each(Edge.ROLE, self._ends, self._ports)
+        for end, port in zip(self._ends, self._ports, strict=True):
+            self._context.graph.connect(Edge.ROLE, end, port)
 
     def _lower_below(self, top: int, document: Document) -> None:
         sites, direct = self._sites.rows(document), self._sides.direct
@@ -123,16 +124,17 @@ class Links:
         halves: list[Element] = []
         for side, (port, site) in zip(SIDES, ends, strict=True):
             id = f"{above}#{side}"
-            made = graph.new(id, _CONNECTOR_END, "", above, ordinal, source)
-            if made is None:
+            if id in graph:
                 id = f"{id}~{ordinal}"
-                made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
+            made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
             halves.append(made)
             self._ports.append(graph[port])
             steps, has_top = self._steps_to(site), bool(site.root.instance)
-            graph.connect_fan(_PATH, made, steps[1 if has_top and not crosses else 0 :])
+            for step in steps[1 if has_top and not crosses else 0 :]:
+                graph.connect(_PATH, made, step)
         self._ends += halves
-        graph.connect_fan(_END, connector, halves)
+        for half in halves:
+            graph.connect(_END, connector, half)
 
     def _steps_to(self, site: Site) -> list[Element]:
         """The Instance at the top (if any), and the parts that lead down to an element."""

@@ -8,8 +8,7 @@ from sysmlc.frontends.caex.datatypes import PRIMITIVES, local
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE
-from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.reference import End
+from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 _HREFS = {name: _PRIMITIVE_TYPES + name for name in ("String", *PRIMITIVES.values())}
@@ -75,10 +74,11 @@ def primitive(data_type: str) -> str:
     return PRIMITIVES.get(local(data_type), "String")
 
 
-def refer(context: Context, edge: Edge, source: End, data_type: str, ordinal: int) -> None:
+def refer(context: Context, edge: Edge, source: str, data_type: str, ordinal: int) -> None:
     """Refer to the UML primitive of an XML Schema data type."""
     name = primitive(data_type)
-    context.graph.pending.add(edge, source, _HREFS[name], Kind.DATA_TYPE, name, ordinal)
+    reference = Reference(edge, source, _HREFS[name], Kind.DATA_TYPE, name, ordinal)
+    context.graph.pending.append(reference)
 
 
 def is_unit(text: str) -> bool:

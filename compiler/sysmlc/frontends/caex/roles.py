@@ -10,7 +10,7 @@ from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge, Element
+from sysmlc.ir import Edge
 
 # To look a member of an enumeration up takes twice as long as to look these up.
 _MAPPED = Verdict.MAPPED
@@ -24,8 +24,7 @@ def lower(context: Context, sites: Sites) -> None:
     Classes are the first among the sites: instances need not repeat what they realise.
     """
     played = _Played()
-    clients: list[str] = []
-    realized: list[Element | None] = []
+    realizations: list[tuple[str, str]] = []
     for site in sites:
         if site.type is None:
             continue
@@ -38,12 +37,11 @@ def lower(context: Context, sites: Sites) -> None:
                 _play(context, site, ppr, played)
             if is_port:
                 _be_port(context, site)
-            clients.append(_client(context, site))
-            realized.append(context.graph[role.id])
+            realizations.append((_client(context, site), role.id))
             if site.own is not None:
                 played.add(site.own, role)
-    graph = context.graph
-    graph.connect_each(Edge.REALIZES, graph.find_all(clients), realized)
+    for client, role_class in realizations:
+        context.graph.connect(Edge.REALIZES, client, role_class)
 
 
 class _Played:

@@ -10,7 +10,6 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.paths import split
 from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.sites import Sites
-from sysmlc.ir.tables import large_table
 
 SIDES = {"A": "RefPartnerSideA", "B": "RefPartnerSideB"}
 
@@ -40,7 +39,7 @@ class Sides:
         self._sites = sites
         self._spot = context.ids.spot
         self._rows = sites.rows
-        self._direct: dict[str, End] = large_table()
+        self._direct: dict[str, End] = {}
         self._named: dict[Node, dict[str, Node]] = {}
         self._below: dict[Node, dict[str, list[Node]]] = {}
 

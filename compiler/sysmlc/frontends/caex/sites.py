@@ -10,16 +10,15 @@ from sysmlc.frontends.caex.holders import instance, own
 from sysmlc.frontends.caex.site import NO_IDS, NO_ROWS, Site
 from sysmlc.frontends.caex.types import Member, Type, member
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.shared import Shared
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 
 # To look a member of an enumeration up takes twice as long as to look these up.
 _MAPPED = Verdict.MAPPED
 _PROPERTY = Kind.PROPERTY
 _SYSTEM_UNIT = Family.SYSTEM_UNIT
 
-_REFERENCE = Shared(role="reference")
-_PART = Shared(role="part", aggregation="composite")
+_REFERENCE: dict[str, AttrValue] = {"role": "reference"}
+_PART: dict[str, AttrValue] = {"role": "part", "aggregation": "composite"}
 
 _MEMBERS = frozenset({"Attribute", "ExternalInterface"})
 
@@ -188,24 +187,18 @@ class Sites:
     def _tie(self) -> None:
         """Tie the elements of each site to its type, and let one of them have its IDs."""
         graph, types = self._context.graph, _Elements(self._context.graph)
-        instances, classes = list[Element](), list[Element]()
-        parts, kinds = list[Element](), list[Element]()
         for site in self._all:
             type = types[site.own or site.declared]
             one = self.instance(site) if site.instance else None
             other = self.part(site) if site.part and not site.is_known else None
             if type is not None and one is not None:
-                instances.append(one)
-                classes.append(type)
+                graph.connect(Edge.INSTANCE_OF, one, type)
             if type is not None and other is not None:
-                parts.append(other)
-                kinds.append(type)
+                graph.connect(Edge.TYPED_BY, other, type)
             holder = one or other
             if site.interface_ids and holder is not None:
                 graph.set(holder, interface_ids=tuple(site.interface_ids))
                 site.interface_ids = NO_IDS
-        graph.connect_each(Edge.INSTANCE_OF, instances, classes)
-        graph.connect_each(Edge.TYPED_BY, parts, kinds)
 
     def part(self, site: Site) -> Element | None:
         """The part that stands for an internal element in the class above."""

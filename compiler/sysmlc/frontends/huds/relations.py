@@ -36,7 +36,7 @@ def relate(file: _File, record: Record, element: Element | None) -> None:
 
 
 def _refer(file: _File, edge: Edge, source: str, id: str) -> None:
-    file.graph.refer(Reference(edge, source, file.target(id)))
+    file.graph.pending.append(Reference(edge, source, file.target(id)))
 
 
 def _ends(file: _File, record: Record, element: Element) -> None:

@@ -133,7 +133,7 @@ class Lowering(Verdicts):
                 self.work()
         for source, general in self._generals if self._waits else ():
             self.graph.disconnect(Edge.SPECIALIZES, source, general)
-            self.graph.refer(Pending(Edge.SPECIALIZES, source.id, general.id))
+            self.graph.pending.append(Pending(Edge.SPECIALIZES, source.id, general.id))
 
     def work(self) -> None:
         """Do what waits for elements, and what that brings with it."""
@@ -169,9 +169,7 @@ class Lowering(Verdicts):
         source, ordinal = ("", -1) if home is None else (home.path, home.ordinal(node))
         id_ = self._names.give(kind, name, owner, source)
         above = None if owner is None else owner.id
-        made = self.graph.new(id_, kind, name, above, ordinal, source, _said(attrs))
-        if made is None:
-            raise ValueError(f"id {id_!r} is taken")
+        made = self.graph.add(Element(id_, kind, name, above, ordinal, source, _said(attrs)))
         self.seen.add(id(node))
         self._brought[made.id] = node
         return made
@@ -191,10 +189,7 @@ class Lowering(Verdicts):
     def _new(self, at: Element, kind: Kind, name: str, owner: Element | None) -> Element:
         id_ = self._names.give(kind, name, owner, at.source)
         above = None if owner is None else owner.id
-        made = self.graph.new(id_, kind, name, above, at.ordinal, at.source, {})
-        if made is None:
-            raise ValueError(f"id {id_!r} is taken")
-        return made
+        return self.graph.add(Element(id_, kind, name, above, at.ordinal, at.source))
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Give attributes to an element; those that say nothing are left out."""
@@ -240,7 +235,7 @@ class Lowering(Verdicts):
             self._waits = True
             self._generals.clear()
         target = self._stubs.get(name) or self._stub(kind, name)
-        self.graph.pending.add(edge, source.id, target, kind, name)
+        self.graph.pending.append(Pending(edge, source.id, target, kind, name))
         if edge is Edge.TYPED_BY and name in stubs.SCALARS:
             self._scalars.setdefault(source.id, []).append((name, kind))
 

@@ -209,7 +209,7 @@ def _join(
         if found is None:
             low.lead(edge, made, None)
         else:
-            low.graph.connect_new(edge, made, found)
+            low.graph.connect(edge, made, found)
 
 
 def vertex(

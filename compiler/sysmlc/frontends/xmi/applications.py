@@ -6,7 +6,7 @@ from sysmlc.frontends.xmi.behaviour import references
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.enterprise_architect.profiles import stereotype_of
 from sysmlc.frontends.xmi.unit import Lowered
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 
 _BASE = "base_"
@@ -118,13 +118,12 @@ def _element(context: Context, row: int, owner: str | None) -> Element:
     id = document.id(row)
     known = context.unit.graph_id(document.name, id) if id else ""
     ordinal = document.ordinals[row]
-    add = context.graph.new
-    element = add(known, Kind.APPLICATION, name, owner, ordinal, document.name)
-    if element is None:
-        derived = derived_id(owner or document.name, f"{name}[{ordinal}]")
-        element = Element(derived, Kind.APPLICATION, name, owner, ordinal, document.name)
-        context.graph.add(element)
-    element.attrs = {"stereotype": name, "namespace": namespace}
+    if not known or known in context.graph:
+        known = derived_id(owner or document.name, f"{name}[{ordinal}]")
+    attrs: dict[str, AttrValue] = {"stereotype": name, "namespace": namespace}
+    element = context.graph.add(
+        Element(known, Kind.APPLICATION, name, owner, ordinal, document.name, attrs)
+    )
     context.gids[row] = element.id
     if stereotype is not None:
         context.graph.connect(Edge.INSTANCE_OF, element, stereotype)

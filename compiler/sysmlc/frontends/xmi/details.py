@@ -76,7 +76,7 @@ def _trigger(context: Context, element: Element, row: int, _type_name: str, feat
     if feature == "deferrableTrigger":
         element.attrs["deferred"] = True
     elif owner is not None:
-        context.graph.connect_new(Edge.TRIGGER, owner, element)
+        context.graph.connect(Edge.TRIGGER, owner, element)
 
 
 def _connector_end(
@@ -84,7 +84,7 @@ def _connector_end(
 ) -> None:
     owner = context.owner(row)
     if owner is not None:
-        context.graph.connect_new(Edge.END, owner, element)
+        context.graph.connect(Edge.END, owner, element)
     context.ends.append((element, row))
 
 

@@ -9,7 +9,7 @@ from sysmlc.passes.resolve.ends import keep_first_ends
 from sysmlc.passes.resolve.lost import report_lost
 from sysmlc.passes.resolve.missing import report_libraries
 from sysmlc.passes.resolve.targets import Targets
-from sysmlc.passes.resolve.uses import Need, Use, attributes, needs
+from sysmlc.passes.resolve.uses import Use, attributes, needs, use_of
 from sysmlc.values import dataclass
 
 
@@ -30,34 +30,32 @@ class Resolve:
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Resolve in place; see the class."""
-        pending = graph.pending
-        targets = graph.find_all(pending.targets)
         held = [*attributes(graph)]
         answers = Answers(graph, Targets(graph))
-        needed = needs(graph, targets, held)
-        answers.find(needed)
-        lost = _answer(answers, needed, targets)
+        answers.find(needs(graph, held))
+        lost = _connect(graph, answers)
         lost += [use for use in held if answers.get(use.holder.source, use.target) is None]
-        graph.connect_all(pending.edges, pending.sources, targets)
         report_lost(graph, sink, lost)
         keep_first_ends(graph, sink)
         _rewrite(graph, answers, held)
         missing = {h: of_it for h, of_it in answers.outside.items() if h not in answers.known}
         report_libraries(graph, sink, missing)
-        pending.clear()
+        graph.pending.clear()
 
 
-def _answer(answers: Answers, needed: list[Need], targets: list[Element | None]) -> list[Use]:
-    """Fill in what was found; the references of which nothing was, in order."""
-    lost: dict[int, Use] = {}
-    for need in needed:
-        found = answers.get(need.file, need.target)
-        if found is None:
-            lost.update((number, need.use(number)) for number in need.numbers)
+def _connect(graph: Graph, answers: Answers) -> list[Use]:
+    """Turn the pending references into edges. Return those without a target, in order."""
+    lost: list[Use] = []
+    for reference in graph.pending:
+        source = graph.get(reference.source)
+        if source is None:
+            continue
+        target = graph.get(reference.target) or answers.get(source.source, reference.target)
+        if target is None:
+            lost.append(use_of(source, reference))
         else:
-            for number in need.numbers:
-                targets[number] = found
-    return [lost[number] for number in sorted(lost)]
+            graph.connect(reference.edge, source, target)
+    return lost
 
 
 def _rewrite(graph: Graph, answers: Answers, held: list[Use]) -> None:

@@ -9,8 +9,6 @@ _ENDS = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 
 def keep_first_ends(graph: Graph, sink: Sink) -> None:
     """Leave each flow and transition its first source and target; report where others go."""
-    if not any(graph.has_several(edge) for edge in _ENDS):
-        return
     for flow in graph.of_kind(Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION):
         for edge in _ENDS:
             ends = graph.targets(flow, edge)

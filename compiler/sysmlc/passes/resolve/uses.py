@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from dataclasses import field
 from typing import NamedTuple
 
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.query import ids_in
-from sysmlc.ir.reference import id_of
 from sysmlc.values import dataclass
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
@@ -22,9 +21,6 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.STRUCTURED: dict.fromkeys(("test", "body_part", "setup_part", "clauses"), Kind.ACTION),
 }
 """Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
-
-_UNSAID = (Kind.CLASS, "")
-"""What a reference says of its target that says nothing of it."""
 
 
 class Use(NamedTuple):
@@ -56,57 +52,43 @@ class Need:
     target: str
     kind: Kind
     path: str
-    numbers: list[int] = field(default_factory=list)
-    """The references among them: most are only counted, so that each has no ``Use`` of its own."""
+    references: list[Reference] = field(default_factory=list)
+    """The pending references among the places."""
     held: list[Use] = field(default_factory=list)
-    """The attributes among them."""
+    """The attributes among the places."""
 
     def uses(self) -> list[Use]:
-        """All places."""
-        return [*map(self.use, self.numbers), *self.held]
-
-    def use(self, number: int) -> Use:
-        """The place of a reference."""
-        pending = self.graph.pending
-        holder = self.graph[id_of(pending.sources[number])]
-        edge, ordinal = pending.edges[number], pending.ordinals[number]
-        return Use(holder, self.target, self.kind, self.path, ordinal, edge)
+        """Return all places."""
+        return [use_of(self.graph[r.source], r) for r in self.references] + self.held
 
     def first(self) -> Use:
-        """The place that comes first, whatever was read first."""
-        ordinals = self.graph.pending.ordinals
-        least = min(map(ordinals.__getitem__, self.numbers), default=-1)
-        if least < 0 or self.held:
-            return min(self.uses(), key=Use.place)
-        first = (number for number in self.numbers if ordinals[number] == least)
-        return min(map(self.use, first), key=Use.place)
+        """Return the first place in the unit, whatever the order in which files are read."""
+        return min(self.uses(), key=Use.place)
 
 
-def needs(graph: Graph, targets: list[Element | None], held: list[Use]) -> list[Need]:
-    """What references need whose target is no id of the graph, and what attributes need."""
-    pending, found = graph.pending, _Needs(graph)
-    numbers = [number for number, target in enumerate(targets) if target is None]
-    holders = graph.find_all(pending.sources[number] for number in numbers)
-    for number, holder in zip(numbers, holders, strict=True):
-        target = pending.targets[number]
-        if holder is not None and isinstance(target, str):
-            kind, path = pending.said.get(number, _UNSAID)
-            found[holder.source, target, kind, path].numbers.append(number)
+def use_of(holder: Element, reference: Reference) -> Use:
+    """Return the place of a pending reference that leaves *holder*."""
+    edge, _, target, kind, path, ordinal = reference
+    return Use(holder, target, kind, path, ordinal, edge)
+
+
+def needs(graph: Graph, held: list[Use]) -> list[Need]:
+    """Group places by file, target and description of the target.
+
+    These are the pending references whose target is no id of the graph, and all attributes.
+    """
+    groups: dict[tuple[str, str, Kind, str], Need] = {}
+    for reference in graph.pending:
+        holder = graph.get(reference.source)
+        if holder is not None and reference.target not in graph:
+            key = (holder.source, reference.target, reference.kind, reference.name)
+            if key not in groups:
+                groups[key] = Need(graph, *key)
+            groups[key].references.append(reference)
     for use in held:
-        found[use.holder.source, use.target, use.kind, use.path].held.append(use)
-    return list(found.values())
-
-
-class _Needs(dict[tuple[str, str, Kind, str], Need]):
-    """By file, target and what is said of it."""
-
-    def __init__(self, graph: Graph) -> None:
-        super().__init__()
-        self._graph = graph
-
-    def __missing__(self, key: tuple[str, str, Kind, str]) -> Need:
-        made = self[key] = Need(self._graph, *key)
-        return made
+        key = (use.holder.source, use.target, use.kind, use.path)
+        groups.setdefault(key, Need(graph, *key)).held.append(use)
+    return list(groups.values())
 
 
 def attributes(graph: Graph) -> Iterator[Use]:

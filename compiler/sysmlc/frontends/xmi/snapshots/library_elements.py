@@ -130,7 +130,7 @@ class LibraryElements:
                 self._graph.connect(edge, source, known)
             elif known != target:
                 name = known.rpartition("#")[2]
-                self._graph.refer(Reference(edge, source.id, known, Kind.CLASS, name))
+                self._graph.pending.append(Reference(edge, source.id, known, Kind.CLASS, name))
             else:
                 _note_unresolved(self._graph, source, edge)
 
