@@ -12,6 +12,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -20,8 +21,6 @@ from gr1_grid import holistic
 from gr1_peers import FORMS, Peer
 from measuring import Report
 from xmi import slowness
-
-from sysmlc.values import dataclass
 
 PEER_LIMIT = 60.0
 DIN = "din8580"

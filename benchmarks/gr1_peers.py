@@ -3,13 +3,13 @@
 import resource
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 from gr1_work import read
 
 from sysmlc.logic import formats
 from sysmlc.logic.reduction.reduce import reduced
-from sysmlc.values import dataclass
 
 FORMS = {"gr1c": ("gr1c", ("-r",)), "slugs": ("slugsin", ())}
 """The form that a program reads, and its options to decide only."""

@@ -13,6 +13,7 @@ import sys
 import time
 
 from measuring import Report
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
@@ -24,7 +25,6 @@ from sysmlc.robots.system import system_contract
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.synthesise import Synthesis, synthesised
-from sysmlc.values import replace
 
 ROWS = {
     (3, 2, 2): ("20.36", "6.85", "0.01"),

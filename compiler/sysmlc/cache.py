@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from secrets import token_hex
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 VARIABLE = "SYSMLC_CACHE"
 """Environment variable: another folder for the cache, or ``off``."""
@@ -36,8 +36,7 @@ class CacheError(Exception):
     """The folder must not be used as a cache; the message says why and what to do."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cache:
+class Cache(Struct, frozen=True):
     """Entries of bytes in a folder; the least recently used are evicted above ``limit`` bytes."""
 
     folder: Path

@@ -2,9 +2,10 @@
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
+
+from msgspec import Struct, field
 
 from sysmlc import resources
 from sysmlc.diagnostics import Severity
@@ -14,7 +15,6 @@ from sysmlc.sources.limits import DOCUMENT_LIMITS
 from sysmlc.sources.whole import read_whole
 from sysmlc.suggest import did_you_mean
 from sysmlc.toml_text import TomlError, parse_toml
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError
@@ -34,8 +34,7 @@ class ConfigError(Exception):
     """The configuration cannot be used; the message says where and why."""
 
 
-@dataclass(frozen=True, slots=True)
-class ModelUnit:
+class ModelUnit(Struct, frozen=True):
     """One ``[[model]]``: files that are compiled together, and where their outputs go."""
 
     name: str
@@ -44,8 +43,7 @@ class ModelUnit:
     emit: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Config:
+class Config(Struct, frozen=True):
     """What a project chose; ``folder`` is where its file stands, None when there is none.
 
     Paths of the file may not lead out of ``root``, the project root of the file.

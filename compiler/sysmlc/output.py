@@ -6,16 +6,16 @@ import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PureWindowsPath
 
+from msgspec import Struct
+
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _TEMPORARY = pattern(r"\.sysmlc-[0-9a-f]{16}")
 _MODE = 0o644
 """Who may read and write a new file, as far as the user's mask lets them."""
 
 
-@dataclass(frozen=True, slots=True)
-class Artefact:
+class Artefact(Struct, frozen=True):
     """One file that a back end makes.
 
     ``path`` is relative to the output folder, with ``/``; ``trace`` names the elements (ids)

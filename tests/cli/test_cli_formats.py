@@ -1,10 +1,10 @@
 """Findings in each form."""
 
 import json
-from dataclasses import replace
 
 import pytest
 from jsonschema import Draft202012Validator
+from msgspec.structs import replace
 
 from json_documents import SARIF
 from sysmlc import resources

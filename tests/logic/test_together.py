@@ -5,6 +5,7 @@ import random
 from activity_models import activity, rich, tokens_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from sysmlc.logic import evaluate
 from sysmlc.logic import formula as f
@@ -16,7 +17,6 @@ from sysmlc.logic.activities.value_analysis import Spread
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Const, Op
-from sysmlc.values import replace
 
 RANGE = IntegerDomain(0, 3)
 X = f.var("x")

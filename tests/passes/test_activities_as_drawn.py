@@ -14,6 +14,7 @@ from drawn_activities import (
     is_over,
     start,
 )
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
@@ -26,7 +27,6 @@ from sysmlc.logic.evaluate import has_primes
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.values import replace
 
 ROUNDS = 10
 EACH = 36

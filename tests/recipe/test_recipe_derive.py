@@ -1,7 +1,8 @@
 """What follows from a model: same-machine groups, sub-tasks, and that a stale file is noticed."""
 
-from dataclasses import replace
 from itertools import pairwise
+
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.recipe.derive import derive

@@ -4,6 +4,7 @@ from functools import partial
 
 import pytest
 from listed_floor import STAY, Listed
+from msgspec.structs import replace
 from small_floors import floor
 
 from sysmlc.logic.formula import variables
@@ -19,7 +20,6 @@ from sysmlc.robots.travel import shortest
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decide import Options
-from sysmlc.values import replace
 
 FLOORS = {
     "one cell": floor(1, None),

@@ -7,6 +7,7 @@ from itertools import permutations
 
 import pytest
 from greedy_machine import greedy_answers
+from msgspec.structs import replace
 from small_floors import floor
 from test_robot_simulation import some_floor
 
@@ -22,7 +23,6 @@ from sysmlc.robots.study import STAY, WAYS
 from sysmlc.robots.system import system_contract
 from sysmlc.robots.world import World
 from sysmlc.synthesis.decide import Options
-from sysmlc.values import replace
 
 
 class Told(World):

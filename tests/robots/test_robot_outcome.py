@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from greedy_machine import greedy_answers
+from msgspec.structs import replace
 from small_floors import floor
 
 from sysmlc.diagnostics import Sink, Subject
@@ -19,7 +20,6 @@ from sysmlc.robots.travel import shortest
 from sysmlc.robots.validate import validate
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.decide import Options, decide
-from sysmlc.values import replace
 
 DOCS = Path(__file__).parents[2] / "docs"
 

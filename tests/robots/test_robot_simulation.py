@@ -5,6 +5,7 @@ from itertools import permutations
 
 import pytest
 from greedy_machine import greedy_answers
+from msgspec.structs import replace
 from plain_world import Plain
 from small_floors import floor
 
@@ -16,7 +17,6 @@ from sysmlc.robots.simulation import Simulation
 from sysmlc.robots.starts import chunks
 from sysmlc.robots.validate import symbolic, validate
 from sysmlc.robots.world import World
-from sysmlc.values import replace
 
 STEPS = 60
 

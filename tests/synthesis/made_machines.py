@@ -4,6 +4,7 @@ import random
 
 import networkx as nx
 from explicit import rules, valuations
+from msgspec.structs import replace
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Owner
@@ -18,7 +19,6 @@ from sysmlc.synthesis.games.derived import without_derived
 from sysmlc.synthesis.games.shift import shifted
 from sysmlc.synthesis.games.solve import solve_arena
 from sysmlc.synthesis.synthesise import Form, made
-from sysmlc.values import replace
 
 
 def planned(contract, engine="", is_encoded=True):

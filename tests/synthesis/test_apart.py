@@ -2,6 +2,7 @@
 
 from contracts_in_lines import contract
 from made_machines import said
+from msgspec.structs import replace
 
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
@@ -9,7 +10,6 @@ from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.controllers.side_by_side import apart
 from sysmlc.synthesis.controllers.table import tabled
 from sysmlc.synthesis.games.apart import independent
-from sysmlc.values import replace
 
 LAMP = """
 env ask: bool

@@ -7,6 +7,7 @@ import pytest
 import small_games
 from contracts_in_lines import contract
 from explicit import Explicit
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
@@ -14,7 +15,6 @@ from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.decide import Options, decide
 from sysmlc.synthesis.unrealizable import core
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
-from sysmlc.values import replace
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 LIFT = """

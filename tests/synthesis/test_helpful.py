@@ -2,6 +2,7 @@
 
 from contracts_in_lines import contract
 from explicit import Explicit
+from msgspec.structs import replace
 from small_games import contract as random_contract
 
 from sysmlc.logic.printing import print_formula
@@ -9,7 +10,6 @@ from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.unrealizable.core import is_won
 from sysmlc.synthesis.unrealizable.helpful import helpful_assumptions
 from sysmlc.synthesis.unrealizable.reasons import reasons_of
-from sysmlc.values import replace
 
 TURN = """
     env wanted: 0..2

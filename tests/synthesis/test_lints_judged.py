@@ -3,6 +3,7 @@
 import pytest
 from explicit import Explicit, rules
 from listed_runs import Listed
+from msgspec.structs import replace
 from small_games import contract as random_contract
 
 from sysmlc.diagnostics import Sink, Subject
@@ -12,7 +13,6 @@ from sysmlc.logic.contract import Class, Conjunct, IntegerDomain, Owner
 from sysmlc.logic.formula import Const, Var
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.lints import lint
-from sysmlc.values import replace
 
 DECIDED = {"SM533", "SM534", "SM535", "SM536", "SM538", "SM541", "SM542"}
 

@@ -6,6 +6,7 @@ import made_machines as machines
 import pytest
 import small_games
 from contracts_in_lines import contract
+from msgspec.structs import replace
 
 from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import TRUE, Const, Var
@@ -21,7 +22,6 @@ from sysmlc.synthesis.controllers.settled import settled
 from sysmlc.synthesis.controllers.strategy import strategy
 from sysmlc.synthesis.games.arena import nodes
 from sysmlc.synthesis.synthesise import Form
-from sysmlc.values import replace
 
 SUITE = 200
 KINDS = [small_games.contract, small_games.plant]

@@ -3,12 +3,12 @@
 import pytest
 from contracts_in_lines import contract
 from explicit import Explicit
+from msgspec.structs import replace
 
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Manager, OutsideGr1Error
 from sysmlc.synthesis.algebra.relations import refinement_failures
 from sysmlc.synthesis.algebra.viewpoints import conjunction, viewpoints
-from sysmlc.values import replace
 
 VARIABLES = "env power: bool\nenv door: bool\nsys lit: bool\n"
 POWERED = "assume always power'\nassume at first power\npromise always lit' -> power'"

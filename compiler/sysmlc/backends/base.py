@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class InputFile:
+class InputFile(Struct, frozen=True):
     """One input as the outputs name it: path relative to the unit's root, and its SHA-256."""
 
     path: str
@@ -32,8 +32,7 @@ DIAGRAMS = ("derived", "author", "both")
 DERIVED, AUTHOR, BOTH = DIAGRAMS
 
 
-@dataclass(frozen=True, slots=True)
-class EmitOptions:
+class EmitOptions(Struct, frozen=True):
     """What the user asked of the back ends, and what they may ask of the driver."""
 
     templates: Path | None = None

@@ -9,12 +9,13 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Node
@@ -25,8 +26,7 @@ _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _IR = "urn:sysmlc:ir:1"
 
 
-@dataclass(frozen=True, slots=True)
-class EcoreBackend:
+class EcoreBackend(Struct, frozen=True):
     """Writes ``graph.xmi``, an instance of our own metamodel."""
 
     name: str = "ecore"

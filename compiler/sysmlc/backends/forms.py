@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.trace import trace
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
@@ -12,7 +14,6 @@ from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.logic.printing import print_formula
 from sysmlc.naming import file_names
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 _LAMP = """\
 Class c "Lamp"
@@ -50,8 +51,7 @@ Split = Callable[[str], dict[str, str]]
 """A text as the files that it is, by their endings."""
 
 
-@dataclass(frozen=True, slots=True)
-class FormBackend:
+class FormBackend(Struct, frozen=True):
     """Writes every contract in the forms of one tool, each with the ending of its files."""
 
     name: str

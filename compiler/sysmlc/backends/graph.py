@@ -1,14 +1,14 @@
 """Back end ``graph``: the whole graph as ``graph.json``, for other programs."""
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.output import Output, encode_json
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class GraphBackend:
+class GraphBackend(Struct, frozen=True):
     """Writes elements sorted by qualified name and ordinal, and edges in their order."""
 
     name: str = "graph"

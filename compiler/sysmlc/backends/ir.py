@@ -1,15 +1,15 @@
 """Back end ``ir``: the refined graph in its text form, for people and golden tests."""
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import print_text
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class IrBackend:
+class IrBackend(Struct, frozen=True):
     """Writes what ``parse_text`` reads back."""
 
     name: str = "ir"

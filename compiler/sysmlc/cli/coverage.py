@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from msgspec.structs import replace
 
 from sysmlc.cli import options
-from sysmlc.values import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

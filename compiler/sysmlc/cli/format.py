@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from msgspec import Struct
 
 from sysmlc.escapes import escape_undecodable
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.diagnostics.render import Finding
@@ -19,8 +19,7 @@ _LANGUAGES = ("sysml", "kerml")
 _WRITABLE = 0o222
 
 
-@dataclass(frozen=True, slots=True)
-class _Text:
+class _Text(Struct, frozen=True):
     """A file, or standard input (no path), as it is and as it is to be; None with errors in it."""
 
     name: str

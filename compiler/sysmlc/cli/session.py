@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import click
+from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
 from sysmlc.escapes import escape_undecodable
-from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
@@ -30,8 +31,7 @@ _SHOWN = 1_000
 _ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
+class Settings(Struct, frozen=True):
     """The options of the command line that concern reading, emitting and reporting."""
 
     config: Path | None = None
@@ -61,8 +61,7 @@ class Settings:
         return self.has_cache and not (self.verify_each or self.print_after or self.verbose)
 
 
-@dataclass(frozen=True, slots=True)
-class Selection:
+class Selection(Struct, frozen=True):
     """Files and folders that were named, or a ``[[model]]``, and where their outputs go.
 
     ``name`` is that of the ``[[model]]``; without one the files may be several compile units.

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from msgspec.structs import replace
 
 from sysmlc.cli import options, terminal
 from sysmlc.cli.limits import LIMITS
@@ -102,7 +103,6 @@ def command(
     from sysmlc.logic.formats.lower import unambiguous
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decide import Options
-    from sysmlc.values import replace
 
     if (is_decided_only or timers) and output is not None:
         word = "--deadline" if timers else "--realizable"

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sysmlc.values import dataclass, replace
+from msgspec import Struct
+from msgspec.structs import replace
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Selection, Settings
@@ -15,8 +16,7 @@ _LISTED = 10
 """Units that a message lists."""
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
+class Unit(Struct, frozen=True):
     """A compile unit whose files have been read, and where its outputs go.
 
     ``name`` is unique in the run and safe as a folder name. Nothing is written outside

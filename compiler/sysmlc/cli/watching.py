@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from zlib import crc32
 
+from msgspec import Struct
+
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
@@ -27,8 +28,7 @@ _MOST = 8
 """Compilations without a pause, after which what they left is collected all the same."""
 
 
-@dataclass(frozen=True, slots=True)
-class Compiled:
+class Compiled(Struct, frozen=True):
     """A unit and the outcome of compiling it."""
 
     unit: "Unit"

@@ -2,10 +2,12 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from msgspec import Struct
 
 from sysmlc.diagnostics.rule import Rule
-from sysmlc.values import StrEnum, dataclass
 
 
 class Verdict(StrEnum):
@@ -27,8 +29,7 @@ Counts = Mapping[str, int]
 """Number of elements for each verdict (its value)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Loss:
+class Loss(Struct, frozen=True):
     """An element that is not wholly in the graph, with what it contains that shares its verdict.
 
     ``elements`` counts both. ``owner`` is the id in the graph of the nearest element around

@@ -2,18 +2,18 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from msgspec import Struct
+
 from sysmlc.diagnostics.coverage import Coverage, Loss, Verdict, added, covered_tenths
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 LOSSES = (Verdict.UNSUPPORTED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
 """What matters of what is not mapped, the worst first."""
 
 
-@dataclass(frozen=True, slots=True)
-class LostElement:
+class LostElement(Struct, frozen=True):
     """One loss, and where it is; ``element`` is a qualified name in the modeller's words."""
 
     loss: Loss
@@ -29,8 +29,7 @@ class LostElement:
         return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)])
 
 
-@dataclass(frozen=True, slots=True)
-class FileReport:
+class FileReport(Struct, frozen=True):
     """Coverage of one file: counts by verdict, counts by type, what is lost."""
 
     file: str
@@ -39,8 +38,7 @@ class FileReport:
     losses: tuple[LostElement, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class TypeReport:
+class TypeReport(Struct, frozen=True):
     """Coverage of one type of element in all files."""
 
     name: str

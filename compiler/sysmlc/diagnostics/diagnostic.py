@@ -1,11 +1,11 @@
 """Findings: a rule, the element it is about, and where that element stands."""
 
+from msgspec import Struct
+
 from sysmlc.diagnostics.rule import Rule, Severity
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(Struct, frozen=True):
     """Where something stands in an input.
 
     XML elements are found by ``ordinal`` (number of the start tag in document order, from 0),
@@ -21,8 +21,7 @@ class Place:
     column: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Subject:
+class Subject(Struct, frozen=True):
     """What a finding is about: its qualified name, its id in the graph, its place."""
 
     name: str = ""
@@ -30,8 +29,7 @@ class Subject:
     place: Place | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(Struct, frozen=True):
     """One finding, ready to be shown."""
 
     rule: Rule

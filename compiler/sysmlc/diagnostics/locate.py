@@ -7,12 +7,13 @@ from contextlib import suppress
 from itertools import accumulate
 from operator import itemgetter
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import xpath
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.encoding import codec
 from sysmlc.sources.xml import parse, parser
-from sysmlc.values import dataclass
 
 _AROUND = 200
 """Characters of a long line that are kept on each side of a place."""
@@ -22,8 +23,7 @@ _LIKE_ASCII = frozenset({"utf-8", "ascii", "latin-1", "iso8859-1", "cp1252"})
 """Codecs in which a byte below 128 is always the character of ASCII."""
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
+class Location(Struct, frozen=True):
     """Where something stands: line and column count characters from 1; ``text`` is the line.
 
     Of a line that is longer than an excerpt needs, ``text`` is the part around the column, and

@@ -1,6 +1,8 @@
 """Rules: what can be wrong with a model, and how it is explained."""
 
-from sysmlc.values import StrEnum, dataclass
+from enum import StrEnum
+
+from msgspec import Struct
 
 
 class Severity(StrEnum):
@@ -14,8 +16,7 @@ class Severity(StrEnum):
     """Worth knowing."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(Struct, frozen=True):
     """One kind of finding.
 
     ``phrase`` is a format string filled by the facts given to ``Sink.report``. ``wrong`` and

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
-from sysmlc.values import replace
 
 _LONG = 2_000
 _SHOWN = 200

@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 
+from msgspec import Struct
+
 from sysmlc.diagnostics.diagnostic import Diagnostic
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Suppression:
+class Suppression(Struct, frozen=True):
     """A rule (code or name) that does not matter for elements whose qualified name matches."""
 
     rule: str

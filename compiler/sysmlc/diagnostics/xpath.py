@@ -8,12 +8,11 @@ local name and the namespace instead.
 
 from collections.abc import Collection
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser
-from sysmlc.values import dataclass
 
 
 class Spot(NamedTuple):

@@ -1,9 +1,10 @@
 """One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
@@ -22,7 +23,6 @@ from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.suggest import did_you_mean
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.sources.schema import Schemas
@@ -41,8 +41,7 @@ class Observer:
         """Called with the Python traceback of a fault of ours."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(Struct, frozen=True):
     """What one compilation is asked for.
 
     ``backends`` may be empty (``check``). ``frontends`` and ``passes`` are None for the real
@@ -74,8 +73,7 @@ class Request:
         return tuple(registry.passes(self.config.passes))
 
 
-@dataclass(frozen=True, slots=True)
-class Compilation:
+class Compilation(Struct, frozen=True):
     """What came out: the refined graph, findings in the order of places, and artefacts."""
 
     root: Path
@@ -98,8 +96,7 @@ class Compilation:
         return faults.exit_code(self.diagnostics, strict)
 
 
-@dataclass(frozen=True, slots=True)
-class Opened:
+class Opened(Struct, frozen=True):
     """The bytes of one unit's inputs, and what was found while they were collected."""
 
     root: Path

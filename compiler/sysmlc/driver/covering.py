@@ -2,17 +2,17 @@
 
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Coverage, Diagnostic
 from sysmlc.diagnostics.coverage_report import FileReport, file_reports
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Opened, Request, open_unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Source, SourceError
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Covered:
+class Covered(Struct, frozen=True):
     """The coverage of one unit, and what was found wrong while its files were read."""
 
     root: Path

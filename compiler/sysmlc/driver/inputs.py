@@ -5,6 +5,8 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.config import FILE_NAME, find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
@@ -14,7 +16,6 @@ from sysmlc.escapes import escape_undecodable
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.suggest import did_you_mean
-from sysmlc.values import dataclass
 
 _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar
@@ -23,8 +24,7 @@ SUFFIXES = frozenset(_SUFFIXES.split())
 """How files in a folder end that are worth a look; files that are named may end in anything."""
 
 
-@dataclass(frozen=True, slots=True)
-class Recognised:
+class Recognised(Struct, frozen=True):
     """One source and the front end that reads it."""
 
     source: Source

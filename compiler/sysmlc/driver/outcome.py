@@ -4,17 +4,17 @@ import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.backends.base import InputFile
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.diagnostics.render import Finding, make_report
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.tracing import COVERAGE, TRACE, coverage_text, trace_text
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class OutputFile:
+class OutputFile(Struct, frozen=True):
     """A file of the output folder, and the back end that made it."""
 
     path: str
@@ -22,16 +22,14 @@ class OutputFile:
     sha256: str
 
 
-@dataclass(frozen=True, slots=True)
-class Withheld:
+class Withheld(Struct, frozen=True):
     """A file that is not written, and the errors because of which."""
 
     path: str
     because: tuple[Diagnostic, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Struct, frozen=True):
     """What came out of one compilation, or of the same one earlier.
 
     ``findings`` name files as the unit does. ``texts`` holds the text of each of ``files``.

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import name_of
@@ -13,14 +15,12 @@ from sysmlc.overlay import SUFFIX
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.limits import DOCUMENT_LIMITS
 from sysmlc.sources.whole import read_whole
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.overlay import Refinement
 
 
-@dataclass(frozen=True, slots=True)
-class LoadedOverlay:
+class LoadedOverlay(Struct, frozen=True):
     """The file of an overlay and what it says; nothing when it cannot be used."""
 
     path: Path

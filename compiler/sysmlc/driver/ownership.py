@@ -12,8 +12,9 @@ import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.output import OutputPathError, check_output_path, find_obstacle
-from sysmlc.values import dataclass
 
 MANIFEST = "manifest.json"
 PENDING = "manifest.pending.json"
@@ -123,8 +124,7 @@ def _read_mode(path: Path) -> int | None:
         return None
 
 
-@dataclass(frozen=True, slots=True)
-class Ownership:
+class Ownership(Struct, frozen=True):
     """The claims of the manifests in one output folder, and the files that no claim covers.
 
     ``protected`` are inputs and configurations, by device and inode, so that hard links and other

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import locate
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Locator:
+class Locator(Struct, frozen=True):
     """Finds lines and columns in the inputs of one compilation (``backends.base.Locate``)."""
 
     sources: Sequence[Source]

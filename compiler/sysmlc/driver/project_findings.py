@@ -8,6 +8,8 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from msgspec.structs import replace
+
 from sysmlc.config import Config, ConfigError, expand_files
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver import faults
@@ -16,7 +18,6 @@ from sysmlc.driver.inputs import find_model_files, find_projects
 from sysmlc.driver.outcome import Outcome
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import SourceError, load
-from sysmlc.values import replace
 
 _PROJECT_RULES = frozenset({faults.UNUSED_SUPPRESSION.code, faults.UNKNOWN_LEVEL_ELEMENT.code})
 

@@ -20,6 +20,8 @@ import os
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Diagnostic, Place, Severity, Sink, Subject, rule
 from sysmlc.driver.folder_lock import lock_folder
 from sysmlc.driver.manifest import manifest_text
@@ -36,7 +38,6 @@ from sysmlc.driver.ownership import (
 )
 from sysmlc.output import find_obstacle, is_temporary, sync, write, write_temporary
 from sysmlc.sources import Roots
-from sysmlc.values import dataclass
 
 FOREIGN_FILE = rule(
     "SM910",
@@ -86,8 +87,7 @@ _SYNCS = 16
 """Files to wait for at once: 500 files took 1.6 s one by one, and 0.1 s at once (ext4)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(Struct, frozen=True):
     """The folder that takes the outputs of one unit.
 
     The folder must lie in ``boundary`` (None: anywhere). ``configurations`` are files that are
@@ -100,8 +100,7 @@ class Target:
     is_forced: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Publication:
+class Publication(Struct, frozen=True):
     """What became of an output folder: the paths that changed, or why nothing was written."""
 
     changed: tuple[str, ...]
@@ -113,8 +112,7 @@ class Publication:
         return any(diagnostic.is_error for diagnostic in self.diagnostics)
 
 
-@dataclass(frozen=True, slots=True)
-class _Plan:
+class _Plan(Struct, frozen=True):
     """The steps that bring a folder up to date: removals, then writes, the manifest last."""
 
     removals: tuple[str, ...]

@@ -4,17 +4,17 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, allowed_roots, collect, name_of, recognise
 from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay, models_of
 from sysmlc.frontends.base import Frontend, Mentioning
 from sysmlc.sources import Roots, Source, SourceError, load
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class ReadFile:
+class ReadFile(Struct, frozen=True):
     """One file that was read: the names of its sources, and the files that it refers to.
 
     Paths are real paths. An archive has several sources, an overlay one, a file that no front end
@@ -29,8 +29,7 @@ class ReadFile:
     is_overlay: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(Struct, frozen=True):
     """The recognised sources, sorted by name, and whether nothing was left out."""
 
     recognised: tuple[Recognised, ...]

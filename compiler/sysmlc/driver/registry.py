@@ -1,10 +1,12 @@
 """Front ends, back ends and rules: where they are found, without importing what is not used."""
 
+import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields
 from importlib import import_module
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
+
+from msgspec import Struct, structs
 
 from sysmlc.backends.base import Backend
 from sysmlc.config import ConfigError
@@ -14,7 +16,6 @@ from sysmlc.frontends.base import Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.suggest import did_you_mean
-from sysmlc.values import replace
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -96,7 +97,7 @@ def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
 def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
     if not options:
         return one
-    known = [field.name for field in fields(cast("DataclassInstance", one))]
+    known = _option_names(one)
     for name, value in options.items():
         where = f"passes.{one.name}.{name}"
         if name not in known:
@@ -104,7 +105,15 @@ def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
         if not _fits(value, getattr(one, name)):
             wanted = type(getattr(one, name)).__name__
             raise ConfigError(f"{where}: {value!r} is no {wanted}")
-    return cast("Pass", replace(cast("DataclassInstance", one), **options))
+    replace = structs.replace if isinstance(one, Struct) else dataclasses.replace
+    return cast("Pass", replace(cast("Any", one), **options))
+
+
+def _option_names(step: Pass) -> list[str]:
+    """Names of the options of a pass; third parties write passes as dataclasses, too."""
+    if isinstance(step, Struct):
+        return list(step.__struct_fields__)
+    return [field.name for field in dataclasses.fields(cast("DataclassInstance", step))]
 
 
 def _fits(value: object, default: object) -> bool:

@@ -9,8 +9,10 @@ the libraries that it uses, so that a library may belong to several units.
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
+
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver.compilation import Opened, Request, load_drawings, open_unit
@@ -18,7 +20,6 @@ from sysmlc.driver.inputs import Recognised, unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, Relating
 from sysmlc.naming import file_names
-from sysmlc.values import dataclass, replace
 
 
 @dataclass(eq=False, slots=True)

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from typing import Protocol, runtime_checkable
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 
 class Frontend(Protocol):
@@ -32,8 +33,7 @@ class Frontend(Protocol):
         """Read the files into the graph and account for every element of them."""
 
 
-@dataclass(frozen=True, slots=True)
-class FileNames:
+class FileNames(Struct, frozen=True):
     """How a file takes part in the compile units of its folder, beyond ``Frontend.links``.
 
     A library, such as a profile, only defines what models use. It belongs to each unit that uses

@@ -5,11 +5,12 @@ It serves tests, the examples of ``sysmlc explain``, and bug reports without the
 
 from collections.abc import Sequence
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.patterns import pattern
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 IR_SYNTAX = rule(
     "SM176",
@@ -26,8 +27,7 @@ _KINDS = frozenset(kind.value.encode() for kind in Kind)
 _PLACE = pattern(r"line (\d+)")
 
 
-@dataclass(frozen=True, slots=True)
-class IrFrontend:
+class IrFrontend(Struct, frozen=True):
     """Reads what ``ir.print_text`` prints; several files are one graph when ids differ."""
 
     name: str = "ir"

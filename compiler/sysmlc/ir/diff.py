@@ -8,16 +8,16 @@ position among their equals: what two dialects of one model share.
 from collections import Counter
 from collections.abc import Collection, Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge
-from sysmlc.values import dataclass
 
 _Key = tuple[object, ...]
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Change:
+class Change(Struct, frozen=True, order=True):
     """One difference: ``what`` is added, removed, renamed, attribute, edge-added, edge-removed."""
 
     element: str

@@ -1,11 +1,11 @@
 """Diagrams as their authors drew them, before the pass ``views`` makes them part of the graph."""
 
+from msgspec import Struct
+
 from sysmlc.ir.kinds import Edge
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Drawing:
+class Drawing(Struct, frozen=True):
     """One diagram; every reference is an id of ``file`` or an ``href``, as its tool wrote it.
 
     ``type`` is what the tool calls it, ``diagram`` our word (docs/ir.md). ``source`` and

@@ -14,7 +14,7 @@ _HEAD = '''"""Kinds of elements and of edges.
 Generated from metamodels/ir.ecore by ``python -m sysmlc.ir.generate``; do not edit.
 """
 
-from sysmlc.values import StrEnum
+from enum import StrEnum
 '''
 
 

@@ -3,7 +3,7 @@
 Generated from metamodels/ir.ecore by ``python -m sysmlc.ir.generate``; do not edit.
 """
 
-from sysmlc.values import StrEnum
+from enum import StrEnum
 
 
 class Kind(StrEnum):

@@ -1,16 +1,16 @@
 """Questions about templates: formal parameters, and what takes their places (UML 2.5.1, 7.3)."""
 
+from msgspec import Struct
+
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.values import dataclass
 
 _PARAMETER = Kind.TEMPLATE_PARAMETER
 """By a name of the module: in Python 3.11 members of a class take twice as long."""
 
 
-@dataclass(frozen=True, slots=True)
-class Substitution:
+class Substitution(Struct, frozen=True):
     """What takes the place of one parameter; ``value`` when that is no element."""
 
     formal: Element | None
@@ -18,8 +18,7 @@ class Substitution:
     value: AttrValue = None
 
 
-@dataclass(frozen=True, slots=True)
-class Binding:
+class Binding(Struct, frozen=True):
     """``bound`` is made of ``template`` (None when the model does not say which)."""
 
     bound: Element

@@ -6,7 +6,8 @@ lines the references that are not resolved yet. docs/ir.md shows the form.
 
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import NoReturn, TypeVar
 
 from sysmlc.ir.element import AttrValue, Element
@@ -14,7 +15,6 @@ from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.reference import Reference
 from sysmlc.patterns import pattern
-from sysmlc.values import StrEnum, dataclass
 
 _E = TypeVar("_E", bound=StrEnum)
 _BARE = pattern(r"[\w.:/#!+~%-]+")

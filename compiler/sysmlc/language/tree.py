@@ -8,7 +8,7 @@ member, ``membership`` and ``role``. What refers to other elements by name is a 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from sysmlc.sources import Source
@@ -147,8 +147,7 @@ class Node:
         return f"<{self.kind} {self.name or self.short or '?'}>"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Document:
+class Document(Struct, frozen=True, eq=False):
     """One file: its path relative to the unit's root, its language, its text, its tree.
 
     ``language`` is ``sysml`` or ``kerml``; ``text`` is empty for interchange files, whose places

@@ -3,12 +3,12 @@
 Design section 7 (structure): the direction of ports decides ownership, connectors rename.
 """
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Conjunct, Contract
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(Struct, frozen=True):
     """A part with the contract of its type, in the variables of the whole.
 
     What two parts share has one name in both contracts; what only one knows is named behind the
@@ -20,8 +20,7 @@ class Part:
     origin: str
 
 
-@dataclass(frozen=True, slots=True)
-class Composite:
+class Composite(Struct, frozen=True):
     """A block with parts. ``whole`` is what it promises itself, in the same variables.
 
     ``wiring`` is what connectors make true and no renaming says, as that an event of the receiver

@@ -3,8 +3,11 @@
 Thesis section 2.2.1; the neutral JSON form is the one of corpus/gr1 (design, section 6).
 """
 
+from enum import StrEnum
+
+from msgspec import Struct
+
 from sysmlc.logic.formula import Formula
-from sysmlc.values import StrEnum, dataclass
 
 
 class Owner(StrEnum):
@@ -14,21 +17,18 @@ class Owner(StrEnum):
     SYSTEM = "sys"
 
 
-@dataclass(frozen=True, slots=True)
-class BooleanDomain:
+class BooleanDomain(Struct, frozen=True):
     """true and false."""
 
 
-@dataclass(frozen=True, slots=True)
-class IntegerDomain:
+class IntegerDomain(Struct, frozen=True):
     """Integers from ``low`` to ``high``, both included."""
 
     low: int
     high: int
 
 
-@dataclass(frozen=True, slots=True)
-class EnumerationDomain:
+class EnumerationDomain(Struct, frozen=True):
     """Names of literals, in declaration order.
 
     Of a text (String) they stand for ``texts``, in this order, and the last one for any other.
@@ -41,8 +41,7 @@ class EnumerationDomain:
 Domain = BooleanDomain | IntegerDomain | EnumerationDomain
 
 
-@dataclass(frozen=True, slots=True)
-class Variable:
+class Variable(Struct, frozen=True):
     """One variable of a contract; ``origin`` is the id of the element it stands for."""
 
     name: str
@@ -68,8 +67,7 @@ class Class(StrEnum):
     __hash__ = str.__hash__
 
 
-@dataclass(frozen=True, slots=True)
-class Conjunct:
+class Conjunct(Struct, frozen=True):
     """One conjunct with the element (id) that it comes from and what it says in words."""
 
     formula: Formula
@@ -80,8 +78,7 @@ class Conjunct:
     """Name of the requirement whose viewpoint it belongs to; empty for what is common to all."""
 
 
-@dataclass(frozen=True, slots=True)
-class Contract:
+class Contract(Struct, frozen=True):
     """Contract of one component: the guarantees hold as long as the assumptions do."""
 
     component: str

@@ -4,10 +4,10 @@ A formula is built by the small functions at the end (``var``, ``eq``, ``both``,
 never by calling the classes from outside: they keep operands flat and constants folded.
 """
 
+from dataclasses import dataclass
+from enum import StrEnum
 from functools import lru_cache
 from weakref import WeakValueDictionary
-
-from sysmlc.values import StrEnum, dataclass
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""

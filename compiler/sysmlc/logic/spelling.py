@@ -4,8 +4,9 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple, NoReturn
 
+from msgspec import Struct
+
 from sysmlc.logic.formula import Op
-from sysmlc.values import dataclass
 
 STRENGTH = {
     Op.IFF: 1,
@@ -46,8 +47,7 @@ class Token(NamedTuple):
     at: int
 
 
-@dataclass(frozen=True, slots=True)
-class Syntax:
+class Syntax(Struct, frozen=True):
     """How a language spells formulas: operators, truths, brackets, comments."""
 
     prefix: Mapping[str, Op]

@@ -7,6 +7,8 @@ is bound to it (SysML 2.0, 7.16: ``out x = level``).
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.expressions.expression import (
     Assignment,
@@ -18,14 +20,12 @@ from sysmlc.logic.expressions.expression import (
     print_expression,
 )
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _ASSIGNED = pattern(r"([^\W\d]\w*)\s*:=")
 """The last names of what is assigned to where no name is in quotes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Assigned:
+class Assigned(Struct, frozen=True):
     """An action gives a named feature a value; None where the model does not say which."""
 
     action: Element

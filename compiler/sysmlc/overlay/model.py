@@ -2,9 +2,10 @@
 
 from typing import NamedTuple
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir import AttrValue
-from sysmlc.values import dataclass
 
 
 class Spot(NamedTuple):
@@ -30,8 +31,7 @@ class Key(NamedTuple):
     spot: Spot
 
 
-@dataclass(frozen=True, slots=True)
-class ItemEntry:
+class ItemEntry(Struct, frozen=True):
     """A kind of thing that flows. A plain name makes a new block."""
 
     key: Key
@@ -40,8 +40,7 @@ class ItemEntry:
     specializes: tuple[Term, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class PortEntry:
+class PortEntry(Struct, frozen=True):
     """What the author says of a port; empty and None where the model is left as it is."""
 
     key: Key
@@ -49,8 +48,7 @@ class PortEntry:
     type: Term | None
 
 
-@dataclass(frozen=True, slots=True)
-class FlowEntry:
+class FlowEntry(Struct, frozen=True):
     """An item that flows over a connector, to one end, from one end, or both ways."""
 
     item: Term
@@ -60,16 +58,14 @@ class FlowEntry:
     spot: Spot
 
 
-@dataclass(frozen=True, slots=True)
-class ConnectorEntry:
+class ConnectorEntry(Struct, frozen=True):
     """Item flows of a connector."""
 
     key: Key
     flows: tuple[FlowEntry, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ParameterEntry:
+class ParameterEntry(Struct, frozen=True):
     """A parameter of an operation, in its place among the others."""
 
     name: Term
@@ -77,8 +73,7 @@ class ParameterEntry:
     direction: str
 
 
-@dataclass(frozen=True, slots=True)
-class OperationEntry:
+class OperationEntry(Struct, frozen=True):
     """An operation; ``parameters`` is None when those of its method count."""
 
     name: Term
@@ -87,8 +82,7 @@ class OperationEntry:
     description: str
 
 
-@dataclass(frozen=True, slots=True)
-class ValueEntry:
+class ValueEntry(Struct, frozen=True):
     """A value property, for what a plant does not say of its state."""
 
     name: Term
@@ -96,8 +90,7 @@ class ValueEntry:
     default: AttrValue
 
 
-@dataclass(frozen=True, slots=True)
-class BlockEntry:
+class BlockEntry(Struct, frozen=True):
     """What the author adds to a block."""
 
     key: Key
@@ -108,8 +101,7 @@ class BlockEntry:
     calls: tuple[tuple[Term, Term], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Allocation:
+class Allocation(Struct, frozen=True):
     """Something of the model that is allocated to something else of it."""
 
     source: Term
@@ -117,8 +109,7 @@ class Allocation:
     spot: Spot
 
 
-@dataclass(frozen=True, slots=True)
-class Refinement:
+class Refinement(Struct, frozen=True):
     """One overlay. Entries are in an order of their own, whatever order the file has."""
 
     file: str

@@ -6,11 +6,10 @@ alias shares what it stands for, so that a small file cannot grow without end.
 
 import re
 from bisect import bisect_right
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sysmlc.overlay.model import Spot
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from ruamel.yaml.error import StreamMark

@@ -8,6 +8,9 @@ stays as it is. An activity of a library is played by each operation that it is 
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.activities.token_graph import TokenGraph
@@ -25,19 +28,16 @@ from sysmlc.passes.activity_refusals import report_unfollowed
 from sysmlc.passes.activity_stores import follow
 from sysmlc.passes.activity_unknown import report_unknown
 from sysmlc.passes.activity_usages import drawn_of, has_steps
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class _Others:
+class _Others(Struct, frozen=True):
     """What other behaviours do that matters to an activity: raise exceptions, write features."""
 
     raising: Raising
     writers: Writers
 
 
-@dataclass(frozen=True, slots=True)
-class Activities:
+class Activities(Struct, frozen=True):
     """Makes token graphs.
 
     ``max_markings`` bounds the search for a second token on a flow; activities with more than

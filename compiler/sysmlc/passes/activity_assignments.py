@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable
 
+from msgspec import Struct
+
 from sysmlc.ir import Element, Graph
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.writers import Writers
 from sysmlc.logic.written import Assigned, assigned
 from sysmlc.passes.activity_expressions import Scope
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
+class Written(Struct, frozen=True):
     """What an action assigns; the feature is None where the activity knows none of the name."""
 
     said: Assigned

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic import domains, evaluate
@@ -18,7 +20,6 @@ from sysmlc.logic.formula import Formula, variables
 from sysmlc.passes import activity_rules as rules
 from sysmlc.passes import activity_search
 from sysmlc.passes.activity_drawing import CannotPlayError
-from sysmlc.values import replace
 
 _MOST_VALUATIONS = 20_000
 """Guards over more valuations than this are taken as neither exclusive nor exhaustive."""

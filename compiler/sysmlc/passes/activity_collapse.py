@@ -8,8 +8,9 @@ flows and nodes that it stands for. Tokens arrive earlier, never in another orde
 
 from collections.abc import Callable
 
+from msgspec.structs import replace
+
 from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
-from sysmlc.values import replace
 
 _ALL_OUT = (Firing.ALL, Firing.WORK)
 _ANY_IN = (Firing.ANY, Firing.END)

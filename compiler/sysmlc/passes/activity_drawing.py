@@ -5,7 +5,9 @@ become structured nodes too (``Part``), so that each of them starts and ends as 
 """
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec import Struct
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -21,7 +23,6 @@ from sysmlc.passes.activity_regions import (
     handlers_of,
     is_entered_again,
 )
-from sysmlc.values import dataclass
 
 _WORDS = {
     Kind.STRUCTURED: "structured node",
@@ -37,8 +38,7 @@ class CannotPlayError(Exception):
     """The activity has no token graph; the reason has been reported."""
 
 
-@dataclass(frozen=True, slots=True)
-class Flow:
+class Flow(Struct, frozen=True):
     """One drawn flow; pins are None where it is attached to the node itself.
 
     ``region`` is the innermost region that holds both ends. ``enters`` and ``leaves`` say that

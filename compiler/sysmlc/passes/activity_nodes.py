@@ -1,5 +1,7 @@
 """Token nodes of what is drawn, with their variables; and what UML asks to be drawn otherwise."""
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.logic.activities.token_graph import Duration, NodeKind, TokenNode
 from sysmlc.logic.names import identifier
@@ -7,7 +9,6 @@ from sysmlc.passes import activity_rules as rules
 from sysmlc.passes.activity_draft import Draft, least
 from sysmlc.passes.activity_inputs import events
 from sysmlc.passes.activity_structured import ACCEPTS, add_parts
-from sysmlc.values import replace
 
 _CONTROLS = {
     "initial": NodeKind.INITIAL,

@@ -6,9 +6,11 @@ the part that its tokens come from, or to the part that they go to when they com
 
 from collections.abc import Callable, Iterator
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.identity import derived_id
-from sysmlc.values import dataclass, replace
 
 NODES = (
     Kind.ACTION,
@@ -20,8 +22,7 @@ NODES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(Struct, frozen=True):
     """A part of the structured node ``owner``; ``nodes`` are ids of its direct members."""
 
     id: str

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.values import dataclass
 
 CALLS = ("call-behavior", "call-operation", "opaque", "call", "start-object-behavior", "")
 """Actions whose end may be an exception."""
 _BODIES = ("opaque", "function")
 
 
-@dataclass(frozen=True, slots=True)
-class Raising:
+class Raising(Struct, frozen=True):
     """Ids of what raises something by its drawing, and of what may do so for all that is known.
 
     Operations without method and behaviours of other files are not known; a body of text raises

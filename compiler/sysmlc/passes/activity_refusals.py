@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph
-from sysmlc.values import dataclass
 
 
 def _counting(body: str) -> str:
@@ -53,8 +54,7 @@ WRITTEN = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Refusal:
+class Refusal(Struct, frozen=True):
     """Why a contract cannot follow a feature, and what can be done about it."""
 
     reason: str
@@ -75,8 +75,7 @@ def shared(writer: str) -> Refusal:
     return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
 
 
-@dataclass(frozen=True, slots=True)
-class Unfollowed:
+class Unfollowed(Struct, frozen=True):
     """A feature that the activity writes, and why its contract does not follow it."""
 
     feature: Element

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.values import dataclass
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 Regions = list[tuple[Element, list[Element]]]
 """Interruptible regions, each with its nodes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Handler:
+class Handler(Struct, frozen=True):
     """An exception handler: its body, and the ids of the types that it catches."""
 
     body: Element

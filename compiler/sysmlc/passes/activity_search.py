@@ -7,11 +7,13 @@ flow may be empty again before the next token comes.
 
 from functools import lru_cache
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.activities import net_safety as token_net
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Firing, NodeKind, TokenGraph
 from sysmlc.logic.names import Names
 from sysmlc.passes.activity_collapse import collapse
-from sysmlc.values import dataclass, replace
 
 _NAMED_FROM = 50
 """The parts of a condition times its uses; from here on it gets a name."""
@@ -19,8 +21,7 @@ _REMEMBERED = 256
 """Answers that are kept: a process that compiles again finds those of what was not edited."""
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(Struct, frozen=True):
     """What is known of a token graph; ``unsafe`` is the id of an edge or a node."""
 
     unsafe: str = ""

@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Iterator
 from itertools import product
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
@@ -26,7 +28,6 @@ from sysmlc.passes.activity_refusals import (
     Unfollowed,
     shared,
 )
-from sysmlc.values import replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
 _Way = tuple[Formula, Formula, bool]

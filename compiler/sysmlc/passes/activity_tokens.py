@@ -7,6 +7,8 @@ reach, the choice at an object node that several flows leave, and the order of a
 
 from collections.abc import Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
 from sysmlc.ir.identity import derived_id
@@ -26,7 +28,6 @@ from sysmlc.passes.activity_regions import (
     is_entered_later,
 )
 from sysmlc.passes.activity_structured import ACCEPTS, add_order, add_start
-from sysmlc.values import replace
 
 
 def build(

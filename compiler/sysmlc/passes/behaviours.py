@@ -2,6 +2,8 @@
 
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined
@@ -14,7 +16,6 @@ from sysmlc.passes.behaviour_rules import (
     NO_BEHAVIOR,
     TRIGGER_OF_NOTHING,
 )
-from sysmlc.values import dataclass
 
 _CALLED: dict[str, tuple[str, tuple[Kind, ...]]] = {
     "call-behavior": ("behaviour", BEHAVIORS),
@@ -35,8 +36,7 @@ _IN = ("in", "inout")
 _OUT = ("out", "inout", "return")
 
 
-@dataclass(frozen=True, slots=True)
-class Behaviours:
+class Behaviours(Struct, frozen=True):
     """Link operations to the methods they inherit, and check calls.
 
     Assumes effective features. Guarantees: an operation that redefines another one and has no

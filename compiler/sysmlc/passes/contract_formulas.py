@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
@@ -12,7 +14,6 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.requirements.derivation import with_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
-from sysmlc.values import replace
 
 _ACTIONS = (Kind.ACTIVITY, Kind.OPERATION)
 _MACHINE = """\

@@ -9,6 +9,9 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities import derivation as activity_contract
@@ -20,7 +23,6 @@ from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.writers import Writers
 from sysmlc.passes.contract_formulas import add_formulas, report_general
-from sysmlc.values import dataclass, replace
 
 SAME_COMPONENT = rule(
     "SM500",
@@ -41,8 +43,7 @@ SAME_COMPONENT = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Contracts:
+class Contracts(Struct, frozen=True):
     """Derives contracts.
 
     ``tick_seconds`` is the length of a step for durations with a unit; ``assumed_low`` and

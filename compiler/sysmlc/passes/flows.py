@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
@@ -31,11 +33,9 @@ from sysmlc.passes.flow_rules import (
     FLOW_WITHOUT_END,
     MIXED_DOMAINS,
 )
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Flows:
+class Flows(Struct, frozen=True):
     """Attach item flows to connectors and give both a domain.
 
     Assumes directions of ports. Guarantees: an item flow that names no connector is

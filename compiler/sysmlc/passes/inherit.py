@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.components import strong_components
@@ -14,14 +16,12 @@ from sysmlc.passes.inherit_rules import (
     REDEFINES_STRANGER,
     TYPE_NOT_NARROWER,
 )
-from sysmlc.values import dataclass
 
 _CLASSES = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY, Kind.STATE_MACHINE})
 _RELATIONS = {Edge.REDEFINES: "redefines", Edge.SUBSETS: "subsets"}
 
 
-@dataclass(frozen=True, slots=True)
-class Inherit:
+class Inherit(Struct, frozen=True):
     """Give every classifier its effective features, and check generalization.
 
     Assumes resolved references. Guarantees ``feature`` edges from each classifier to its own

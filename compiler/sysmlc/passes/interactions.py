@@ -3,18 +3,18 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query, sequence
 from sysmlc.passes import interaction_rules as rules
-from sysmlc.values import dataclass
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
 _Place = tuple[str, int]
 """The interaction or operand that holds an occurrence, and the position in it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Interactions:
+class Interactions(Struct, frozen=True):
     """Check every interaction; the graph stays as it is.
 
     Assumes features and generalizations (``inherit``). What is reported is in the graph as the

@@ -4,10 +4,11 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any, ClassVar, NamedTuple
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.kept import PREFIX
-from sysmlc.values import dataclass
 
 UNREADABLE = rule(
     "SM189",
@@ -32,8 +33,7 @@ class _Kept(NamedTuple):
     href: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class _Record:
+class _Record(Struct, frozen=True):
     """What the comment says (metamodels/sysmlc-kept.schema.json)."""
 
     elements: list[_Kept]
@@ -45,8 +45,7 @@ class _Record:
     applied: list[str]
 
 
-@dataclass(frozen=True, slots=True)
-class Kept:
+class Kept(Struct, frozen=True):
     """Restores what back end ``uml`` kept; what is no longer in the model is passed over."""
 
     name: ClassVar[str] = "kept"

@@ -4,11 +4,12 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import cast
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.verify import verify
 from sysmlc.passes.base import Pass
-from sysmlc.values import dataclass
 
 NAMES = (
     "resolve",
@@ -63,8 +64,7 @@ def ordered(passes: Iterable[Pass]) -> list[Pass]:
     return done
 
 
-@dataclass(frozen=True, slots=True)
-class Pipeline:
+class Pipeline(Struct, frozen=True):
     """Passes in the order in which they run."""
 
     passes: tuple[Pass, ...]

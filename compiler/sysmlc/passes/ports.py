@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
@@ -30,7 +32,6 @@ from sysmlc.passes.port_rules import (
     UNDIRECTED_PORTS,
     UNTYPED_PORT,
 )
-from sysmlc.values import dataclass
 
 _LISTED = 8
 _CONJUGATED = ("~InterfaceBlock", "_InterfaceBlock", "ConjugatedInterfaceBlock")
@@ -38,8 +39,7 @@ _CONJUGATED = ("~InterfaceBlock", "_InterfaceBlock", "ConjugatedInterfaceBlock")
 _BY_PARAMETER = {"in": "in", "out": "out", "return": "out", "inout": "inout"}
 
 
-@dataclass(frozen=True, slots=True)
-class Ports:
+class Ports(Struct, frozen=True):
     """Give every port its type and direction.
 
     Assumes effective features and roles. Guarantees: a port without a type that redefines a

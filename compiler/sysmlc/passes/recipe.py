@@ -1,21 +1,20 @@
 """The pass ``recipe``: three-level recipe models from activities (thesis 3.5, 6.5.4)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import ClassVar
+
+from msgspec import Struct, field
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.passes.recipe_context import NODES, Context
 from sysmlc.passes.recipe_regions import is_inlined
-from sysmlc.values import dataclass
 
 _MODELS = "sysmlc.recipe.model"
 """The module of the recipe models."""
 
 
-@dataclass(frozen=True, slots=True)
-class Recipe:
+class Recipe(Struct, frozen=True):
     """Finds the recipes, derives what follows, and reports what is wrong with them.
 
     Assumes names resolved and roles and levels set; then ``graph.derived(recipe.model.Model)``

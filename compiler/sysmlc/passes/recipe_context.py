@@ -1,13 +1,14 @@
 """What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.recipe_levels import followers, said, stereotypes, subjects
 from sysmlc.passes.recipe_regions import contents
-from sysmlc.values import dataclass, replace
 
 if TYPE_CHECKING:
     from sysmlc.passes.recipe_refined import Refined
@@ -28,8 +29,7 @@ CALL_KINDS = ("call", "read", "write", "subscribe")
 MATERIAL_USES = ("consumed", "produced", "carried")
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(Struct, frozen=True):
     """The graph with what the user said about levels; it remembers what it has computed."""
 
     graph: Graph
@@ -199,8 +199,7 @@ class Context:
         return self._segments[element.id]
 
 
-@dataclass(frozen=True, slots=True)
-class Tags:
+class Tags(Struct, frozen=True):
     """Tagged values as the types that the profile gives them; None or empty when absent."""
 
     attrs: Mapping[str, object]

@@ -2,7 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+
+from msgspec import Struct, field
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context
@@ -12,11 +13,9 @@ from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.patterns import pattern
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Data:
+class Data(Struct, frozen=True):
     """Variables of one activity.
 
     An output pin is the variable of its own name: an attribute or parameter of the activity, or

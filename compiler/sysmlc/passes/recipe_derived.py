@@ -6,12 +6,13 @@ What is derived is looked at only where the model and its options say nothing of
 import re
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, measures, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
-from sysmlc.values import dataclass
 
 DERIVED = rule(
     "SM483",
@@ -36,8 +37,7 @@ _DURATIONS = ("duration", "time")
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 
 
-@dataclass(frozen=True, slots=True)
-class Derived:
+class Derived(Struct, frozen=True):
     """An element whose level follows from the rest of the model."""
 
     element: Element

@@ -1,13 +1,14 @@
 """A graph of a recipe while it is made: regions, where it begins and ends, what it gives out."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_regions import entries, exits, is_for_each, steps_in
 from sysmlc.recipe.model import FlowEdge, Node
-from sysmlc.values import dataclass, replace
 
 _ENDS = ("final", "flow-final")
 

@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_data import Data
@@ -18,7 +20,6 @@ from sysmlc.recipe.expression import Apply, Expr, Lit
 from sysmlc.recipe.flow import in_order, reachable
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
-from sysmlc.values import replace
 
 
 def flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import Context, Tags
 from sysmlc.passes.recipe_expressions import is_data, optional, value
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Relation:
+class Relation(Struct, frozen=True):
     """What relates a task or a service to machines: a dependency, object flow or partition."""
 
     element: Element

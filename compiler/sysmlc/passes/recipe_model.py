@@ -1,7 +1,7 @@
 """One recipe with the closure of what it refers to."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
 
 from sysmlc.ir import Element
@@ -22,7 +22,6 @@ from sysmlc.passes.recipe_tasks import (
 from sysmlc.passes.recipe_variables import with_variables
 from sysmlc.recipe.derive import derive
 from sysmlc.recipe.model import FlowGraph, Model, Recipe
-from sysmlc.values import dataclass
 
 
 class _Named(Protocol):

@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Element, Kind
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_graphs import flow_graph
 from sysmlc.passes.recipe_regions import is_inlined
 from sysmlc.passes.recipe_steps import by_position, step_kind
 from sysmlc.recipe.model import FlowGraph
-from sysmlc.values import dataclass
 
 _LEVELS = {"service": "service", "function": "machine function"}
 
 
-@dataclass(frozen=True, slots=True)
-class Called:
+class Called(Struct, frozen=True):
     """A service, machine function or helper that a node calls, both by their ids."""
 
     kind: str
@@ -22,8 +22,7 @@ class Called:
     definition: str
 
 
-@dataclass(frozen=True, slots=True)
-class Refined:
+class Refined(Struct, frozen=True):
     """An activity that refines a task or a service.
 
     ``remarks`` are ids of nodes whose content is left out, with an empty text, and of what is

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe_context import SERVICES, Context
 from sysmlc.passes.recipe_data import Data
 from sysmlc.passes.recipe_expressions import assignments, optional, read_time
 from sysmlc.passes.recipe_regions import is_block, is_for_each
 from sysmlc.recipe.model import Node
-from sysmlc.values import replace
 
 CONTROL_KINDS = {
     "initial": "initial",
@@ -175,7 +176,7 @@ def _delay(context: Context, node: Element, made: Node, data: Data) -> list[Node
 
 
 def _with(node: Node, **changes: object) -> Node:
-    return replace(node, **changes)  # type: ignore[arg-type]
+    return replace(node, **changes)
 
 
 _Maker = Callable[[Context, Element, Node, Data], list[Node]]

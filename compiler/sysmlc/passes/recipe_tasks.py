@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context, number
 from sysmlc.passes.recipe_data import Data
@@ -16,11 +18,9 @@ from sysmlc.passes.recipe_machines import (
 )
 from sysmlc.passes.recipe_steps import activity_flows, flow_ends, refinement
 from sysmlc.recipe.model import MaterialUse, Task
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(Struct, frozen=True):
     """A task node of a recipe, what defines it, and the activity that refines it."""
 
     node: Element

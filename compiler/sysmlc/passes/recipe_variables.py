@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import value, value_type
@@ -18,7 +20,6 @@ from sysmlc.recipe.model import (
     Recipe,
     ReferenceType,
 )
-from sysmlc.values import replace
 
 _NAME = pattern(r"[^\W\d]\w*")
 

@@ -6,14 +6,14 @@ robot and of the mission (MOOD4I thesis, chapter 4).
 
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic.contract import Contract
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Robots:
+class Robots(Struct, frozen=True):
     """Reads floors and adds their contracts to those of behaviours and requirements."""
 
     name: ClassVar[str] = "robots"

@@ -10,18 +10,18 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from urllib.parse import unquote
 
+from msgspec import Struct
+
 from sysmlc import resources
 from sysmlc.ir import Kind
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _ROLE_NAME = pattern(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
 _ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
 _METACLASS = pattern(r"[A-Z][A-Za-z]+")
 
 
-@dataclass(frozen=True, slots=True)
-class StandIn:
+class StandIn(Struct, frozen=True):
     """What is known of one element of a library.
 
     ``generals`` and ``metaclasses`` are qualified names; ``href`` is the same for all dialects.
@@ -44,8 +44,7 @@ class StandIn:
         return self.qualified_name.rpartition("::")[0]
 
 
-@dataclass(frozen=True, slots=True)
-class _Library:
+class _Library(Struct, frozen=True):
     name: str
     uri: str
     files: str

@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.drawing import Drawing
 from sysmlc.ir.identity import derived_id
-from sysmlc.values import dataclass
 
 MISSING = rule(
     "SM162",
@@ -25,8 +26,7 @@ SUBKIND = "diagram"
 """Subkind of the Views that this pass makes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Views:
+class Views(Struct, frozen=True):
     """Turn the drawings that a front end kept into Views.
 
     Assumes resolved references. Guarantees a View ``subkind="diagram"`` for each drawing, owned

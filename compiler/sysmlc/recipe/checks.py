@@ -1,18 +1,17 @@
 """What the checks of recipe models share: findings, and how they are told."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+
+from msgspec import Struct, field
 
 from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import FlowGraph, Model, Parameter
-from sysmlc.values import dataclass
 
 Locate = Callable[[str], Subject]
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """A rule that is broken: element of the graph, facts for the phrase."""
 
     rule: Rule

@@ -1,8 +1,10 @@
 """What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
 from functools import partial
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.recipe.expression import Lit
 from sysmlc.recipe.flow import duration, forward_edges, reachable
@@ -20,13 +22,11 @@ from sysmlc.recipe.model import (
     SubTask,
     Task,
 )
-from sysmlc.values import dataclass, replace
 
 _NO_TIME = Range(0, 0)
 
 
-@dataclass(frozen=True, slots=True)
-class Tables:
+class Tables(Struct, frozen=True):
     """The parts of a model by id."""
 
     services: Mapping[str, Service]

@@ -2,49 +2,43 @@
 
 from collections.abc import Iterator
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class Lit:
+class Lit(Struct, frozen=True):
     """A literal value."""
 
     value: bool | int | float | str
 
 
-@dataclass(frozen=True, slots=True)
-class Var:
+class Var(Struct, frozen=True):
     """A parameter or variable, with dots for what belongs to it."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Apply:
+class Apply(Struct, frozen=True):
     """An operator: + - * / mod == != < <= > >= and or not."""
 
     op: str
     args: tuple["Expr", ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Index:
+class Index(Struct, frozen=True):
     """One value of a list."""
 
     base: "Expr"
     index: "Expr"
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(Struct, frozen=True):
     """A function known to the executor by name, applied to arguments."""
 
     function: str
     args: tuple["Expr", ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Opaque:
+class Opaque(Struct, frozen=True):
     """Text that the expression grammar does not cover; people read it, executors cannot."""
 
     text: str

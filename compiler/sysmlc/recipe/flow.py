@@ -3,11 +3,12 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 
+from msgspec import Struct
+
 from sysmlc.ir.components import strong_components
 from sysmlc.ir.ordering import in_topological_order
 from sysmlc.recipe.model import FlowGraph, Node, Range
 from sysmlc.recipe.remembered import remembered
-from sysmlc.values import dataclass
 
 Cost = Callable[[Node], Range | None]
 
@@ -83,8 +84,7 @@ def in_order(graph: FlowGraph) -> list[str]:
 # -- times -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class _Span:
+class _Span(Struct, frozen=True):
     """Earliest and latest time at which something is done; ``latest`` None is unbounded."""
 
     earliest: float
@@ -118,8 +118,7 @@ def duration(graph: FlowGraph, cost: Cost) -> Range | None:
 _Pairs = list[tuple[str, str]]
 
 
-@dataclass(frozen=True, slots=True)
-class _Clock:
+class _Clock(Struct, frozen=True):
     """Tells when nodes are done; ``costs`` has the time of every step."""
 
     nodes: Mapping[str, Node]

@@ -6,10 +6,11 @@ A for-each node has such edges as well: once round for each element of its list.
 
 from collections.abc import Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.recipe.expression import Expr, either, negated
 from sysmlc.recipe.flow import cycles, entries, reachable
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
-from sysmlc.values import replace
 
 
 def with_loops(graph: FlowGraph, bounds: Mapping[str, int]) -> FlowGraph:

@@ -6,23 +6,22 @@ Times are integers in milliseconds.
 
 from typing import Literal as OneOf
 
+from msgspec import Struct
+
 from sysmlc.recipe.expression import Expr
-from sysmlc.values import dataclass
 
 Number = int | float
 Scalar = bool | int | float | str
 
 
-@dataclass(frozen=True, slots=True)
-class Range:
+class Range(Struct, frozen=True):
     """Smallest and largest value; ``max`` None is unbounded."""
 
     min: Number
     max: Number | None
 
 
-@dataclass(frozen=True, slots=True)
-class EnumType:
+class EnumType(Struct, frozen=True):
     """An enumeration with its literals in order, and their values when each has one."""
 
     name: str
@@ -30,16 +29,14 @@ class EnumType:
     values: tuple[Scalar, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class ReferenceType:
+class ReferenceType(Struct, frozen=True):
     """A reference to a machine, a material or another element."""
 
     to: OneOf["machine", "material", "element"]
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class ListType:
+class ListType(Struct, frozen=True):
     """A list of values of one type."""
 
     of: "ValueType"
@@ -48,8 +45,7 @@ class ListType:
 ValueType = OneOf["boolean", "integer", "real", "string"] | EnumType | ReferenceType | ListType
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(Struct, frozen=True):
     """An input, output, constant or variable; ``type`` None when the model gives none."""
 
     name: str
@@ -58,8 +54,7 @@ class Parameter:
     value: Scalar | tuple[Scalar, ...] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class OpcUa:
+class OpcUa(Struct, frozen=True):
     """Where on an OPC UA server a service or function is found; node ids as written."""
 
     kind: str
@@ -72,8 +67,7 @@ class OpcUa:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class MachineVariable:
+class MachineVariable(Struct, frozen=True):
     """What a machine shows or is told, with dots for what belongs to it.
 
     ``node`` is its OPC UA node as written; a variable with ``elements`` is the list of these.
@@ -86,8 +80,7 @@ class MachineVariable:
     elements: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Machine:
+class Machine(Struct, frozen=True):
     """A machine that tasks and services can be allocated to."""
 
     id: str
@@ -99,8 +92,7 @@ class Machine:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Material:
+class Material(Struct, frozen=True):
     """A kind of material: what there is of it, where, and how much may wait between tasks."""
 
     id: str
@@ -113,8 +105,7 @@ class Material:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class MaterialUse:
+class MaterialUse(Struct, frozen=True):
     """How much of a material a task uses, and whether it is consumed, produced or carried."""
 
     material: str
@@ -122,8 +113,7 @@ class MaterialUse:
     use: str
 
 
-@dataclass(frozen=True, slots=True)
-class Mode:
+class Mode(Struct, frozen=True):
     """One way to equip a task or a service: machines needed at once, with what it costs there."""
 
     machines: tuple[str, ...]
@@ -133,8 +123,7 @@ class Mode:
     available: bool | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SubTask:
+class SubTask(Struct, frozen=True):
     """A service node of a task, as the scheduler sees it (thesis 6.5.1: ``st_ij`` and PA)."""
 
     node: str
@@ -142,16 +131,14 @@ class SubTask:
     after: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class SameMachine:
+class SameMachine(Struct, frozen=True):
     """Service nodes that must run on one machine, and the functions and resources that say so."""
 
     nodes: tuple[str, ...]
     because: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Derived:
+class Derived(Struct, frozen=True):
     """What can be computed again from the rest of the model."""
 
     sub_tasks: tuple[SubTask, ...] = ()
@@ -159,8 +146,7 @@ class Derived:
     duration: Range | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Task:
+class Task(Struct, frozen=True):
     """A step of a recipe: one use of a task definition."""
 
     id: str
@@ -179,8 +165,7 @@ class Task:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Performance:
+class Performance(Struct, frozen=True):
     """A block that performs a recipe: which of its parts, or operations of parts, do what.
 
     ``arguments`` are the parameters of the recipe and ``steps`` the nodes of its graphs, each
@@ -193,8 +178,7 @@ class Performance:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Recipe:
+class Recipe(Struct, frozen=True):
     """Tasks and the order between them; variables carry values from task to task."""
 
     id: str
@@ -211,8 +195,7 @@ class Recipe:
     performances: tuple[Performance, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Provider:
+class Provider(Struct, frozen=True):
     """A machine that offers a service, with its own duration there."""
 
     machine: str
@@ -222,8 +205,7 @@ class Provider:
     opcua: OpcUa | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Service:
+class Service(Struct, frozen=True):
     """A machine service or an infrastructure service (thesis 3.5.2)."""
 
     id: str
@@ -242,16 +224,14 @@ class Service:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Resource:
+class Resource(Struct, frozen=True):
     """What a function does with something that only one may have: acquire, hold, release, use."""
 
     id: str
     mode: str
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
+class Function(Struct, frozen=True):
     """A machine function, at the level of the programmable controller (thesis 3.5.3)."""
 
     id: str
@@ -264,8 +244,7 @@ class Function:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Node:
+class Node(Struct, frozen=True):
     """A node of a service or function graph; which fields count depends on ``kind``.
 
     Kinds: initial final flowFinal decision merge fork join service function call action assign
@@ -285,8 +264,7 @@ class Node:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class FlowEdge:
+class FlowEdge(Struct, frozen=True):
     """An edge of a graph. ``role`` is body or exit on what leaves a loop or for-each node."""
 
     source: str
@@ -299,8 +277,7 @@ class FlowEdge:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class FlowGraph:
+class FlowGraph(Struct, frozen=True):
     """Order of services in a task, or of machine functions in a service."""
 
     id: str
@@ -312,8 +289,7 @@ class FlowGraph:
     element: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Model:
+class Model(Struct, frozen=True):
     """One recipe with everything that it refers to; each tuple is sorted by id."""
 
     recipe: Recipe

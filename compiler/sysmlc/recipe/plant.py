@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from functools import cached_property
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.values import dataclass
 
 HIERARCHY = "instance-hierarchy"
 LIBRARIES = frozenset({"system-unit-class-lib", "role-class-lib", "interface-class-lib"})
@@ -12,8 +13,7 @@ _VALUES = "#values"
 """End of the id of the instance that holds the values of a part (front end ``caex``)."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlantElement:
+class PlantElement(Struct, frozen=True):
     """An InternalElement: its id in the plant, and what stands for it in the graph.
 
     ``part`` is the property of the block around it, None for a top element; ``instance`` has its

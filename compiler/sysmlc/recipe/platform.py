@@ -3,11 +3,10 @@
 The JSON form is described by metamodels/sysmlc-platform.schema.json.
 """
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class Binding:
+class Binding(Struct, frozen=True):
     """A machine stands for an element of the plant.
 
     ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of
@@ -20,8 +19,7 @@ class Binding:
     by: str
 
 
-@dataclass(frozen=True, slots=True)
-class Offer:
+class Offer(Struct, frozen=True):
     """An element of the plant offers a service by an operation.
 
     ``machine`` is empty when the service needs none. ``how`` is ``name``, ``method``, ``call``,
@@ -36,8 +34,7 @@ class Offer:
     by: str
 
 
-@dataclass(frozen=True, slots=True)
-class Used:
+class Used(Struct, frozen=True):
     """An element of the plant that recipes use; ``element`` is its id in the graph."""
 
     id: str
@@ -46,8 +43,7 @@ class Used:
     element: str
 
 
-@dataclass(frozen=True, slots=True)
-class Unused:
+class Unused(Struct, frozen=True):
     """An element of the plant that no recipe uses, with so many below it."""
 
     id: str
@@ -57,8 +53,7 @@ class Unused:
     contents: int
 
 
-@dataclass(frozen=True, slots=True)
-class Platform:
+class Platform(Struct, frozen=True):
     """The recipes of a unit on its plant; all tuples are sorted.
 
     ``machines`` and ``services`` are ids (qualified names) with the recipes that use them and

@@ -5,6 +5,7 @@ free and go there. Either it is assumed that they do not, or the cell is offered
 """
 
 from collections.abc import Iterator
+from enum import StrEnum
 from itertools import combinations, permutations
 
 from sysmlc.logic import formula as f
@@ -13,7 +14,6 @@ from sysmlc.logic.formula import Formula
 from sysmlc.robots import words
 from sysmlc.robots.seen import apart, free_cells, no_obstacle, seen
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
-from sysmlc.values import StrEnum
 
 
 class Sharing(StrEnum):

@@ -5,11 +5,12 @@ controller, the times that robots travel and what was decided of the contracts s
 """
 
 from collections.abc import Mapping
-from dataclasses import field
 from hashlib import sha256
 from typing import Any
 
 import msgspec
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.cache import Cache
 from sysmlc.logic.reduction.reduce import reduced
@@ -19,13 +20,11 @@ from sysmlc.robots.strategy import Times, controller_contract
 from sysmlc.robots.study import Study
 from sysmlc.synthesis.decide import Verdict
 from sysmlc.synthesis.synthesise import Synthesis
-from sysmlc.values import dataclass, replace
 
 _FORMAT = 2
 
 
-@dataclass(frozen=True, slots=True)
-class Crew:
+class Crew(Struct, frozen=True):
     """The robots of a floor."""
 
     controller: Synthesis
@@ -42,8 +41,7 @@ class _Entry(msgspec.Struct, array_like=True):
     claims: tuple[tuple[str, bool, str, tuple[str, ...]], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Keeper:
+class Keeper(Struct, frozen=True):
     """Stores crews in a cache, by floor and robots; ``tool`` is the digest of the tool."""
 
     cache: Cache

@@ -9,10 +9,11 @@ from operator import itemgetter
 from struct import iter_unpack
 from typing import NamedTuple, TypeVar
 
+from msgspec import Struct
+
 from sysmlc.robots.answers import Memory
 from sysmlc.robots.planes import Runs, but
 from sysmlc.robots.world import Body, State, World
-from sysmlc.values import dataclass
 
 _T = TypeVar("_T")
 _BYTE = 8
@@ -30,8 +31,7 @@ class _Known(NamedTuple):
     aside: int | None
 
 
-@dataclass(frozen=True, slots=True)
-class Batch:
+class Batch(Struct, frozen=True):
     """Some states to go on with; a bit of a condition is one of them."""
 
     runs: Runs[int]

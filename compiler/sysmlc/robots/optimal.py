@@ -2,18 +2,18 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.robots.allocate import greedy
 from sysmlc.robots.schedule import Schedule, scheduled
 from sysmlc.robots.study import Study
 from sysmlc.robots.travel import START, Travel
-from sysmlc.values import dataclass
 
 MOST_NODES = 10_000
 """Partial allocations that are looked at before the best one found counts as good enough."""
 
 
-@dataclass(frozen=True, slots=True)
-class Best:
+class Best(Struct, frozen=True):
     """The best allocation that was found."""
 
     schedule: Schedule

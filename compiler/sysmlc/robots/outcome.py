@@ -1,8 +1,10 @@
 """The whole flow of the thesis's figure 4.3: from a study to a mission that is validated."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 from itertools import islice
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.robots.allocate import greedy
@@ -20,7 +22,6 @@ from sysmlc.robots.travel import Travel
 from sysmlc.robots.validate import validate
 from sysmlc.synthesis.decide import Options, Place, decide
 from sysmlc.synthesis.synthesise import Synthesis
-from sysmlc.values import dataclass, replace
 
 MOST_TRIED = 12
 """Allocations that are validated before it is given up."""
@@ -83,16 +84,14 @@ NOT_DECIDED = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Tried:
+class Tried(Struct, frozen=True):
     """An allocation and what its simulation came to."""
 
     schedule: Schedule
     validation: Validation
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Struct, frozen=True):
     """What became of a study."""
 
     study: Study

@@ -11,7 +11,7 @@ from math import prod
 from operator import mul
 from typing import Generic, Protocol, TypeVar
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
 class Plane(Protocol):
@@ -24,8 +24,7 @@ class Plane(Protocol):
 P = TypeVar("P", bound=Plane)
 
 
-@dataclass(frozen=True, slots=True)
-class Runs(Generic[P]):
+class Runs(Struct, Generic[P], frozen=True):
     """Some runs: all of them, none of them, and in which a robot starts in a cell."""
 
     all: P

@@ -3,13 +3,15 @@
 from collections.abc import Iterable, Iterator
 from math import isqrt
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.names import Names
 from sysmlc.robots import rules
 from sysmlc.robots.ordering import orders_of
 from sysmlc.robots.study import Grid, Robot, Study, Target
-from sysmlc.values import dataclass, replace
 
 LIBRARY = "Floors"
 MOST_CELLS = 400
@@ -41,8 +43,7 @@ def _is_ours(graph: Graph, element: Element, name: str) -> bool:
     return f"::{graph.qualified_name(element)}".endswith(f"::{LIBRARY}::{name}")
 
 
-@dataclass(frozen=True, slots=True)
-class _Placed:
+class _Placed(Struct, frozen=True):
     element: Element
     cell: int | None
 

@@ -3,6 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.formula import variables
 from sysmlc.robots import words
@@ -23,14 +26,12 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decide import Options
 from sysmlc.synthesis.told import new_manager
 from sysmlc.synthesis.witness import lines
-from sysmlc.values import dataclass, replace
 
 NewManager = Callable[[], Manager]
 """A manager for each question, within the limits."""
 
 
-@dataclass(frozen=True, slots=True)
-class Relation:
+class Relation(Struct, frozen=True):
     """A claim and what became of it; ``holds`` is None when it was not decided."""
 
     claim: str

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.escapes import escape_markdown
 from sysmlc.logic.formats import write
 from sysmlc.naming import file_names
@@ -13,7 +15,6 @@ from sysmlc.robots.study import Study
 from sysmlc.robots.travel import START
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.files import files_of
-from sysmlc.values import replace
 
 
 def files(outcome: Outcome) -> Iterator[tuple[str, str]]:

@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from msgspec import Struct
+
 from sysmlc.robots.study import Study
 from sysmlc.robots.travel import START, Travel
 from sysmlc.robots.world import Allocation
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Schedule:
+class Schedule(Struct, frozen=True):
     """An allocation with the steps in which its targets are reached when no robot waits for way."""
 
     allocation: Allocation

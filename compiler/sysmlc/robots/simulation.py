@@ -2,16 +2,16 @@
 
 from typing import Generic
 
+from msgspec import Struct
+
 from sysmlc.robots.planes import P
 from sysmlc.robots.world import World
-from sysmlc.values import dataclass
 
 STEPS = 1_000
 """Steps after which a mission without a deadline is given up."""
 
 
-@dataclass(frozen=True, slots=True)
-class Validation:
+class Validation(Struct, frozen=True):
     """What the simulation of all admissible starts came to."""
 
     starts: int
@@ -33,8 +33,7 @@ class Validation:
         return not self.failed
 
 
-@dataclass(frozen=True, slots=True)
-class Failure(Generic[P]):
+class Failure(Struct, Generic[P], frozen=True):
     """What goes wrong: in which runs, and which target is late."""
 
     runs: P

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 
+from msgspec import Struct
+
 from sysmlc.plantuml import label, plain
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.planes import Runs, but
 from sysmlc.robots.study import STAY, Study
 from sysmlc.robots.world import Allocation, World
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(Struct, frozen=True):
     """A step of one run, by robot."""
 
     cells: tuple[int, ...]

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.robots.answers import Answers
@@ -12,7 +14,6 @@ from sysmlc.robots.travel import START, Travel, starts_of
 from sysmlc.robots.world import World
 from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.synthesise import Synthesis, synthesised
-from sysmlc.values import replace
 
 ANY = Robot("robot", "robot")
 """A robot that stands for all: they differ in names and starts, which no machine depends on."""

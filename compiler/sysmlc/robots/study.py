@@ -1,10 +1,9 @@
 """A floor with robots and a mission, as values: what everything else of the study is made of."""
 
 from collections.abc import Iterator
-from dataclasses import field
 from functools import lru_cache
 
-from sysmlc.values import dataclass
+from msgspec import Struct, field
 
 STAY = "stay"
 WAYS = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
@@ -12,8 +11,7 @@ WAYS = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
 COMMANDS = (STAY, *WAYS)
 
 
-@dataclass(frozen=True, slots=True)
-class Grid:
+class Grid(Struct, frozen=True):
     """Cells in rows and columns, numbered row by row from 0; no robot enters ``blocked`` ones."""
 
     columns: int
@@ -81,8 +79,7 @@ def _distances(grid: Grid, target: int) -> dict[int, int]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class Robot:
+class Robot(Struct, frozen=True):
     """A robot; ``word`` begins the names of its variables, ``start`` is None for any cell."""
 
     name: str
@@ -91,8 +88,7 @@ class Robot:
     start: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(Struct, frozen=True):
     """A cell to be reached, and within how many steps of the start of the mission."""
 
     name: str
@@ -102,8 +98,7 @@ class Target:
     deadline: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Order:
+class Order(Struct, frozen=True):
     """Numbers of two targets of which one is reached before the other.
 
     With ``is_carried`` the same robot goes on from the earlier one to the later one.
@@ -115,8 +110,7 @@ class Order:
     origin: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Study:
+class Study(Struct, frozen=True):
     """What is known of a floor, its robots and their mission."""
 
     component: str

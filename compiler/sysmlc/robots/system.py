@@ -5,6 +5,7 @@ positions; in ``MOVES`` a robot's position is its own choice: the command is the
 """
 
 from collections.abc import Callable, Iterator
+from enum import StrEnum
 from itertools import combinations, permutations
 
 from sysmlc.logic import formula as f
@@ -14,7 +15,6 @@ from sysmlc.robots import words
 from sysmlc.robots.robot import counters, counting
 from sysmlc.robots.seen import apart, free_cells, no_obstacle, seen
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
-from sysmlc.values import StrEnum
 
 _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 

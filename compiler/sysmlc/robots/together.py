@@ -8,6 +8,9 @@ few robots as it takes; the others rest (``among``), and the run is held to all 
 
 from collections.abc import Callable, Iterator, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Part
 from sysmlc.logic.contract import Class, Conjunct, Contract
@@ -22,11 +25,9 @@ from sysmlc.synthesis.algebra.recurrence import Recurrence
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """A conjunct that does not follow, and a run of all robots that shows it, if one was found."""
 
     conjunct: Conjunct

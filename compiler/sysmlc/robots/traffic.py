@@ -5,12 +5,12 @@ The first robot with a target leads: while it cannot set out nobody sets out acr
 robots that stand in its way are sent aside, with those who stand in their way (docs/robots.md).
 """
 
+from dataclasses import dataclass
 from typing import Generic
 
 from sysmlc.robots.paths import chain
 from sysmlc.robots.planes import P, Runs, any_of
 from sysmlc.robots.study import Grid
-from sysmlc.values import dataclass
 
 
 @dataclass(slots=True)

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
+from msgspec import Struct
+
 from sysmlc.robots.study import Study
-from sysmlc.values import dataclass
 
 START = -1
 """The place of a robot that has reached no target yet; other places are numbers of targets."""
@@ -12,8 +13,7 @@ REACTION = 2
 it, and stays because it was in its last target, and the one in which its first command is given."""
 
 
-@dataclass(frozen=True, slots=True)
-class Travel:
+class Travel(Struct, frozen=True):
     """Steps by (robot, place, target), all numbers; what is not there cannot be reached."""
 
     steps: Mapping[tuple[int, int, int], int]

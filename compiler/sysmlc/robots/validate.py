@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import islice
 
+from msgspec import Struct
+
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.merging import Batch, States
 from sysmlc.robots.planes import P
@@ -16,7 +18,6 @@ from sysmlc.robots.simulation import Failure, Simulation, Validation
 from sysmlc.robots.starts import CHUNK, chunks, count, first_of
 from sysmlc.robots.study import Study
 from sysmlc.robots.world import Allocation, World
-from sysmlc.values import dataclass
 
 MOST_LISTED = 50_000_000
 """Starts up to which each has a bit of its own."""
@@ -61,8 +62,7 @@ def _validation(
     return Validation(number, steps, tuple(reached), failed, late, is_slow)
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
+class _Part(Struct, frozen=True):
     """Runs to be stepped together, and where they come from, by bit."""
 
     world: World[int]

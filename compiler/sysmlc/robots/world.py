@@ -5,7 +5,10 @@ and shows ways; then each robot's machine answers with a command (MOOD4I thesis,
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Generic
+
+from msgspec import Struct
 
 from sysmlc.robots.answers import Answers, Memory
 from sysmlc.robots.journeys import is_slow
@@ -13,7 +16,6 @@ from sysmlc.robots.paths import hop
 from sysmlc.robots.planes import P, Runs, any_of
 from sysmlc.robots.study import WAYS, Study
 from sysmlc.robots.traffic import Traffic
-from sysmlc.values import dataclass
 
 Allocation = tuple[tuple[int, ...], ...]
 """For each robot the numbers of its targets, in the order in which it reaches them."""
@@ -32,8 +34,7 @@ class Body(Generic[P]):
     commands: dict[str, P]
 
 
-@dataclass(frozen=True, slots=True)
-class State(Generic[P]):
+class State(Struct, Generic[P], frozen=True):
     """All that is known between two steps: what will become of a run depends on nothing else."""
 
     bodies: list[Body[P]]

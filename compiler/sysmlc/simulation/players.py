@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol, TypeVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
@@ -21,7 +23,6 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines import interpreter as step
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
-from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
 _T = TypeVar("_T")
@@ -96,8 +97,7 @@ def _read(graph: Graph, text: str, domain: Domain) -> Literal | None:
             return text.rpartition("::")[2] if named is None else named.name
 
 
-@dataclass(frozen=True)
-class ActivityPlayer:
+class ActivityPlayer(Struct, frozen=True, dict=True):
     """Plays the token game."""
 
     tokens: TokenGraph
@@ -151,8 +151,7 @@ class _Chooser:
                 yield [*taken[:place], branch]
 
 
-@dataclass(frozen=True)
-class MachinePlayer:
+class MachinePlayer(Struct, frozen=True, dict=True):
     """Runs a state machine."""
 
     graph: Graph

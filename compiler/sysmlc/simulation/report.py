@@ -1,19 +1,18 @@
 """What came of scenarios: as text, as JUnit XML, and as a sequence diagram."""
 
 from collections.abc import Iterator
-from dataclasses import field
 from xml.etree import ElementTree
+
+from msgspec import Struct, field
 
 from sysmlc.escapes import escape_invisible
 from sysmlc.logic.formula import Literal
 from sysmlc.plantuml import plain
-from sysmlc.values import dataclass
 
 Valuation = dict[str, Literal]
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(Struct, frozen=True):
     """The first value that is not as expected; steps count from 0, lines from 1."""
 
     step: int
@@ -27,8 +26,7 @@ class Difference:
         return f"step {self.step}: {self.variable} is {found}, expected {expected}"
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
+class Result(Struct, frozen=True):
     """One scenario. ``trace`` is a run that shows the expected values, or comes nearest."""
 
     name: str
@@ -45,8 +43,7 @@ class Result:
         return self.is_valid and self.difference is None
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(Struct, frozen=True):
     """The results of all scenarios of a file."""
 
     file: str

@@ -5,12 +5,13 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from sysmlc import resources
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.logic.formula import Literal
 from sysmlc.simulation import rules
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
@@ -19,16 +20,14 @@ if TYPE_CHECKING:
 Values = Mapping[str, Literal]
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
+class Spot(Struct, frozen=True):
     """Line and column in the scenario, from 1."""
 
     line: int = 0
     column: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(Struct, frozen=True):
     """One value that a step gives or expects."""
 
     name: str
@@ -36,8 +35,7 @@ class Entry:
     spot: Spot
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(Struct, frozen=True):
     """What the environment gives in one step, and what is expected in it."""
 
     inputs: tuple[Entry, ...]
@@ -45,8 +43,7 @@ class Step:
     spot: Spot
 
 
-@dataclass(frozen=True, slots=True)
-class Scenario:
+class Scenario(Struct, frozen=True):
     """One scenario; steps are already repeated, ``trace`` is part of what they expect."""
 
     name: str

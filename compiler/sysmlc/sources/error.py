@@ -1,6 +1,6 @@
 """What is wrong with an input as a file, before anyone knows what it means."""
 
-from sysmlc.values import StrEnum
+from enum import StrEnum
 
 
 class Fault(StrEnum):

@@ -1,10 +1,9 @@
 """How large an input may be."""
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(Struct, frozen=True):
     """Limits of one input; sizes in bytes. Real archives stay below a ratio of 18."""
 
     file_size: int = 2 << 30

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
+from msgspec import Struct
+
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _LONGEST = 4096
 """No file system has longer paths; looking for one takes a call for each of its parts."""
@@ -14,8 +15,7 @@ _WORKSPACE = pattern(r"platform:/resource/([^/]+)/(.+)")
 _SCHEME = pattern(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
-@dataclass(frozen=True, slots=True)
-class Roots:
+class Roots(Struct, frozen=True):
     """Folders that references may lead into; nothing outside them is ever opened."""
 
     folders: tuple[Path, ...]

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import cast
 
 from lxml import etree
+from msgspec import Struct
 
 from sysmlc.escapes import escape_undecodable
 from sysmlc.sources.roots import Roots
 from sysmlc.sources.source import Source
-from sysmlc.values import dataclass
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _LOADING = frozenset({f"{_XS}{tag}" for tag in ("include", "import", "redefine", "override")})
@@ -21,8 +21,7 @@ class SchemaError(Exception):
     """The folder, or a schema in it, cannot be used; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class Violation:
+class Violation(Struct, frozen=True):
     """One fault: the ordinal of the element, names down to it, what is wrong."""
 
     ordinal: int
@@ -30,8 +29,7 @@ class Violation:
     problem: str
 
 
-@dataclass(frozen=True, slots=True)
-class Schema:
+class Schema(Struct, frozen=True):
     """A compiled schema: namespace, root elements, and versions that its files may state."""
 
     name: str
@@ -41,8 +39,7 @@ class Schema:
     compiled: etree.XMLSchema
 
 
-@dataclass(frozen=True, slots=True)
-class Schemas:
+class Schemas(Struct, frozen=True):
     """The schemas of one folder, sorted by name."""
 
     folder: Path

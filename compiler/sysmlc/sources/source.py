@@ -3,11 +3,10 @@
 import hashlib
 from functools import cached_property
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(Struct, frozen=True, dict=True):
     """Bytes and the name that diagnostics and outputs use for them.
 
     ``name`` is relative to the root of the compile unit, with ``/`` and in NFC; an entry of an

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
@@ -15,7 +17,6 @@ from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.requirements import check_viewpoints
 from sysmlc.synthesis.told import new_manager, report_failure, why_not
 from sysmlc.synthesis.witness import Party, Witness
-from sysmlc.values import dataclass
 
 SUFFIX = ".requirements"
 """What the contract of a component's requirements has behind the name of its behaviour's."""
@@ -80,8 +81,7 @@ GIVEN_UP = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Checked:
+class Checked(Struct, frozen=True):
     """What was found out about one contract; the pairs that were compared by name."""
 
     verdict: Verdict

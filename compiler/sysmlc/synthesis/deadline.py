@@ -7,17 +7,18 @@ decision. The top of the range is no bound: a timer that stops there promises no
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.decide import Options, Place, Verdict, decide
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Deadline:
+class Deadline(Struct, frozen=True):
     """What is known of the smallest bound."""
 
     component: str

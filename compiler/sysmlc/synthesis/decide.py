@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
@@ -15,14 +17,12 @@ from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.games.shift import shifted
 from sysmlc.synthesis.games.solve import Solution, solve_arena
 from sysmlc.synthesis.unrealizable.reasons import reasons_of
-from sysmlc.values import dataclass
 
 Place = Callable[[str], Subject]
 """From the origin of a contract or of a conjunct to what findings are about."""
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(Struct, frozen=True):
     """How a contract is decided."""
 
     engine: str = ""
@@ -32,8 +32,7 @@ class Options:
     """Whether guarantees that cannot be kept together are looked for and named."""
 
 
-@dataclass(frozen=True, slots=True)
-class Figures:
+class Figures(Struct, frozen=True):
     """What a decision took."""
 
     variables: int
@@ -57,8 +56,7 @@ class Figures:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(Struct, frozen=True):
     """Whether a contract can be kept; None when that is not decided."""
 
     component: str
@@ -77,8 +75,7 @@ class Verdict:
         return f"{self.component}: {words[self.is_realizable]}{figures}"
 
 
-@dataclass(frozen=True, slots=True)
-class Decision:
+class Decision(Struct, frozen=True):
     """A verdict, with the game that it is about when one was made."""
 
     verdict: Verdict

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.naming import file_names
@@ -12,14 +15,12 @@ from sysmlc.synthesis.controllers.closed import Controller
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decide import Place
 from sysmlc.synthesis.synthesise import Synthesis
-from sysmlc.values import dataclass, replace
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
 """Forms of controllers as files: machine or table, table, gr1c's JSON."""
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
+class Written(Struct, frozen=True):
     """What was made, and the files of it; what a form cannot say counts as not made."""
 
     made: tuple[Synthesis, ...]

@@ -1,5 +1,9 @@
 """From a contract to a controller that is known to keep it."""
 
+from enum import StrEnum
+
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
@@ -22,7 +26,6 @@ from sysmlc.synthesis.decide import Options, Place, Verdict, decided
 from sysmlc.synthesis.games.arena import Arena, nodes
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.solve import solve_arena
-from sysmlc.values import StrEnum, dataclass
 
 MOST_NODES = 500_000
 """Nodes of diagrams that looking for a machine may take: where they are more, there is none that
@@ -41,8 +44,7 @@ class Form(StrEnum):
     TABLE = "table"
 
 
-@dataclass(frozen=True, slots=True)
-class Synthesis:
+class Synthesis(Struct, frozen=True):
     """A verdict, and the controller when there is one that passes the check."""
 
     verdict: Verdict

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.composite import Composite
 from sysmlc.logic.contract import Conjunct
@@ -17,11 +19,9 @@ from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.together_rules import BREAK, CIRCLE, CONTRADICT, LOST, NOT_COMPOSED, OPEN
 from sysmlc.synthesis.told import new_manager, report_failure, said, why_not
 from sysmlc.synthesis.witness import Party, Witness, lines
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Together:
+class Together(Struct, frozen=True):
     """What was found out about a block with parts."""
 
     component: str

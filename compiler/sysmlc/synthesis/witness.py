@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
@@ -9,7 +11,6 @@ from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.naming import file_names
 from sysmlc.plantuml import label, plain
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.values import dataclass
 
 _SHOWN = 12
 """Steps of a run that a message shows."""
@@ -18,16 +19,14 @@ _ENVIRONMENT = "environment"
 Values = Mapping[str, Literal]
 
 
-@dataclass(frozen=True, slots=True)
-class Party:
+class Party(Struct, frozen=True):
     """Who acts in a run: a name, and the contract that says what it decides."""
 
     name: str
     contract: Contract
 
 
-@dataclass(frozen=True, slots=True)
-class Witness:
+class Witness(Struct, frozen=True):
     """A run in which a conjunct, which ``component`` relies on or should keep, is broken."""
 
     component: str

@@ -1,6 +1,7 @@
 """The library LineMachines: what conveyor, printer, quality check and mill promise can be kept."""
 
 import pytest
+from msgspec.structs import replace
 from reading_v2 import read
 
 from sysmlc.logic.contract import Contract, IntegerDomain
@@ -9,7 +10,6 @@ from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.games.solve import solve
-from sysmlc.values import replace
 
 LINE = """
 package Lines {

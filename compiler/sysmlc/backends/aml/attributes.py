@@ -1,5 +1,7 @@
 """Attributes and attribute types."""
 
+from dataclasses import dataclass
+
 from sysmlc.backends.aml import constraints, header
 from sysmlc.backends.aml.book import Book, File
 from sysmlc.backends.aml.families import PRIMITIVES, Family, is_inline, is_measured, is_primitive
@@ -8,7 +10,6 @@ from sysmlc.backends.aml.rules import APPROXIMATED, UNSAID_EDGE
 from sysmlc.backends.aml.values import text_of
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.measures import unit_of
-from sysmlc.values import dataclass
 
 _LISTS = ("ListType", "OrderedListType")
 

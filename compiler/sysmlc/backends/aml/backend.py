@@ -2,16 +2,16 @@
 
 import posixpath
 
+from msgspec import Struct
+
 from sysmlc.backends.aml.document import documents
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class AmlBackend:
+class AmlBackend(Struct, frozen=True):
     """Saves the structure of the graph of any front end as AutomationML."""
 
     name: str = "aml"

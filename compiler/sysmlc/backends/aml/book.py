@@ -1,13 +1,12 @@
 """What all writers of parts share: the graph, the files, ids, class paths and losses."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.aml.families import Families, Family
 from sysmlc.backends.aml.identity import Identity
 from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.values import dataclass
 
 _BRACKETED = frozenset("/@[]")
 

@@ -1,6 +1,6 @@
 """Internal elements: parts of classes, and instances with the values that they give."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.aml import attributes, groups, header, interfaces, roles
 from sysmlc.backends.aml.attributes import unresolved
@@ -10,7 +10,6 @@ from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import UNSAID_EDGE
 from sysmlc.backends.aml.values import text_of
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.values import dataclass
 
 _REFERENCE = "RefBaseSystemUnitPath"
 _PARTS = frozenset({"part", "reference"})

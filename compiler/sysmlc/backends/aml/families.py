@@ -1,7 +1,9 @@
 """Sorts of classes in CAEX, and which of them each classifier of the graph becomes."""
 
+from dataclasses import dataclass
+from enum import StrEnum
+
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.values import StrEnum, dataclass
 
 
 class Family(StrEnum):

@@ -2,16 +2,16 @@
 
 import re
 
+from msgspec import Struct
+
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.identity import derived_id
-from sysmlc.values import dataclass
 
 _MADE = re.compile(r"#(values|class|part|type)(~\d+)?$")
 """Ends of the ids of what the front end ``caex`` adds beside an object."""
 
 
-@dataclass(frozen=True, slots=True)
-class Identity:
+class Identity(Struct, frozen=True):
     """Which ids are those of the objects of AutomationML files."""
 
     files: frozenset[str]

@@ -1,13 +1,12 @@
 """XML elements of CAEX 3.0 as they are written: children in the order of its schema."""
 
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from lxml import etree
 
 from sysmlc.sources.caex import NAMESPACE, ORDER
-from sysmlc.values import dataclass
 
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _FREE = frozenset({"AdditionalInformation"})

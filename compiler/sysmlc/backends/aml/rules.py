@@ -1,10 +1,9 @@
 """What CAEX cannot say, and how it is counted: one finding for each kind of loss."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
-from sysmlc.values import dataclass
 
 _GATE = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
 

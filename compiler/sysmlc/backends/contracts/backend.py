@@ -1,5 +1,7 @@
 """Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts.explain import explain
 from sysmlc.backends.contracts.trace import trace as trace_of
@@ -12,7 +14,6 @@ from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
 from sysmlc.naming import file_names
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 TOO_LARGE = rule(
     "SM520",
@@ -37,8 +38,7 @@ BAD_TEMPLATE = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class ContractsBackend:
+class ContractsBackend(Struct, frozen=True):
     """Writes the contracts that the pass ``contracts`` found."""
 
     name: str = "contracts"

@@ -9,6 +9,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 
+from msgspec import Struct
+
 from sysmlc.backends.templates import Templates
 from sysmlc.escapes import escape_code, escape_markdown
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -16,7 +18,6 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _SHIPPED = Templates("contracts", None)
 _TITLES = {
@@ -46,8 +47,7 @@ _MARKUP = pattern(r"[<>`|\[\]]")
 """What would not be shown as it is written."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(Struct, frozen=True):
     """One variable or conjunct as the template shows it, as Markdown.
 
     ``formula`` is the content of a code span between single backticks.
@@ -59,8 +59,7 @@ class Row:
     place: str
 
 
-@dataclass(frozen=True, slots=True)
-class Section:
+class Section(Struct, frozen=True):
     """Conjuncts of one class; ``unset`` are Booleans that are only false, when there are many."""
 
     title: str
@@ -68,8 +67,7 @@ class Section:
     unset: tuple[Row, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Page:
+class Page(Struct, frozen=True):
     """Everything that the template needs."""
 
     component: str

@@ -1,7 +1,7 @@
 """Activity diagrams: one for each activity with nodes, drawn as a graph (docs/decisions)."""
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import actions, labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -12,7 +12,6 @@ from sysmlc.backends.plantuml.stm import divided, guard_text
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.plantuml import label, plain, small, stack
-from sysmlc.values import dataclass
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"

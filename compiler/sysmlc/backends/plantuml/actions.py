@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.plantuml import label, lines
-from sysmlc.values import dataclass
 
 _CONTROL = {
     "initial": "start",
@@ -30,8 +31,7 @@ _SHAPES = {"accept": "accept", "accept-call": "accept", "send": "send", "broadca
 _ROW = 44
 
 
-@dataclass(frozen=True, slots=True)
-class Look:
+class Look(Struct, frozen=True):
     """What a node shows; ``pins`` and ``shows`` are the ids that its rows stand for."""
 
     shape: str

@@ -1,7 +1,10 @@
 """Diagrams as their authors drew them: their choice of elements and lines, our notation."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
+
+from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import (
     author_behaviours,
@@ -27,7 +30,6 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
 from sysmlc.plantuml import plain
-from sysmlc.values import dataclass, replace
 
 NOT_DRAWN = rule(
     "SM702",

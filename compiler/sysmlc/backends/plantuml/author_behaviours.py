@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.backends.plantuml import act, stm
 from sysmlc.backends.plantuml.author_choice import Choice
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.values import replace
 
 _WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
     Kind.ACTIVITY: act.whole,

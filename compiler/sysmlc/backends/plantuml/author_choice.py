@@ -2,8 +2,9 @@
 
 from functools import cached_property
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.values import dataclass
 
 FEATURES = frozenset(
     [
@@ -38,8 +39,7 @@ LINES = frozenset(
 """Kinds that are lines, or belong to one."""
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(Struct, frozen=True, dict=True):
     """One diagram of an author."""
 
     graph: Graph

@@ -1,7 +1,7 @@
 """Authors' internal block diagrams: parts in parts as they were drawn, ports, connectors."""
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import ibd, labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -12,7 +12,6 @@ from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortVie
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
 from sysmlc.plantuml import keyword_label, label, lines, plain, small, stack
-from sysmlc.values import dataclass
 
 _Ids = tuple[str, ...]
 _PORTS = (Kind.PORT,)

@@ -4,6 +4,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
 from typing import NamedTuple
 
+from msgspec import Struct
+
 from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
 from sysmlc.backends.plantuml import (
@@ -25,7 +27,6 @@ from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.output import Output
 from sysmlc.plantuml import comment
-from sysmlc.values import dataclass
 
 BAD_TEMPLATE = rule(
     "SM700",
@@ -50,8 +51,7 @@ KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class PlantUml:
+class PlantUml(Struct, frozen=True):
     """Diagrams as PlantUML text."""
 
     name: str = "plantuml"

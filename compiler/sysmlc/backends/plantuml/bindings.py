@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
+from msgspec import Struct
+
 from sysmlc.backends.plantuml.connections import Path, is_parametric, path_of
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
-from sysmlc.values import dataclass
 
 OWNERS = (Kind.CLASS, Kind.COMPONENT)
 _DEEPEST = 4
@@ -15,8 +16,7 @@ _WIDEST = 1000
 the ways that are followed in each."""
 
 
-@dataclass(frozen=True, slots=True)
-class Binding:
+class Binding(Struct, frozen=True):
     """One line of a parametric diagram; ``shows`` are the ids that it stands for."""
 
     source: Path

@@ -2,17 +2,17 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from msgspec import Struct
+
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.domains import coloured, styled
 from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import runs_both_ways
 from sysmlc.plantuml import keyword_label, label, stack
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(Struct, frozen=True):
     """Where a connection ends: through ``parts`` and ``ports`` to ``port``.
 
     All are ids, outermost first. Without a port it ends at the last part, without parts at
@@ -33,8 +33,7 @@ class Path:
         return (*self.parts, *self.ports, *([self.port] if self.port else []))
 
 
-@dataclass(frozen=True, slots=True)
-class Connection:
+class Connection(Struct, frozen=True):
     """One line of an internal block diagram; ``shows`` are the ids that it stands for.
 
     ``carried`` are the items that flow over it, each with its domain or the empty text.

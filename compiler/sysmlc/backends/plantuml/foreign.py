@@ -5,12 +5,13 @@ A package of machines on which twenty services depend would be as wide as twenty
 
 from collections.abc import Iterable
 
+from msgspec.structs import replace
+
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import Relation
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Graph
 from sysmlc.plantuml import lines
-from sysmlc.values import replace
 
 MOST = 3
 """Foreign clients in one diagram that still are boxes with lines."""

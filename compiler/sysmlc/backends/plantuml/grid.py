@@ -4,8 +4,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from math import ceil, sqrt
 
+from msgspec.structs import replace
+
 from sysmlc.backends.plantuml.views import Box, BoxView, Line
-from sysmlc.values import replace
 
 _FEW = 3
 _ROW = 5

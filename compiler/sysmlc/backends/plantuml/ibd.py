@@ -4,7 +4,7 @@ An instance, and a hierarchy of AutomationML whose instances are linked, have on
 """
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -23,7 +23,6 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
 from sysmlc.plantuml import label, lines, plain, small, stack
-from sysmlc.values import dataclass
 
 FORMS = {"in": "portin", "out": "portout"}
 """How ports are drawn, by direction."""

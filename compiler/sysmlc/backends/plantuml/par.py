@@ -5,7 +5,9 @@ A feature of a part stands in a box of its own, with the path as its name (claus
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import labels, measured, split
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -15,7 +17,6 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
 from sysmlc.plantuml import label, lines, plain, small, stack
-from sysmlc.values import dataclass, replace
 
 _ROW = 40
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
+from msgspec.structs import replace
+
 from sysmlc.backends.plantuml import split
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
-from sysmlc.values import replace
 
 
 def pieces(view: GraphView, limit: int = split.LIMIT) -> list[GraphView]:

@@ -2,17 +2,17 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind, templates
-from sysmlc.values import dataclass
 
 _SHAPES = {"composite": "*", "shared": "o"}
 _DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}
 REQUIREMENT_ROLES = frozenset(["satisfy", "derive", "verify", "refine", "trace", "copy"])
 
 
-@dataclass(frozen=True, slots=True)
-class Relation:
+class Relation(Struct, frozen=True):
     """A line from ``source`` to ``target`` (ids of classifiers).
 
     ``shows`` are the ids of the elements that the line stands for; properties among them are

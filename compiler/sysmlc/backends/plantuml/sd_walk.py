@@ -1,7 +1,7 @@
 """How far the drawing of one interaction has come, and what is said about its elements."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
@@ -9,7 +9,6 @@ from sysmlc.backends.plantuml.sd_texts import notes, time_text, times
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Element, Graph, sequence
 from sysmlc.plantuml import label, lines, stack
-from sysmlc.values import dataclass
 
 _WIDTH = 44
 

@@ -2,19 +2,17 @@
 
 from collections.abc import Iterator
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class Compartment:
+class Compartment(Struct, frozen=True):
     """Titled rows of a box."""
 
     title: str
     rows: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+class Box(Struct, frozen=True):
     """A classifier or a requirement."""
 
     alias: str
@@ -24,8 +22,7 @@ class Box:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(Struct, frozen=True):
     """A relation: ``source "near" arrow "far" target : label``."""
 
     source: str
@@ -37,8 +34,7 @@ class Line:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class BoxView:
+class BoxView(Struct, frozen=True):
     """Boxes and lines: block definition and requirement diagrams.
 
     ``guides`` are invisible lines that set boxes without lines in a grid.
@@ -49,8 +45,7 @@ class BoxView:
     guides: tuple[Line, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Node:
+class Node(Struct, frozen=True):
     """A state, an activity node or a group of them.
 
     ``shape`` is the word by which PlantUML knows a special form (``choice``, ``fork``), or the
@@ -68,8 +63,7 @@ class Node:
     tint: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(Struct, frozen=True):
     """Text in a corner of its own, tied to the nodes with the aliases in ``targets``."""
 
     alias: str
@@ -78,8 +72,7 @@ class Note:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class GraphView:
+class GraphView(Struct, frozen=True):
     """Nodes and lines: activities and state machines."""
 
     nodes: tuple[Node, ...]
@@ -87,8 +80,7 @@ class GraphView:
     notes: tuple[Note, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class PortView:
+class PortView(Struct, frozen=True):
     """A port on the border of a part; ``form`` is ``portin``, ``portout`` or ``port``."""
 
     alias: str
@@ -97,8 +89,7 @@ class PortView:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class PartView:
+class PartView(Struct, frozen=True):
     """A part with its ports and what is shown inside."""
 
     alias: str
@@ -109,8 +100,7 @@ class PartView:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class InternalView:
+class InternalView(Struct, frozen=True):
     """Parts in their frame: internal block diagrams. ``guides`` are invisible, for the layout."""
 
     frame: PartView
@@ -121,8 +111,7 @@ class InternalView:
     """``physical`` and ``information``, where something of the kind flows."""
 
 
-@dataclass(frozen=True, slots=True)
-class Participant:
+class Participant(Struct, frozen=True):
     """A lifeline; ``form`` is the word of PlantUML for it (``participant``, ``actor``)."""
 
     alias: str
@@ -131,8 +120,7 @@ class Participant:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(Struct, frozen=True):
     """One line of a sequence diagram.
 
     ``word`` is ``message`` (``source arrow target : text``), a word of PlantUML about the
@@ -150,16 +138,14 @@ class Step:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class SequenceView:
+class SequenceView(Struct, frozen=True):
     """Lifelines and what happens on them: sequence diagrams."""
 
     participants: tuple[Participant, ...]
     steps: tuple[Step, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Figure:
+class Figure(Struct, frozen=True):
     """An actor or a use case; ``form`` is the word of PlantUML, ``style`` that of a stub."""
 
     alias: str
@@ -169,8 +155,7 @@ class Figure:
     shows: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class SubjectView:
+class SubjectView(Struct, frozen=True):
     """A subject as a rectangle with its use cases."""
 
     alias: str
@@ -178,8 +163,7 @@ class SubjectView:
     cases: tuple[Figure, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class UseCaseView:
+class UseCaseView(Struct, frozen=True):
     """Actors, subjects with use cases, use cases without subject, and lines."""
 
     actors: tuple[Figure, ...]
@@ -192,8 +176,7 @@ class UseCaseView:
 View = BoxView | GraphView | InternalView | SequenceView | UseCaseView
 
 
-@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
-class Diagram:
+class Diagram(Struct, frozen=True, eq=False, weakref=True):
     """One diagram: what it is called, what it shows, and the element that it is about.
 
     It is known by identity: one of the last graph that is used again need not be written again.

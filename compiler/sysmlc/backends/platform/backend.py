@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.output import Output, encode_json
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.recipe.platform import Platform
@@ -17,8 +18,7 @@ _PLATFORMS = "sysmlc.recipe.platform"
 """The module of platforms: most models have none, and need nothing of this imported."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlatformBackend:
+class PlatformBackend(Struct, frozen=True):
     """Writes what the pass ``platform`` found (metamodels/sysmlc-platform.schema.json)."""
 
     name: str = "platform"

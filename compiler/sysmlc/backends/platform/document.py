@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from typing import Protocol
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place
 from sysmlc.ir import Element, Graph
 from sysmlc.recipe.platform import Offer, Platform, Used
-from sysmlc.values import dataclass
 
 Json = dict[str, object]
 Places = Mapping[Place, Place]
@@ -50,8 +51,7 @@ class _PlantElement(Protocol):
     def element(self) -> str: ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Maker:
+class _Maker(Struct, frozen=True):
     graph: Graph
     platform: Platform
     found: Places

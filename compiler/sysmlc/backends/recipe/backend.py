@@ -3,13 +3,14 @@
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output, encode_json
 from sysmlc.recipe import samples
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Model
@@ -26,8 +27,7 @@ EMPTY_RECIPE = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class RecipeBackend:
+class RecipeBackend(Struct, frozen=True):
     """Writes the models that the pass ``recipe`` found (metamodels/sysmlc-recipe.schema.json)."""
 
     name: str = "recipe"

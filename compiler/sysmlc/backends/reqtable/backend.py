@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
 from sysmlc.backends.reqtable.table import Table, tables
@@ -13,14 +15,12 @@ from sysmlc.escapes import escape_markdown
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 _TEMPLATE = "requirements.md.j2"
 _ALWAYS = ("id", "name")
 
 
-@dataclass(frozen=True, slots=True)
-class ReqTableBackend:
+class ReqTableBackend(Struct, frozen=True):
     """Requirement tables for people (Markdown) and for other tools (CSV)."""
 
     name: str = "reqtable"

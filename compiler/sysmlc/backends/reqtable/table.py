@@ -3,9 +3,10 @@
 import re
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import AttrValue, Edge, Element, Graph
 from sysmlc.ir.query import applications, is_requirement, lineage
-from sysmlc.values import dataclass
 
 COLUMNS = (
     "id",
@@ -40,23 +41,20 @@ _STANDARD = frozenset(
 _NUMBER = re.compile(r"(\d+)")
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(Struct, frozen=True):
     """Values of one cell, in order; a text is one value with its line ends."""
 
     values: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(Struct, frozen=True):
     """One requirement: its cells in the order of the columns."""
 
     element: Element
     cells: tuple[Cell, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(Struct, frozen=True):
     """The requirements below one root of the model."""
 
     name: str

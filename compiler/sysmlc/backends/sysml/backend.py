@@ -2,6 +2,8 @@
 
 import posixpath
 
+from msgspec import Struct
+
 from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysml.document import document
@@ -9,14 +11,12 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 LIBRARY = "SysMLC.sysml"
 """Our library of metadata definitions, which the text refers to."""
 
 
-@dataclass(frozen=True, slots=True)
-class SysmlBackend:
+class SysmlBackend(Struct, frozen=True):
     """Writes the graph of any front end as SysML v2 text."""
 
     name: str = "sysml"

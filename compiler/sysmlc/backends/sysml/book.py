@@ -1,7 +1,7 @@
 """What all writers share: the plan, the losses, and what of the graph has been said."""
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.order import in_order
@@ -11,7 +11,6 @@ from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.values import dataclass
 
 Writer = Callable[["Book", Entry], list[Line]]
 """Writes a member of a namespace, with what belongs beside it."""

@@ -1,5 +1,7 @@
 """Declarations: prefixes, keyword, name, types, specialisations, multiplicity, value."""
 
+from dataclasses import dataclass
+
 from sysmlc.backends.sysml.book import Book
 from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.expressions import expression
@@ -10,7 +12,6 @@ from sysmlc.backends.sysml.specific import feature_of, types_of
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import bounds, type_of
-from sysmlc.values import dataclass
 
 _VISIBILITIES = ("private", "protected")
 _REFERENTIAL = frozenset({"port", "attribute", "metadata"})

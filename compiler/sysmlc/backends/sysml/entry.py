@@ -1,12 +1,11 @@
 """The plan of a text: entries for all members, as a tree and by their elements."""
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.ir import Element, Graph
-from sysmlc.values import dataclass
 
 
 @dataclass(slots=True, eq=False)

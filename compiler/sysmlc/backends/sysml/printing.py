@@ -1,9 +1,7 @@
 """Members as they are written: a tree that is printed without recursion, four spaces a level."""
 
 from collections.abc import Iterable
-from dataclasses import field
-
-from sysmlc.values import dataclass
+from dataclasses import dataclass, field
 
 _STEP = "    "
 

@@ -1,10 +1,9 @@
 """What the textual notation cannot say, or not yet says: each loss once, with its number."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
-from sysmlc.values import dataclass
 
 UNSAID_KIND = rule(
     "SM730",

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.backends.sysml.inherited import inherited
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.branches import is_joined
 from sysmlc.ir.query import type_of
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(Struct, frozen=True):
     """How an element is written: its keyword, and whether it must have a name."""
 
     keyword: str

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from os import environ
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
@@ -16,14 +18,12 @@ from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.tree import Document
 from sysmlc.output import Output
 from sysmlc.sources import SourceError
-from sysmlc.values import dataclass
 
 _LIBRARY = "sysml.library.xmi"
 """The folder of the standard library's interchange files in its releases; references lead there."""
 
 
-@dataclass(frozen=True, slots=True)
-class SysmlxBackend:
+class SysmlxBackend(Struct, frozen=True):
     """Writes models of SysML v2 as they were read, other models as SysML v2 would say them."""
 
     name: str = "sysmlx"

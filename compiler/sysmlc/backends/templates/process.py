@@ -8,8 +8,9 @@ import json
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import fields
 from subprocess import DEVNULL, PIPE, Popen
+
+from msgspec.structs import asdict
 
 from sysmlc.backends.templates.error import TemplateError, TemplateLimitError
 from sysmlc.backends.templates.files import TemplateText
@@ -41,8 +42,11 @@ class RenderingProcess:
         }
 
     def render(self, name: str, values: Mapping[str, object]) -> str:
-        """Render a template. Raises TemplateError; TemplateLimitError if the process ended."""
-        request = json.dumps({"name": name, "values": values}, default=_list_fields)
+        """Render a template with values of JSON and structs.
+
+        Raises TemplateError; TemplateLimitError if the process ended.
+        """
+        request = json.dumps({"name": name, "values": values}, default=asdict)
         answer = self._exchange(request)
         if answer is None:
             raise TemplateLimitError(f"{name}: {self._explain_end()}")
@@ -77,8 +81,3 @@ class RenderingProcess:
         """End the process."""
         self._process.kill()
         self._process.communicate()
-
-
-def _list_fields(value: object) -> dict[str, object]:
-    """Return the fields of a dataclass, which are all that a template may use of it."""
-    return {field.name: getattr(value, field.name) for field in fields(value)}  # type: ignore[arg-type]

@@ -2,17 +2,17 @@
 
 import posixpath
 
+from msgspec import Struct
+
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.naming import file_names
 from sysmlc.output import Output
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class UmlBackend:
+class UmlBackend(Struct, frozen=True):
     """Saves the graph of any front end as UML 2.5 with SysML 1.6, as Papyrus does."""
 
     name: str = "uml"

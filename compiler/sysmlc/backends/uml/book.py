@@ -2,14 +2,13 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.uml.hrefs import is_outside, reference
 from sysmlc.backends.uml.identity import part_id, xml_ids
 from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.rules import UNSAID_EDGE, Losses
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.values import dataclass
 
 _EDGES = frozenset(edge.value for edge in Edge)
 

@@ -1,12 +1,11 @@
 """What UML has no words for in a plant: kept in one comment, for the way back (pass ``kept``)."""
 
 import json
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.backends.uml.hrefs import href_of
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.kept import PREFIX
-from sysmlc.values import dataclass
 
 _ADDED = frozenset({Edge.OWNS, Edge.FEATURE})
 """Edges that ownership says, or that passes add again."""

@@ -2,9 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
-
-from sysmlc.values import dataclass
+from dataclasses import dataclass, field
 
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _TEXT = {"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#xD;"}

@@ -3,15 +3,15 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
+from msgspec import Struct
+
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.diagnostics.rule import Severity
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """One finding with its place; line and column count characters from 1, 0 is unknown."""
 
     diagnostic: Diagnostic
@@ -32,8 +32,7 @@ class Finding:
         return ":".join(known) if self.file else ""
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(Struct, frozen=True):
     """All findings of one compilation, in order."""
 
     findings: tuple[Finding, ...]

@@ -1,7 +1,8 @@
 """Tables: tags of CAEX and what they become (docs/automationml.md)."""
 
+from enum import StrEnum
+
 from sysmlc.sources.caex import ORDER
-from sysmlc.values import StrEnum
 
 
 class Family(StrEnum):

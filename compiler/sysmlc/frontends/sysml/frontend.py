@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.base import FileNames
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class SysmlFrontend:
+class SysmlFrontend(Struct, frozen=True):
     """Reads texts and interchange files; all files of a unit are one model.
 
     ``library`` is where the standard library is; empty where it is usually found.

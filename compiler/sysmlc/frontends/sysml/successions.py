@@ -1,14 +1,13 @@
 """Steps of a behaviour in the order of the text, and the control flows between them."""
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node, Reference
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering

@@ -1,6 +1,8 @@
 """What a difference of two models is, in the words of who reviews a new export."""
 
-from sysmlc.values import StrEnum, dataclass
+from enum import StrEnum
+
+from msgspec import Struct
 
 
 class What(StrEnum):
@@ -16,8 +18,7 @@ class What(StrEnum):
     CHANGED = "changed"
 
 
-@dataclass(frozen=True, slots=True)
-class Ref:
+class Ref(Struct, frozen=True):
     """An element of one of the two models: its id, whole name, and place in its file."""
 
     id: str
@@ -26,8 +27,7 @@ class Ref:
     ordinal: int = -1
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
+class Change(Struct, frozen=True):
     """One difference, of the element ``name`` that ``owner`` (a qualified name) owns.
 
     ``kind`` is the element's role or kind in words, ``aspect`` what of it changed; ``before``

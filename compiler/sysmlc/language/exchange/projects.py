@@ -2,14 +2,14 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 from typing import Any
+
+from msgspec import Struct, field
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.checksums import digest
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, entries
-from sysmlc.values import dataclass
 
 PROJECT, META = ".project.json", ".meta.json"
 MODELS = (".sysml", ".kerml", ".sysmlx", ".kermlx")
@@ -19,16 +19,14 @@ _FIELDS: dict[str, type] = {"name": str, "version": str, "usage": list}
 _LISTS: dict[str, type] = {"index": dict, "checksum": dict}
 
 
-@dataclass(frozen=True, slots=True)
-class Usage:
+class Usage(Struct, frozen=True):
     """A project that another one uses: its IRI or path, and the versions that will do."""
 
     resource: str
     constraint: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Project:
+class Project(Struct, frozen=True):
     """A project: where it is, its name and version, what it uses, its model files.
 
     ``index`` says which file has a root member of that name; ``place`` is where the project is

@@ -1,16 +1,17 @@
 """References of interchange files: ids become elements, in one file and across files."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass
 from posixpath import basename, dirname, join, normpath, splitext
 from urllib.parse import unquote
+
+from msgspec import field
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.language.exchange import rules
 from sysmlc.language.exchange.naming import Naming, shown
 from sysmlc.language.library import Library
 from sysmlc.language.tree import Document, Node, Reference
-from sysmlc.values import dataclass
 
 _Finder = Callable[[str], Node | None]
 """What leads from an id or an href to an element."""
@@ -26,8 +27,7 @@ class Pending:
     node: Node
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ExchangeDocument(Document):
+class ExchangeDocument(Document, frozen=True, eq=False):
     """A document that was read from an interchange file, with what links it to others.
 
     ``ids`` leads from ids to elements; the id of a membership leads to its member. ``pending``

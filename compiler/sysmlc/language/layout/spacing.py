@@ -1,7 +1,8 @@
 """Where a space stands between two tokens of a statement, and where a long one may be broken."""
 
+from msgspec import Struct
+
 from sysmlc.language.layout.tokens import Sort, Token
-from sysmlc.values import dataclass
 
 _NO_SPACE_BEFORE = {";", ",", ")", "]", ".", "::", "..", ".?", "->"}
 _NO_SPACE_AFTER = {"(", "[", ".", "::", "..", ".?", "->", "$", "~"}
@@ -26,8 +27,7 @@ _FREE, _COMMA, _OPERATION, _ARROW, _PARENTHESIS, _SPACE = range(6)
 _DEEPER = 10
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(Struct, frozen=True):
     """A token of a line: what is between it and the one before, how well a line breaks there.
 
     ``rank`` is lower where a break is better; None where none may be.

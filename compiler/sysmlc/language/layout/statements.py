@@ -1,10 +1,9 @@
 """Tokens grouped into statements and bodies: what stands on lines of its own."""
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.language.layout.tokens import Sort, Token
-from sysmlc.values import dataclass
 
 _BEFORE_EXPRESSION = (
     ". .? = := ( , ? ?? == != === !== < > <= >= + - * / % ^ ** & | default and or xor implies not"

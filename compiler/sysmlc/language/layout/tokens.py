@@ -4,8 +4,9 @@ import re
 from collections.abc import Iterator
 from enum import Enum
 
+from msgspec import Struct
+
 from sysmlc.language.text.scan import Types, scan
-from sysmlc.values import dataclass
 
 _TAB = 4
 _THING = re.compile(r"//\*(?s:.)*?\*/|//[^\n]*|\n")
@@ -22,8 +23,7 @@ class Sort(Enum):
     END = "end"
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(Struct, frozen=True):
     """A note (KerML 8.2.2.2): its text, the column it starts in, and what is before it."""
 
     text: str
@@ -33,8 +33,7 @@ class Note:
     after_blank: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+class Token(Struct, frozen=True):
     """A token: its text and sort, its column in the original, what stands before it."""
 
     text: str

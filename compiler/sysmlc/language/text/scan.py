@@ -3,8 +3,9 @@
 import re
 from collections.abc import Mapping
 
+from msgspec import Struct
+
 from sysmlc.language.tree import Node
-from sysmlc.values import dataclass
 
 _SKIPPED = r"(?:[ \t\r\n\f\v\ufeff]+|//\*(?s:.)*?\*/|//(?!\*)[^\r\n]*)*+"
 _BODY = r"/\*(?s:.)*?\*/"
@@ -33,8 +34,7 @@ _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(Struct, frozen=True):
     """What cannot be read: a ``comment``, ``quote`` or ``string`` that is never closed, a
     ``character`` of no token, a ``number`` that is too large, the ``encoding`` of all.
     """
@@ -44,8 +44,7 @@ class Fault:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
+class Remark(Struct, frozen=True):
     """What the builder found wrong: a ``prefix`` or a ``combination``, said in words."""
 
     what: str
@@ -54,8 +53,7 @@ class Remark:
     advice: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Tokens:
+class Tokens(Struct, frozen=True, eq=False):
     """The tokens of ``text``: their types by number, where each starts and ends.
 
     The last one is the end of the text. ``faults`` has what is no token. ``referential`` is for
@@ -94,8 +92,7 @@ class Tokens:
         return unquoted(written) if written[0] == "'" else written
 
 
-@dataclass(frozen=True, slots=True)
-class Types:
+class Types(Struct, frozen=True):
     """Numbers of the types: of words and symbols by their text, and of what texts vary in."""
 
     words: Mapping[str, int]

@@ -8,10 +8,11 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
+from msgspec import Struct
+
 from sysmlc import resources
 from sysmlc.language.text.scan import Types
 from sysmlc.output import write as write_file
-from sysmlc.values import dataclass
 
 SHIPPED = Path(__file__).with_name("generated")
 """Folder of the tables that are made when the package is built or installed."""
@@ -24,8 +25,7 @@ _GRAMMARS = {
 TableRule = tuple[int, int, str, "itemgetter[Any]"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Tables:
+class Tables(Struct, frozen=True, eq=False):
     """What the machine runs: rows by state, defaults by state, rules.
 
     A row maps numbers of token types and of symbols to actions: a state to go to, or the

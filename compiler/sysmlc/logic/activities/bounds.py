@@ -4,6 +4,7 @@ What the values on the way to a write rule out is not asked further. Of the rest
 looked at that the activity can reach, whatever the environment decides, unless they are too many.
 """
 
+from enum import StrEnum
 from functools import lru_cache
 
 from sysmlc.logic import domains
@@ -11,7 +12,6 @@ from sysmlc.logic.activities.concurrency import Together
 from sysmlc.logic.activities.saturation import reduced, search
 from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
 from sysmlc.logic.activities.value_analysis import MOST_VALUES, Spread
-from sysmlc.values import StrEnum
 
 _REMEMBERED = 256
 """Answers that are kept: a process that compiles again finds those of what was not edited."""

@@ -9,6 +9,8 @@ it may say that they are, of two that are it never says that they are not.
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 
+from msgspec import Struct
+
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,
@@ -17,11 +19,9 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Move:
+class Move(Struct, frozen=True, eq=False):
     """A node takes tokens and gives some; places are ids of edges and of running nodes.
 
     ``branch`` is the edge that a decision chooses, ``is_end`` says that a running node is done.

@@ -11,6 +11,8 @@ plays must satisfy every conjunct, and a changed run must not.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol, TypeVar
 
+from msgspec import Struct
+
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
@@ -23,7 +25,6 @@ from sysmlc.logic.activities.token_graph import (
     Write,
 )
 from sysmlc.logic.formula import Formula, Literal
-from sysmlc.values import dataclass
 
 Inputs = Mapping[str, Literal]
 _T = TypeVar("_T")
@@ -40,8 +41,7 @@ class NotSafeError(RuntimeError):
     """A second token reached an edge or a merge, or an action was started while it ran."""
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(Struct, frozen=True):
     """Where the tokens are: ids of the edges that hold one and of the nodes that run; and what
     the variables are that nodes write.
     """

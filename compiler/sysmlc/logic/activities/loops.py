@@ -2,6 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir.components import strong_components
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
@@ -11,11 +13,9 @@ from sysmlc.logic.activities.token_graph import (
     TokenNode,
 )
 from sysmlc.logic.formula import Const
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Loop:
+class Loop(Struct, frozen=True):
     """Nodes (ids, in the order of the graph) that reach each other, and the exits."""
 
     nodes: tuple[str, ...]

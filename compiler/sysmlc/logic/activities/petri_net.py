@@ -1,11 +1,12 @@
 """Petri nets of regions of token graphs: flows and running actions as places."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import combinations
 
+from msgspec import Struct
+
 from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
-from sysmlc.values import dataclass
 
 
 @dataclass(slots=True)
@@ -35,8 +36,7 @@ class Net:
     busy: set[str] = field(default_factory=set)
 
 
-@dataclass(frozen=True, slots=True)
-class Safety:
+class Safety(Struct, frozen=True):
     """What the search found in one region.
 
     ``unsafe`` is the id of an edge (or node) that may get a second token, ``dead`` holds

@@ -6,8 +6,10 @@ bit for each edge and each running node.
 """
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import product
+
+from msgspec import Struct
 
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
@@ -18,7 +20,6 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
-from sysmlc.values import dataclass
 
 _STEPS_A_STATE = 16
 """Steps that are tried for each allowed state before the search gives up."""
@@ -66,8 +67,7 @@ def explore(graph: TokenGraph, limit: int) -> Reached:
     return reached
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
+class _Part(Struct, frozen=True):
     """A node as bits; ``triggers`` are what keeps its region from being complete.
 
     ``apart`` are the incoming edges, those that interrupt one region together.
@@ -85,8 +85,7 @@ class _Part:
     is_timed: bool
 
 
-@dataclass(frozen=True, slots=True)
-class _Change:
+class _Change(Struct, frozen=True):
     """What a node does in a step: bits that vanish, and bits that appear."""
 
     takes: int = 0

@@ -7,6 +7,9 @@ and what their values are made of. What starts with an unknown value starts with
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
@@ -15,7 +18,6 @@ from sysmlc.logic.activities.token_graph import TokenGraph, TokenNode, Write
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.simplify import is_satisfiable, substitute
-from sysmlc.values import dataclass, replace
 
 _T = TypeVar("_T")
 _MOST_MOVES = 100_000
@@ -24,8 +26,7 @@ _MOST_INPUTS = 64
 """Valuations of the inputs that values are made of."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stopped:
+class Stopped(Struct, frozen=True):
     """The writes that stop in some run; the others never do if the search is complete."""
 
     writes: list[Write]

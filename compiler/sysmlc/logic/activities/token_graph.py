@@ -13,11 +13,13 @@ final nodes, or when nothing in it can move.
 """
 
 from collections.abc import Iterator
+from enum import StrEnum
 from functools import cached_property
+
+from msgspec import Struct
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Formula, Literal, variables
-from sysmlc.values import StrEnum, dataclass
 
 ACTIVITY_REGION = ""
 """The region of what no structured node owns."""
@@ -86,16 +88,14 @@ _ACTION, _SILENT, _ALL, _WORK = NodeKind.ACTION, Duration.SILENT, Firing.ALL, Fi
 """Members by names of the module: in Python 3.11 those of a class take twice as long."""
 
 
-@dataclass(frozen=True, slots=True)
-class Guard:
+class Guard(Struct, frozen=True):
     """Guard of an edge that leaves a decision; ``condition`` is None for else."""
 
     text: str
     condition: Formula | None
 
 
-@dataclass(frozen=True, slots=True)
-class TokenNode:
+class TokenNode(Struct, frozen=True):
     """One node; ``label`` is what the modeller calls it ("action 'read id'").
 
     ``region`` is the id of the structured node that owns it. ``run`` is the variable that says
@@ -123,8 +123,7 @@ class TokenNode:
         return _ALL if self.duration is _SILENT and self.kind is _ACTION else FIRING[self.kind]
 
 
-@dataclass(frozen=True, slots=True)
-class TokenEdge:
+class TokenEdge(Struct, frozen=True):
     """One edge and the variable that says whether it holds a token.
 
     ``origins`` are the ids of the drawn flows that it stands for, several after a collapse.
@@ -159,8 +158,7 @@ class TokenEdge:
         return self.guard is not None and self.guard.condition is None
 
 
-@dataclass(frozen=True, slots=True)
-class Interruptible:
+class Interruptible(Struct, frozen=True):
     """Nodes (ids) that lose their tokens together.
 
     They are an interruptible activity region, what an exception ends, or what a loop takes up
@@ -172,8 +170,7 @@ class Interruptible:
     nodes: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Write:
+class Write(Struct, frozen=True):
     """A node writes a value when its work is done.
 
     ``values`` are pairs of a condition and the value that it then gives, over what holds at that
@@ -188,8 +185,7 @@ class Write:
     stops: tuple[Formula, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Store:
+class Store(Struct, frozen=True):
     """A variable that the activity decides: it keeps its value until a node writes another.
 
     ``first`` is its value at the start, None when nothing says so; a ``local`` one has it again
@@ -202,8 +198,7 @@ class Store:
     local: bool = False
 
 
-@dataclass(frozen=True)
-class TokenGraph:
+class TokenGraph(Struct, frozen=True, dict=True):
     """One activity as a token game; nodes and edges in the order of the model.
 
     ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand

@@ -1,7 +1,10 @@
 """Who takes part in a block: its parts, and the block itself, each with a contract."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.composition.joints import Joints
@@ -11,15 +14,13 @@ from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import context_classifier
 from sysmlc.logic.requirements.statements import definition_of
-from sysmlc.values import dataclass, replace
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 Slot = tuple[str, str]
 """A feature (dotted name) of a usage (path)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(Struct, frozen=True):
     """A contract that takes part, with the variables that its features are, by dotted name."""
 
     path: str

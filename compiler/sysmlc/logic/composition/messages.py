@@ -8,6 +8,8 @@ state machine has one event (UML 2.5.1 clause 14.2.3.9.1 takes them from a pool,
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.composition.members import Block, Member
@@ -24,13 +26,11 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.machines.machine import NO_EVENT
 from sysmlc.logic.names import identifier
-from sysmlc.values import dataclass
 
 _EVENT = "event"
 
 
-@dataclass(frozen=True, slots=True)
-class Receipt:
+class Receipt(Struct, frozen=True):
     """Something that can occur at a member: the formula that says so, and its name."""
 
     member: Member
@@ -39,8 +39,7 @@ class Receipt:
     origin: str
 
 
-@dataclass(frozen=True, slots=True)
-class Sending:
+class Sending(Struct, frozen=True):
     """Something that a member sends; ``said`` is true in the step in which it is."""
 
     member: Member

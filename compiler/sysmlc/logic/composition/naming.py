@@ -2,6 +2,9 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.composition.members import Block, Member
 from sysmlc.logic.composition.structure import ITSELF, joined
@@ -18,11 +21,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import describe
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Wire:
+class Wire(Struct, frozen=True):
     """What several members know: one variable, with its name and each member's own variable."""
 
     name: str

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.composition.members import Block, Member
 from sysmlc.logic.composition.steps import tells
 from sysmlc.logic.composition.structure import drawn_of
 from sysmlc.logic.contract import Owner
-from sysmlc.values import dataclass
 
 _CELL = """\
 Package p "Cells"
@@ -47,8 +48,7 @@ OPEN_STEP = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class OpenStep:
+class OpenStep(Struct, frozen=True):
     """A step of an operation (path from a block) that is an operation without an end to see."""
 
     block: Element

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.flow_paths import flow_path
-from sysmlc.values import dataclass
 
 ITSELF = ""
 """Path of the block whose parts are looked at."""
@@ -12,8 +13,7 @@ _MOST_COPIES = 16
 _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.CONTROL_FLOW, Kind.STRUCTURED)
 
 
-@dataclass(frozen=True, slots=True)
-class Usage:
+class Usage(Struct, frozen=True):
     """A part, or an action that a block has, by the path of names from the block to it."""
 
     path: str
@@ -21,8 +21,7 @@ class Usage:
     type_: Element
 
 
-@dataclass(frozen=True, slots=True)
-class End:
+class End(Struct, frozen=True):
     """Where something is attached: a usage, and the dotted name of a feature of it (or nothing)."""
 
     path: str

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.contract import IntegerDomain
@@ -11,7 +13,6 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.enumerations import Enumerations
 from sysmlc.logic.expressions.features import Features, variables
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.values import dataclass
 
 VALUES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
 """Kinds of what has a value in a context."""
@@ -39,8 +40,7 @@ DEFAULT_OUTSIDE = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(Struct, frozen=True):
     """What the names of expressions mean inside one classifier."""
 
     name: str

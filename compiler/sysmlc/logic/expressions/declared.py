@@ -2,13 +2,15 @@
 
 from collections.abc import Mapping
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.enumerations import literals_of
 from sysmlc.logic.expressions.ranges import declared_range, integer
 from sysmlc.logic.formula import Literal
-from sysmlc.values import dataclass, replace
 
 _BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
 _INTEGER = frozenset(
@@ -18,8 +20,7 @@ _UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])
 _STRING = frozenset(["string", "estring", "java.lang.string"])
 
 
-@dataclass(frozen=True, slots=True)
-class Feature:
+class Feature(Struct, frozen=True):
     """A property as a variable; ``domain`` is None when its values are not finite."""
 
     element: Element

@@ -1,6 +1,9 @@
 """From expressions to formulas: names resolved, types checked, values as guarded cases."""
 
 from collections.abc import Callable
+from enum import StrEnum
+
+from msgspec import Struct
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
@@ -19,7 +22,6 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.expressions.expression import Literal as Written
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.values import StrEnum, dataclass
 
 
 class Fault(StrEnum):
@@ -41,16 +43,14 @@ class ElaborationError(ValueError):
         self.offset = offset
 
 
-@dataclass(frozen=True, slots=True)
-class Term:
+class Term(Struct, frozen=True):
     """A value under a condition, with the domain that it is taken from."""
 
     condition: Formula
     value: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Meaning:
+class Meaning(Struct, frozen=True):
     """What an expression means: terms whose conditions exclude one another and cover all."""
 
     terms: tuple[Term, ...]
@@ -65,8 +65,7 @@ class Meaning:
         return f.either(*(f.both(term.condition, term.value) for term in self.terms))
 
 
-@dataclass(frozen=True, slots=True)
-class Symbol:
+class Symbol(Struct, frozen=True):
     """What a name stands for: a formula and its domain; ``number`` where a literal is one."""
 
     formula: Formula

@@ -4,11 +4,11 @@ The grammar is grammars/expression.lark. Printing and reading again gives the sa
 """
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TypeVar
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 _DEEPEST = 150
 """Levels of nesting that are read; a tuple of arguments is one."""
@@ -25,8 +25,7 @@ class ExpressionError(ValueError):
         self.offset = offset
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Literal:
+class Literal(Struct, frozen=True, eq=False):
     """A Boolean, an integer, a real number, or a string; 1 is neither ``true`` nor 1.0."""
 
     value: bool | int | float | str

@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Element, Graph
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.expressions import declared
@@ -11,7 +13,6 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.enumerations import Enumerations
 from sysmlc.logic.expressions.mentioned import BEHAVIOURS, Mentioned, mentioned
 from sysmlc.logic.names import unique
-from sysmlc.values import replace
 
 _OTHER = "other"
 

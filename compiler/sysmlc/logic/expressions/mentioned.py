@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
+from msgspec import Struct
+
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.expressions.enumerations import Enumerations
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
 _KEYS = ("guard", "body", "condition", "value")
@@ -21,8 +22,7 @@ _GREATEST = 255
 """Numbers further from zero widen no range: a domain has a place for each of its values."""
 
 
-@dataclass(frozen=True, slots=True)
-class Mentioned:
+class Mentioned(Struct, frozen=True):
     """Texts of a behaviour in their order, and the numbers beside each name."""
 
     texts: tuple[str, ...]

@@ -4,17 +4,17 @@ import re
 from importlib import import_module
 from typing import Any
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.file import NotExpressibleError, opened
-from sysmlc.values import dataclass
 
 __all__ = ["FORMS", "Form", "NotExpressibleError", "form_of", "plain", "read", "write"]
 
 
-@dataclass(frozen=True, slots=True)
-class Form:
+class Form(Struct, frozen=True):
     """One form: the module that reads and writes it, endings of its files, how they begin."""
 
     module: str

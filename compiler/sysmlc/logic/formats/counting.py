@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -17,7 +19,6 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formats.lower import Known, each_conjunct, each_leaf, flat, is_truth, known
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.spelling import COMPARISONS
-from sysmlc.values import replace
 
 
 def counted(contract: Contract, is_flat: bool, from_zero: bool = True) -> Contract:

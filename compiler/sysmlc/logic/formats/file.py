@@ -5,10 +5,11 @@ It needs nothing of what reads and writes: who only asks what forms there are do
 
 from bisect import bisect_right
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic.contract import Conjunct
 from sysmlc.logic.printing import print_formula
-from sysmlc.values import dataclass
 
 
 class NotExpressibleError(ValueError):
@@ -20,8 +21,7 @@ class NotExpressibleError(ValueError):
         super().__init__(f"{form} cannot say {about}{reason}")
 
 
-@dataclass(frozen=True, slots=True)
-class File:
+class File(Struct, frozen=True):
     """The text that is read, its name, and who hears what is wrong with it."""
 
     text: str

@@ -6,6 +6,8 @@ Each says the same as the contract that it comes from, about variables that stan
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 
+from msgspec.structs import replace
+
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
@@ -19,7 +21,6 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.spelling import COMPARISONS
-from sysmlc.values import replace
 
 LIMIT = 1 << 16
 """Most values of its variables for which a comparison is written out."""

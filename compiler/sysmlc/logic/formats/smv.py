@@ -173,10 +173,8 @@ def write(contract: Contract, form: str) -> str:
     return "\n".join(["MODULE main", "VAR", *declared, f"LTLSPEC NAME {name} := {spec};", ""])
 
 
-class _Next(Spelling):
+class _Next(Spelling, frozen=True):
     """A comparison of next values is ``X`` before the comparison."""
-
-    __slots__ = ()
 
     def text(self, formula: Formula) -> str:
         if any(variable.primed for variable in f.variables(formula)) and _is_leaf(formula):

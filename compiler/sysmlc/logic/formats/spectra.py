@@ -7,6 +7,8 @@ regular expressions, existential guarantees, weights and imported modules are na
 from collections.abc import Callable
 from pathlib import PurePath
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     Class,
@@ -24,7 +26,6 @@ from sysmlc.logic.formula import Const, Formula, Op, Var
 from sysmlc.logic.infix import Part, kind_of
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.spelling import Cursor, FormulaError, Token, tokens
-from sysmlc.values import dataclass
 
 _OWNERS = {"env": Owner.ENVIRONMENT, "input": Owner.ENVIRONMENT, "sys": Owner.SYSTEM}
 _OWNERS |= {"output": Owner.SYSTEM, "aux": Owner.SYSTEM, "auxvar": Owner.SYSTEM}
@@ -38,8 +39,7 @@ _CLASSES = {
 _OUTSIDE = ("import", "regexp", "weight", "GE", "forall", "exists", "separated", "trig")
 
 
-@dataclass(frozen=True, slots=True)
-class Pattern:
+class Pattern(Struct, frozen=True):
     """A pattern: its parameters, and where its body begins."""
 
     parameters: tuple[str, ...]

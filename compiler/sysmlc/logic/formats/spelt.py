@@ -2,18 +2,18 @@
 
 from collections.abc import Callable, Mapping
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.spelling import ARITHMETIC, COMPARISONS
-from sysmlc.values import dataclass
 
 _PREFIX = (Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY)
 LTL = {op: str(op) for op in Op}
 
 
-@dataclass(frozen=True, slots=True)
-class Spelling:
+class Spelling(Struct, frozen=True):
     """Words for operators, for the next value of a variable and for values."""
 
     words: Mapping[Op, str]

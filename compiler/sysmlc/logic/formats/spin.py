@@ -8,6 +8,8 @@ all variables are taken as outputs, which is said.
 import re
 from pathlib import PurePath
 
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import (
     BooleanDomain,
     Contract,
@@ -26,7 +28,6 @@ from sysmlc.logic.formats.spot import OWNERS, PARTS, parts, read_implication
 from sysmlc.logic.formula import Op
 from sysmlc.logic.infix import Part, Reader
 from sysmlc.logic.spelling import NEUTRAL, FormulaError
-from sysmlc.values import replace
 
 SYNTAX = replace(NEUTRAL, comment=r"/\*[\s\S]*?\*/|//[^\n]*")
 _MIXED = frozenset([Op.AND, Op.OR, Op.IMPLIES, Op.IFF])

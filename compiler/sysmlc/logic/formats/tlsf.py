@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import PurePath
 
+from msgspec.structs import replace
+
 from sysmlc.depth import room_for
 from sysmlc.escapes import escape_invisible
 from sysmlc.logic import formula as f
@@ -23,7 +25,6 @@ from sysmlc.logic.formats.tlsf_values import DEEPEST_CALL, Bus, Definition, Valu
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST
 from sysmlc.logic.spelling import Cursor, Syntax, tokens
-from sysmlc.values import replace
 
 _SIGNS = ("!", "&&", "||", "->", "<->", "==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "%")
 SYNTAX = Syntax(

@@ -6,9 +6,10 @@ included: U, R and W bind more weakly than the Boolean connectives.
 
 from collections.abc import Callable
 
+from msgspec import Struct
+
 from sysmlc.logic.infix import DEEPEST
 from sysmlc.logic.spelling import Cursor, FormulaError
-from sysmlc.values import dataclass
 
 INFIX = {
     "R": (1, "left"),
@@ -52,8 +53,7 @@ _NO_SETS = "sets are not read; a range is, as 0 <= i < n"
 QUANTIFIERS = ("&&", "||", "FORALL", "EXISTS", "AND", "OR")
 
 
-@dataclass(frozen=True, slots=True)
-class Tree:
+class Tree(Struct, frozen=True):
     """An operator, ``name``, ``number``, ``call``, ``index`` or ``range`` with its operands."""
 
     kind: str

@@ -4,19 +4,19 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.formats.tlsf_tree import Tree
 from sysmlc.logic.formula import Apply, Formula, Op, Var
 from sysmlc.logic.spelling import FormulaError
-from sysmlc.values import dataclass
 
 MOST_STEPS = 400_000
 """Parts of expressions that are evaluated for one file: definitions call one another."""
 DEEPEST_CALL = 150
 
 
-@dataclass(frozen=True, slots=True)
-class Bus:
+class Bus(Struct, frozen=True):
     """A signal of several bits, by the names of the bits."""
 
     bits: tuple[str, ...]
@@ -25,8 +25,7 @@ class Bus:
 Value = int | Formula | Bus
 
 
-@dataclass(frozen=True, slots=True)
-class Definition:
+class Definition(Struct, frozen=True):
     """A parameter, or a function: what to evaluate under which condition, the first that holds."""
 
     parameters: tuple[str, ...]

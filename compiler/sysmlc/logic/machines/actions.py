@@ -1,6 +1,6 @@
 """Guards, effects and triggers of a state machine, read in the context of its owner."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
@@ -37,7 +37,6 @@ from sysmlc.logic.machines.shared import SHARED, Sharing
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.logic.writers import called
-from sysmlc.values import dataclass
 
 
 def _guarded(guard: str) -> str:

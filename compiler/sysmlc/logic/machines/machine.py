@@ -3,13 +3,12 @@
 It says what is drawn, with names for variables; it does not say what a step is.
 """
 
-from dataclasses import field
+from msgspec import Struct, field
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.expressions.elaborate import Scope
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.formula import Literal
-from sysmlc.values import dataclass
 
 NO_EVENT = "none"
 """Literal of ``event`` when nothing happens, and of a choice that was not made."""
@@ -30,8 +29,7 @@ def element_id(id: str) -> str:
     return id.rpartition(_WITHIN)[2]
 
 
-@dataclass(frozen=True, slots=True)
-class Assign:
+class Assign(Struct, frozen=True):
     """An assignment to a property of the context."""
 
     variable: str
@@ -39,8 +37,7 @@ class Assign:
     origin: str
 
 
-@dataclass(frozen=True, slots=True)
-class Raise:
+class Raise(Struct, frozen=True):
     """Something done that has no meaning in the model: an output proposition."""
 
     output: str
@@ -50,30 +47,26 @@ class Raise:
 Action = Assign | Raise
 
 
-@dataclass(frozen=True, slots=True)
-class OnEvent:
+class OnEvent(Struct, frozen=True):
     """The environment's event; None stands for any event."""
 
     literal: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class AfterTicks:
+class AfterTicks(Struct, frozen=True):
     """The source has been active for this many steps."""
 
     count: int
 
 
-@dataclass(frozen=True, slots=True)
-class OnRise:
+class OnRise(Struct, frozen=True):
     """A condition that was false in the step before is true; ``memory`` holds what it was."""
 
     memory: str
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class WhenTold:
+class WhenTold(Struct, frozen=True):
     """An occurrence that only the environment knows, as a Boolean input."""
 
     variable: str
@@ -82,8 +75,7 @@ class WhenTold:
 Occurrence = OnEvent | AfterTicks | OnRise | WhenTold
 
 
-@dataclass(frozen=True, slots=True)
-class Transition:
+class Transition(Struct, frozen=True):
     """A transition; without occurrences it is a completion transition (of a state).
 
     ``also`` are the other transitions that lead to the join that it leads to: they are taken
@@ -107,8 +99,7 @@ class Transition:
         return self.source, *(one.source for one in self.also)
 
 
-@dataclass(frozen=True, slots=True)
-class Vertex:
+class Vertex(Struct, frozen=True):
     """A state, final state or pseudostate.
 
     ``do`` is the output that holds while the state is active, ``done`` the input that says
@@ -136,8 +127,7 @@ class Vertex:
         return self.kind in ("state", "final")
 
 
-@dataclass(frozen=True, slots=True)
-class Region:
+class Region(Struct, frozen=True):
     """A region: its variable has the names of its states, and ``inactive`` when it is nested.
 
     ``memory`` is the variable that has what it was before it became inactive, where history is
@@ -153,8 +143,7 @@ class Region:
     memory: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Machine:
+class Machine(Struct, frozen=True):
     """A state machine in its context."""
 
     id: str

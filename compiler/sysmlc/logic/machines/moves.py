@@ -6,6 +6,9 @@ completion before triggers; chosen where several compete.
 
 from collections.abc import Iterator, Mapping
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import formula as f
@@ -33,7 +36,6 @@ from sysmlc.logic.machines.path import LIMIT, Path, TooManyPaths
 from sysmlc.logic.machines.paths import Explorer
 from sysmlc.logic.samples import arrow, choice, machine
 from sysmlc.logic.simplify import simplified, tidy
-from sysmlc.values import dataclass, replace
 
 SATURATES = rule(
     "SM428",
@@ -81,8 +83,7 @@ TOO_LARGE = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(Struct, frozen=True):
     """A transition with its paths and the condition under which it is taken."""
 
     transition: Transition
@@ -93,8 +94,7 @@ class Move:
     """What goes first where both are enabled."""
 
 
-@dataclass(frozen=True, slots=True)
-class Derivation:
+class Derivation(Struct, frozen=True):
     machine: Machine
     domains: Mapping[str, Domain]
     moves: tuple[Move, ...]

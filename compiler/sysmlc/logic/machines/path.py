@@ -1,14 +1,15 @@
 """One way through a reaction of a state machine: what it changes, and when it is taken."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import IntegerDomain
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines.machine import INACTIVE
 from sysmlc.logic.simplify import rebuild
-from sysmlc.values import dataclass, replace
 
 
 class TooManyPaths(Exception):  # noqa: N818 - a limit, not a fault
@@ -19,8 +20,7 @@ LIMIT = 200
 """Most paths of one transition."""
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(Struct, frozen=True):
     """One way through a reaction; ``branch`` and ``case`` together say when it is taken.
 
     ``branch`` comes from guards (without one that is true the transition is not enabled),

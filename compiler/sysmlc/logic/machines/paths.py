@@ -6,6 +6,9 @@ that it leaves; its values are formulas over the step before.
 
 from collections.abc import Iterator, Mapping
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain, IntegerDomain
 from sysmlc.logic.expressions.elaborate import condition, meaning
@@ -29,11 +32,9 @@ from sysmlc.logic.machines.path import (
     without,
 )
 from sysmlc.logic.simplify import is_satisfiable, substitute
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Explorer:
+class Explorer(Struct, frozen=True):
     """Finds the paths of one machine."""
 
     machine: Machine

@@ -1,7 +1,9 @@
 """Taking a transition, as the reference interpreter does: what ``step`` says of a reaction."""
 
 from collections.abc import Mapping
-from dataclasses import field
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.logic.contract import IntegerDomain
 from sysmlc.logic.formula import Literal
@@ -17,11 +19,9 @@ from sysmlc.logic.machines.machine import (
     Vertex,
 )
 from sysmlc.logic.machines.step_values import value_of
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(Struct, frozen=True):
     """How far the reaction has come; ``store`` has the values reached, regions included."""
 
     store: Mapping[str, Literal]

@@ -1,5 +1,8 @@
 """From the graph to ``Machine``: vertices, regions, transitions and their variables."""
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
@@ -23,7 +26,6 @@ from sysmlc.logic.machines.well_formedness import has_ends, is_well_formed
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.logic.writers import Writers
-from sysmlc.values import dataclass, replace
 
 NONDETERMINISTIC = rule(
     "SM422",
@@ -61,8 +63,7 @@ COINCIDING = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class MachineOptions:
+class MachineOptions(Struct, frozen=True):
     """Length of a step in seconds, and the range of Integers that have none."""
 
     tick_seconds: float = 1.0

@@ -1,10 +1,11 @@
 """Features that a state machine writes and others write, too: its contract does not follow them."""
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.logic.samples import arrow, machine
 from sysmlc.logic.writers import Writers
-from sysmlc.values import dataclass
 
 
 def _beside(body: str) -> str:
@@ -28,8 +29,7 @@ SHARED = rule(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Sharing:
+class Sharing(Struct, frozen=True):
     """Who else writes what a state machine writes."""
 
     graph: Graph

@@ -1,5 +1,7 @@
 """Transitions of a state machine, and those that forks and joins make one."""
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic.expressions.expression import Binary, Expression, Unary
@@ -18,7 +20,6 @@ from sysmlc.logic.machines.triggers import Parts, occurrence_of
 from sysmlc.logic.machines.vertices import drawn_from
 from sysmlc.logic.machines.well_formedness import common_state
 from sysmlc.logic.names import unique
-from sysmlc.values import replace
 
 
 def read_transitions(parts: Parts) -> None:

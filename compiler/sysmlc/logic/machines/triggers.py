@@ -1,6 +1,6 @@
 """Triggers of a state machine, and the variables that they need."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.ir import Edge, Element
 from sysmlc.logic.contract import (
@@ -27,7 +27,6 @@ from sysmlc.logic.machines.machine import (
     id_within,
 )
 from sysmlc.logic.names import unique
-from sysmlc.values import dataclass
 
 
 @dataclass(slots=True)

@@ -1,5 +1,7 @@
 """Vertices and regions of a state machine, with those of the submachines that its states are."""
 
+from msgspec.structs import replace
+
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
 from sysmlc.logic.machines.actions import read_behaviours
@@ -7,7 +9,6 @@ from sysmlc.logic.machines.machine import INACTIVE, Region, Vertex, id_within
 from sysmlc.logic.machines.supported_constructs import initial_of, submachine_of
 from sysmlc.logic.machines.triggers import Parts
 from sysmlc.logic.names import identifier, unique
-from sysmlc.values import replace
 
 _KINDS = (Kind.STATE, Kind.FINAL_STATE, Kind.PSEUDOSTATE)
 

@@ -5,6 +5,9 @@ The rules are those of ``reductions``.
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.evaluate import has_primes
@@ -17,7 +20,6 @@ from sysmlc.logic.reduction.rules import (
     has_past,
     parts_of,
 )
-from sysmlc.values import dataclass, replace
 
 __all__ = [
     "NotReducibleError",
@@ -31,8 +33,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class Reduced:
+class Reduced(Struct, frozen=True):
     """A contract whose conjuncts are of GR(1), but for those in ``outside``, as they were."""
 
     contract: Contract

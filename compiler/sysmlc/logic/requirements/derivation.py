@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
@@ -17,7 +19,6 @@ from sysmlc.logic.requirements.statements import (
     redefining,
     statements,
 )
-from sysmlc.values import replace
 
 
 def derive(

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterable, Mapping
 
+from msgspec import Struct
+
 from sysmlc.ir import Kind
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context
@@ -11,13 +13,11 @@ from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild
 from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
 
 _DOTTED = pattern(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
-@dataclass(frozen=True, slots=True)
-class Scope:
+class Scope(Struct, frozen=True):
     """Variables and constants by the names that formulas have for them."""
 
     context: Context

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.values import dataclass
 
 _SUBJECTS = (*query.CLASSIFIERS, *query.BEHAVIORS)
 
 
-@dataclass(frozen=True, slots=True)
-class Statement:
+class Statement(Struct, frozen=True):
     """A constraint of a requirement, assumed of the environment or demanded of the subject."""
 
     constraint: Element

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
@@ -23,7 +25,6 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplified
-from sysmlc.values import dataclass
 
 _TANK = """\
 Package p "Plant"
@@ -53,8 +54,7 @@ _KINDS = ("", "precondition", "postcondition", "body")
 _LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
+class Condition(Struct, frozen=True):
     """What must hold before a service, or holds after it."""
 
     constraint: Element
@@ -62,8 +62,7 @@ class Condition:
     is_before: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Service:
+class Service(Struct, frozen=True):
     """An operation, or an action that no operation performs, with its conditions."""
 
     element: Element

@@ -7,6 +7,8 @@ the service runs until it is done (``done``), one step later at the earliest.
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
@@ -23,11 +25,9 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.names import Names
 from sysmlc.logic.services.conditions import Condition, Service, is_given, services
 from sysmlc.logic.simplify import substitute
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class _Asked:
+class _Asked(Struct, frozen=True):
     """A service with the variables that say how far it is."""
 
     service: Service

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import Part, Reader
 from sysmlc.logic.reduction.rules import is_ahead
 from sysmlc.logic.spelling import NEUTRAL, PAST, PAST_WORDS, Cursor, FormulaError, tokens
-from sysmlc.values import replace
 
 _SYNTAX = replace(
     NEUTRAL,

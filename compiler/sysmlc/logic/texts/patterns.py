@@ -8,13 +8,13 @@ by now, which history bits bring into GR(1); the tests hold them against the pub
 
 from collections.abc import Callable, Mapping
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.formula import Apply, Formula, Op
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Scope:
+class Scope(Struct, frozen=True):
     """When a pattern must hold: ``globally``, ``before``, ``after``, ``between``, ``until``."""
 
     kind: str

@@ -7,6 +7,8 @@ the neutral form about the present.
 from collections.abc import Callable, Mapping
 from typing import NoReturn
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Apply, Formula
@@ -14,7 +16,6 @@ from sysmlc.logic.infix import Reader
 from sysmlc.logic.spelling import NEUTRAL, TEMPORAL, Cursor, FormulaError, tokens
 from sysmlc.logic.texts import patterns
 from sysmlc.logic.texts.patterns import Scope
-from sysmlc.values import replace
 
 SYNTAX = replace(NEUTRAL, signs=(",", "."))
 MOST_TIMES = 32

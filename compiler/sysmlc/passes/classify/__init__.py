@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
@@ -25,13 +27,11 @@ from sysmlc.passes.classify.tags import HANDLERS, give_tags, optional_with_value
 from sysmlc.passes.classify.undefined_tags import check_tags
 from sysmlc.passes.classify.units import give_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
-from sysmlc.values import dataclass
 
 _Meanings = dict[str, tuple[str, ...]]
 
 
-@dataclass(frozen=True, slots=True)
-class Classify:
+class Classify(Struct, frozen=True):
     """Give every stereotype application its lineage and every element its role.
 
     Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of``

@@ -2,20 +2,20 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
+
+from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
 from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, family, mangled, parents
-from sysmlc.values import dataclass
 
 _REMEMBERED = 1 << 10
 """Stereotypes whose lineage is kept: a model applies a few of them thousands of times."""
 
 
-@dataclass(frozen=True, slots=True)
-class Ancestor:
+class Ancestor(Struct, frozen=True):
     """One stereotype of a lineage: its local name and whose it is."""
 
     name: str

@@ -5,11 +5,11 @@ FlowSpecification (SysML 1.6 annex C).
 """
 
 import re
+from enum import StrEnum
 from functools import cache
 
 from sysmlc.ir import Edge
 from sysmlc.patterns import pattern
-from sysmlc.values import StrEnum
 
 
 class Family(StrEnum):

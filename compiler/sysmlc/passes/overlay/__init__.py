@@ -2,15 +2,15 @@
 
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.values import dataclass
 
 _REFINEMENTS = "sysmlc.overlay.model"
 
 
-@dataclass(frozen=True, slots=True)
-class Overlay:
+class Overlay(Struct, frozen=True):
     """Add item types, flows, port directions, operations, behaviours and allocations.
 
     Assumes resolved references, and overlays that the driver has stored in the graph.

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Rule, Sink
@@ -13,7 +13,6 @@ from sysmlc.overlay.paths import beside, join, split
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
 from sysmlc.suggest import did_you_mean
-from sysmlc.values import dataclass
 
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})

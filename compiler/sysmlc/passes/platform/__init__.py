@@ -2,16 +2,16 @@
 
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.values import dataclass
 
 _RECIPES = "sysmlc.recipe.model"
 """The module of the recipe models: most models have none, and need nothing of this imported."""
 
 
-@dataclass(frozen=True, slots=True)
-class Platform:
+class Platform(Struct, frozen=True):
     """Finds which element of the plant is which machine, and what it offers.
 
     Assumes the models of the pass ``recipe``; then ``graph.derived(recipe.platform.Platform)``

@@ -1,7 +1,7 @@
 """What the pass ``platform`` asks of recipes, plant and graph."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from sysmlc.diagnostics import Sink
@@ -10,7 +10,6 @@ from sysmlc.passes.platform.statements import is_structure, of_machine
 from sysmlc.recipe.model import Machine, Model, Service
 from sysmlc.recipe.plant import Plant, PlantElement
 from sysmlc.suggest import did_you_mean
-from sysmlc.values import dataclass
 
 _TELLING = 5_000
 """Names among which the nearest is looked for; comparing more takes seconds."""

@@ -2,6 +2,8 @@
 
 from typing import ClassVar
 
+from msgspec import Struct
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Element, Graph
 from sysmlc.passes.resolve.answers import Answers
@@ -10,11 +12,9 @@ from sysmlc.passes.resolve.lost import report_lost
 from sysmlc.passes.resolve.missing import report_libraries
 from sysmlc.passes.resolve.targets import Targets
 from sysmlc.passes.resolve.uses import Use, attributes, needs, use_of
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Resolve:
+class Resolve(Struct, frozen=True):
     """Turn every reference into an edge.
 
     Assumes what a front end leaves: elements, edges it could draw at once, ``graph.pending``.

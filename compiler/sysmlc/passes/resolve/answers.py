@@ -1,6 +1,6 @@
 """What each reference means: an element of the unit, or a stand-in for one outside it."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind
@@ -15,7 +15,6 @@ from sysmlc.passes.resolve.libraries import (
 )
 from sysmlc.passes.resolve.targets import Targets
 from sysmlc.passes.resolve.uses import Need, Use
-from sysmlc.values import dataclass
 
 if TYPE_CHECKING:
     from sysmlc.passes.standins import StandIn

@@ -1,12 +1,11 @@
 """What needs an element: references to come, and attributes that hold ids."""
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.query import ids_in
-from sysmlc.values import dataclass
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},

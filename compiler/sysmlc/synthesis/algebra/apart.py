@@ -6,11 +6,12 @@ another: a line of forty machines is as many small questions, not one that nobod
 
 from collections.abc import Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite
 from sysmlc.logic.composition.joints import Joints
 from sysmlc.logic.contract import Conjunct, Contract
-from sysmlc.values import replace
 
 
 def apart(composite: Composite) -> list[Composite]:

@@ -2,17 +2,17 @@
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(Struct, frozen=True):
     """Outputs that are chosen together, and the inputs of the same step that have a say in it."""
 
     is_first: bool
@@ -71,8 +71,7 @@ def _is_restricted(name: str, states: Node, universe: Universe) -> bool:
     return any_value != states
 
 
-@dataclass(frozen=True, slots=True)
-class Readings:
+class Readings(Struct, frozen=True):
     """The links of all parts of a composition."""
 
     links: tuple[tuple[Part, Link], ...]

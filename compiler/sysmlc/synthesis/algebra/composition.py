@@ -8,6 +8,9 @@ assumed by the composition.
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
@@ -18,11 +21,9 @@ from sysmlc.synthesis.algebra.relations import Failure
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.unrealizable.explain import conflict
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Composition:
+class Composition(Struct, frozen=True):
     """What became of a composition.
 
     ``contract`` is that of the parts together; ``open`` are the assumptions of parts that nothing

@@ -11,6 +11,8 @@ ever.
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic.composite import Composite, Part
 from sysmlc.logic.contract import Class, Conjunct, Owner
 from sysmlc.logic.evaluate import has_primes
@@ -20,11 +22,9 @@ from sysmlc.synthesis.algebra.recurrence import Recurrence
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Open:
+class Open(Struct, frozen=True):
     """An assumption of a part that does not follow from what holds around it.
 
     With ``is_circular`` it does follow from what the others promise, but they wait for this part
@@ -38,8 +38,7 @@ class Open:
     is_circular: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Discharge:
+class Discharge(Struct, frozen=True):
     """The conjuncts that hold in every run of the composition, and what is left open."""
 
     facts: tuple[Conjunct, ...]

@@ -2,15 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.reduction.reduce import NotReducibleError, as_ltl, is_plain, parts_of
 from sysmlc.synthesis.games.game import OutsideGr1Error
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Observed:
+class Observed(Struct, frozen=True):
     """Contracts over shared history bits."""
 
     contracts: tuple[Contract, ...]

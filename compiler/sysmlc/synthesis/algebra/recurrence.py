@@ -9,19 +9,20 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 from math import prod
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.composite import Part
 from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.values import dataclass, replace
 
 MOST_CASES = 256
 
 
-@dataclass(frozen=True, slots=True)
-class Case:
+class Case(Struct, frozen=True):
     """Something that recurs, and where the run stays from some step on."""
 
     recurring: tuple[Node, ...]

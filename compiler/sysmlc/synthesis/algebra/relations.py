@@ -7,17 +7,17 @@ names the conjunct that fails and shows a run.
 
 from collections.abc import Iterator, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Failure:
+class Failure(Struct, frozen=True):
     """A conjunct that does not follow, with a run in which it does not hold."""
 
     conjunct: Conjunct

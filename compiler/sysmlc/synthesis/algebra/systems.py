@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.games.game import OutsideGr1Error
-from sysmlc.values import dataclass
 
 
 class DomainError(Exception):
@@ -18,8 +19,7 @@ class DomainError(Exception):
         self.domains = domains
 
 
-@dataclass(frozen=True, slots=True)
-class FairSystem:
+class FairSystem(Struct, frozen=True):
     """Infinite runs from ``init`` by steps in all ``parts`` that are again and again in each of
     ``fairness``."""
 

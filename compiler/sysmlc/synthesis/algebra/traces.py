@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping
 
+from msgspec import Struct
+
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Trace:
+class Trace(Struct, frozen=True):
     """Values of all variables in each step; after the last one it goes on at ``loop``.
 
     A run that ends, since somebody has no answer, has ``loop`` behind its last step, in which

@@ -7,16 +7,17 @@ whatever becomes of the others' (Benveniste et al. 2018, section 6.3).
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Formula, Var
 from sysmlc.logic.names import Names
 from sysmlc.synthesis.games.game import OutsideGr1Error
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Viewpoint:
+class Viewpoint(Struct, frozen=True):
     """What one viewpoint assumes and promises."""
 
     name: str

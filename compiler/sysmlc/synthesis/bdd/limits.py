@@ -11,11 +11,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from sysmlc.values import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(Struct, frozen=True):
     """How much a manager may use; 0 is no limit of its own."""
 
     nodes: int = 0
@@ -26,8 +25,7 @@ class Limits:
     """CPU time since the manager was made."""
 
 
-@dataclass(frozen=True, slots=True)
-class Usage:
+class Usage(Struct, frozen=True):
     """What a manager has used so far."""
 
     nodes: int

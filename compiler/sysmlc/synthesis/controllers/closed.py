@@ -5,6 +5,8 @@ What is written is read here anew: conditions and outputs as formulas, tables no
 
 from collections.abc import Iterator, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Var, eq
 from sysmlc.synthesis.bdd.manager import Node
@@ -12,13 +14,11 @@ from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 from sysmlc.synthesis.controllers.table import Entry, Table
 from sysmlc.synthesis.games.arena import in_range
-from sysmlc.values import dataclass
 
 Controller = Machine | Table
 
 
-@dataclass(frozen=True, slots=True)
-class Relation:
+class Relation(Struct, frozen=True):
     """What a controller does, as conjunctions."""
 
     first: tuple[Node, ...]

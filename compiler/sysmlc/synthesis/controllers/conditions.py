@@ -10,6 +10,8 @@ from functools import partial
 from itertools import combinations
 from sys import maxsize
 
+from msgspec import Struct
+
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Owner
 from sysmlc.logic.formula import (
@@ -32,7 +34,6 @@ from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.listing import Answer, Draft
 from sysmlc.synthesis.controllers.mealy import Machine, Move
-from sysmlc.values import dataclass
 
 MOST_CASES = 5_000
 """Alternatives in all conditions of a machine: more are no explicit machine any more."""
@@ -74,8 +75,7 @@ def compared(contract: Contract) -> Iterator[Pair]:
 _COMPARING = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 
 
-@dataclass(frozen=True, slots=True)
-class _Fact:
+class _Fact(Struct, frozen=True):
     """Something that is true of some values."""
 
     formula: Formula

@@ -7,19 +7,19 @@ chosen are few bits.
 
 from collections.abc import Iterable, Mapping
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.choice import substituted
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.arena import Arena, Turn, in_range
-from sysmlc.values import dataclass
 
 LARGE = 5_000
 """Nodes of what is said about a variable that is not worth the looking."""
 
 
-@dataclass(frozen=True, slots=True)
-class Answers:
+class Answers(Struct, frozen=True):
     """The last turn of a step, with what there is to choose."""
 
     bits: tuple[str, ...]

@@ -8,11 +8,12 @@ its contract; it never trusts one that does not.
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
+
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.image import Product, joined
-from sysmlc.values import dataclass
 
 MANY = 4_000
 """Nodes of the states that one step adds from which on it is worth to guess where runs can be."""
@@ -24,8 +25,7 @@ ROOM = 100_000
 """Nodes that a guess may take beside twice those that there are."""
 
 
-@dataclass(frozen=True, slots=True)
-class Closed:
+class Closed(Struct, frozen=True):
     """A controller in all environments that keep the assumptions."""
 
     symbols: Symbols

@@ -7,13 +7,14 @@ state from the start. Inputs are not listed; they are split where outputs or nex
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic import domains
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.controllers.memory import Reached, gives, steps
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
-from sysmlc.values import dataclass
 
 MOST_STATES = 1_000
 MOST_MOVES = 5_000
@@ -22,8 +23,7 @@ Answer = tuple[tuple[Formula, ...], int]
 """Outputs, as in ``mealy.Move``, and the next state."""
 
 
-@dataclass(frozen=True, slots=True)
-class Draft:
+class Draft(Struct, frozen=True):
     """States with their moves; conditions are over registers and primed inputs that are possible.
 
     What no move's condition holds for cannot be in that state.
@@ -50,8 +50,7 @@ def listed(
 Functions = Mapping[str, Node]
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
+class _State(Struct, frozen=True):
     """A mode with the functions that some of what is remembered leaves."""
 
     mode: Mode
@@ -59,8 +58,7 @@ class _State:
     """Registers and primed inputs that are possible."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Class:
+class _Class(Struct, frozen=True):
     """What is remembered that leads to one state."""
 
     memory: Node

@@ -8,14 +8,14 @@ Inputs that the assumptions exclude may have no move.
 
 from collections.abc import Mapping
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.evaluate import evaluation, value_of
 from sysmlc.logic.formula import Formula, Literal
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(Struct, frozen=True):
     """What a machine answers when a condition holds, and where it goes on."""
 
     when: Formula
@@ -24,8 +24,7 @@ class Move:
     state: int
 
 
-@dataclass(frozen=True, slots=True)
-class Machine:
+class Machine(Struct, frozen=True):
     """A deterministic machine; ``states[state]`` is what it may do there."""
 
     inputs: tuple[Variable, ...]

@@ -3,6 +3,8 @@ of the variables count."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic import domains
 from sysmlc.logic.contract import IntegerDomain, Owner
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, eq
@@ -11,14 +13,12 @@ from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import next_bit
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.synthesis.games.image import Product
-from sysmlc.values import dataclass
 
 FEW = 2
 """Values that a counter may be set to beside counting."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reached:
+class Reached(Struct, frozen=True):
     """A strategy in all environments that keep the assumptions."""
 
     strategy: Strategy

@@ -7,9 +7,10 @@ chosen greedily, in the order of states; the outcome answers every run of allowe
 
 from collections.abc import Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.listing import Answer, Draft
-from sysmlc.values import replace
 
 MOST_COMPARED = 400_000
 """Pairs of moves that are compared to use don't-cares: their number grows with the square of the

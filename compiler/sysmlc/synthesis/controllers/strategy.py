@@ -9,6 +9,8 @@ it is; variables that follow from others are computed from them.
 
 from collections.abc import Callable, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.choice import chosen, joined, substituted
 from sysmlc.synthesis.bdd.manager import Manager, Node
@@ -19,13 +21,11 @@ from sysmlc.synthesis.games.arena import Steps, played, products
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.image import Product
 from sysmlc.synthesis.games.solve import Solution
-from sysmlc.values import dataclass
 
 Functions = Mapping[str, Node]
 
 
-@dataclass(frozen=True, slots=True)
-class Mode:
+class Mode(Struct, frozen=True):
     """What is done while one goal is in turn."""
 
     outputs: Functions
@@ -34,8 +34,7 @@ class Mode:
     """For each mode, over the same bits, when it is the next one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Strategy:
+class Strategy(Struct, frozen=True):
     """How to keep a contract."""
 
     symbols: Symbols

@@ -7,6 +7,8 @@ it stands, and has the size of the decision diagrams, not of what they would lis
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from msgspec import Struct
+
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Literal
@@ -14,13 +16,11 @@ from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import width
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
-from sysmlc.values import dataclass
 
 MOST_NODES = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class Bit:
+class Bit(Struct, frozen=True):
     """One bit of the code of a variable, of this step or of the one before."""
 
     variable: str
@@ -29,8 +29,7 @@ class Bit:
     is_before: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(Struct, frozen=True):
     """What is done in a mode: places of nodes."""
 
     outputs: tuple[int, ...]
@@ -39,8 +38,7 @@ class Entry:
     """For each mode whether it is the next one; exactly one is."""
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(Struct, frozen=True):
     """A deterministic controller over decision nodes."""
 
     inputs: tuple[Variable, ...]

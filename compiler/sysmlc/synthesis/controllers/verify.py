@@ -7,6 +7,9 @@ a relation over a variable for its state (``closed``), and fair runs are looked 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
@@ -18,11 +21,9 @@ from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.closed import Controller, memory, relation
 from sysmlc.synthesis.controllers.glance import Closed, Glance
 from sysmlc.synthesis.games.image import Product
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(Struct, frozen=True):
     """What a machine does wrong, with the steps that lead there."""
 
     conjunct: Conjunct | None

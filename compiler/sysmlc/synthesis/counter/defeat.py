@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
@@ -15,7 +17,6 @@ from sysmlc.synthesis.games.game import Game, make_game
 from sysmlc.synthesis.unrealizable.core import is_won
 from sysmlc.synthesis.unrealizable.explain import conflict
 from sysmlc.synthesis.unrealizable.reasons import as_written
-from sysmlc.values import replace
 
 NO_COUNTER = rule(
     "SM549",

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.counter.environment import Bits, Environment
-from sysmlc.values import dataclass, replace
 
 Row = tuple[Literal, ...]
 """Values of variables, in their order."""
@@ -15,8 +17,7 @@ MOST_MOVES = 50_000
 _Key = tuple[tuple[bool, ...] | None, tuple[bool, ...], int]
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(Struct, frozen=True):
     """The environment gives ``given`` and waits; without moves the system has no answer."""
 
     given: Row
@@ -24,8 +25,7 @@ class State:
     """For each answer that the system may give the next state."""
 
 
-@dataclass(frozen=True, slots=True)
-class Counter:
+class Counter(Struct, frozen=True):
     """A machine that makes the system fail; it begins in state 0."""
 
     inputs: tuple[Variable, ...]

@@ -7,14 +7,14 @@ of GR(1) games).
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Arena, Steps, plain
 from sysmlc.synthesis.games.game import Game
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Rank:
+class Rank(Struct, frozen=True):
     """States from which the environment wins since one goal can be prevented."""
 
     states: Node
@@ -28,8 +28,7 @@ class Rank:
     steps, the nearest first; each set contains the one before."""
 
 
-@dataclass(frozen=True, slots=True)
-class Lost:
+class Lost(Struct, frozen=True):
     """A game that the environment wins."""
 
     game: Game

@@ -6,10 +6,11 @@ go on in one game, it has lost the others.)
 
 from collections.abc import Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.game import Game, Part
-from sysmlc.values import replace
 
 
 def independent(game: Game) -> tuple[Game, ...]:

@@ -6,18 +6,18 @@ system before the one of the environment.
 """
 
 from collections.abc import Collection
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.game import Game, Part
 from sysmlc.synthesis.games.image import Product
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Turn:
+class Turn(Struct, frozen=True):
     """One side chooses values of bits so that all parts hold."""
 
     owner: Owner
@@ -25,8 +25,7 @@ class Turn:
     parts: tuple[Node, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Arena:
+class Arena(Struct, frozen=True):
     """The states and the turns of a game."""
 
     manager: Manager

@@ -8,11 +8,13 @@ for every value of the others. Winning states of the others are the same.
 
 from collections.abc import Collection, Iterable, Mapping
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.games.arena import in_range
 from sysmlc.synthesis.games.game import Game, Part
-from sysmlc.values import dataclass, replace
 
 LARGE = 5_000
 """Nodes of a definition that is not worth the looking."""
@@ -64,8 +66,7 @@ def _joined_while_small(manager: Manager, members: Iterable[Node]) -> Node | Non
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _Definition:
+class _Definition(Struct, frozen=True):
     bits: Mapping[str, Node]
     """The value of each primed bit over primed bits of others."""
     parts: tuple[Part, ...]

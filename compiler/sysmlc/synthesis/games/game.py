@@ -5,13 +5,13 @@ system is obliged by its guarantees until an assumption is broken (docs/synthesi
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
+
+from msgspec import Struct, field
 
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
-from sysmlc.values import dataclass
 
 
 class OutsideGr1Error(Exception):
@@ -23,16 +23,14 @@ class OutsideGr1Error(Exception):
         self.why = why
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(Struct, frozen=True):
     """A diagram with the conjunct that it comes from; None for the range of a variable."""
 
     node: Node
     conjunct: Conjunct | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Game:
+class Game(Struct, frozen=True):
     """A GR(1) game; a step is a pair of valuations, the second one primed.
 
     The system wins a play when it keeps ``init_guarantees`` and ``guarantees`` for as long as the

@@ -5,10 +5,12 @@ leads to next states; the predecessors of a game are in ``arena``.
 """
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+
+from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.games.game import Game
-from sysmlc.values import dataclass
 
 CLUSTER = 2_000
 """Nodes up to which parts about the same bits are joined once and for all."""
@@ -24,8 +26,7 @@ class _Cluster:
     """The bits to be quantified that it speaks of."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Stage:
+class _Stage(Struct, frozen=True):
     """A part of the relation, and the bits that can go as soon as it is joined."""
 
     node: Node

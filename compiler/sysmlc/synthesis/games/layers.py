@@ -1,16 +1,16 @@
 """Layers on the way to one goal: the middle and the inner fixpoint of a GR(1) game."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
+
+from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Steps
 from sysmlc.synthesis.games.routes import SingleSteps
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Layer:
+class Layer(Struct, frozen=True):
     """States from which the system comes closer to a goal in a step, or stays.
 
     A state in ``states`` and not in the layer before it is in the goal itself (first layer), can

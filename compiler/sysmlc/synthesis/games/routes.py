@@ -7,15 +7,17 @@ and they can be taken one after the other on the way to a goal. Booleans are lef
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import combinations
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic.contract import BooleanDomain, Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import next_bit
 from sysmlc.synthesis.games.arena import Arena, Steps, Turn, played, products
 from sysmlc.synthesis.games.image import Product
-from sysmlc.values import dataclass, replace
 
 FEWEST = 3
 """Components from which on joint steps are worth avoiding."""
@@ -23,8 +25,7 @@ LARGE = 2_000
 """Nodes from which on a rule about two variables is taken to tie them together."""
 
 
-@dataclass(frozen=True, slots=True)
-class Routes:
+class Routes(Struct, frozen=True):
     """Turns of all, and then turns in which one component moves: the system's choice."""
 
     before: tuple[Turn, ...]

@@ -11,13 +11,15 @@ rewriting of the same predecessor; nothing is added that a system may do.
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.arena import Arena, Turn, in_range, nodes, plain
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.image import Product
-from sysmlc.values import dataclass, replace
 
 LARGE = 20_000
 """Nodes up to which parts are joined to quantify a command once and for all."""
@@ -50,8 +52,7 @@ def _is_forgotten(game: Game, name: str) -> bool:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Shift:
+class _Shift(Struct, frozen=True):
     """The parts of a game, sorted into the turns that they belong to."""
 
     game: Game

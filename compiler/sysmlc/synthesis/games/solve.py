@@ -7,8 +7,10 @@ in which the system may stay since an assumption does not recur.
 """
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import cycle
+
+from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Arena, Steps, plain
@@ -18,11 +20,9 @@ from sysmlc.synthesis.games.narrow import invariant, without_ranges
 from sysmlc.synthesis.games.reach import reachable
 from sysmlc.synthesis.games.routes import SingleSteps, routes
 from sysmlc.synthesis.games.symmetry import Exchange, image, orbits
-from sysmlc.values import dataclass
 
 
-@dataclass(frozen=True, slots=True)
-class Solution:
+class Solution(Struct, frozen=True):
     """The outcome of a game."""
 
     arena: Arena

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -22,7 +24,6 @@ from sysmlc.synthesis.games.solve import solve
 from sysmlc.synthesis.lints import rules
 from sysmlc.synthesis.lints.runs import all_steps
 from sysmlc.synthesis.lints.words import Remark, timely
-from sysmlc.values import replace
 
 NewManager = Callable[[], Manager]
 _TRIED = 40

@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Rule
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula, primed, variables
 from sysmlc.synthesis.lints import rules
-from sysmlc.values import dataclass, replace
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
+class Remark(Struct, frozen=True):
     """A finding about a conjunct, or about the contract when there is none."""
 
     rule: Rule

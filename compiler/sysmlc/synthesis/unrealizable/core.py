@@ -5,13 +5,14 @@ Assumptions stay.
 
 from collections.abc import Sequence
 
+from msgspec.structs import replace
+
 from sysmlc.logic.contract import Conjunct
 from sysmlc.synthesis.games.derived import without_derived
 from sysmlc.synthesis.games.game import Game, Part
 from sysmlc.synthesis.games.shift import shifted
 from sysmlc.synthesis.games.solve import solve_arena
 from sysmlc.synthesis.unrealizable.explain import MOST_ASKED, conflict
-from sysmlc.values import replace
 
 
 def unrealizable_core(game: Game, most: int = MOST_ASKED) -> tuple[Conjunct, ...]:

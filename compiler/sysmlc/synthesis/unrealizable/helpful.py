@@ -9,13 +9,14 @@ the environment break is no help.
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
 from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula
 from sysmlc.synthesis.games.game import Game, Part
 from sysmlc.synthesis.unrealizable.core import is_won
-from sysmlc.values import replace
 
 MOST_TRIED = 60
 """Assumptions that are tried, a game or two each; of large games fewer, by the square."""

@@ -2,14 +2,13 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
 from sysmlc.frontends.xmi.diagrams.types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
-from sysmlc.values import dataclass
 
 _PLACE = ["Extension", "diagrams", "diagram"]
 _TECHNOLOGY = re.compile(r"MDGDgm=[\w.]+::(\w+)")

@@ -1,7 +1,7 @@
 """Diagrams of MagicDraw and Cameo: ``ownedDiagram`` in the model, shapes in entries beside it."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
 from sysmlc.frontends.xmi.diagrams.contents import Relation, Relations
@@ -10,7 +10,6 @@ from sysmlc.frontends.xmi.diagrams.types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
-from sysmlc.values import dataclass
 
 ENTRY = "BINARY-"
 """How the names of entries with shapes begin."""

@@ -1,7 +1,7 @@
 """Diagrams of Papyrus: the file ``.notation`` beside a model, in GMF's notation."""
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
 from sysmlc.frontends.xmi.diagrams.shapes import inside, target_of
@@ -9,7 +9,6 @@ from sysmlc.frontends.xmi.diagrams.types import diagram_word
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
-from sysmlc.values import dataclass
 
 SUFFIX = ".notation"
 _DIAGRAM = "Diagram"

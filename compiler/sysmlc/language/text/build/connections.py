@@ -1,6 +1,6 @@
 """Connections, interfaces, bindings, successions, flows (SysML 8.2.2.13 to 8.2.2.16)."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sysmlc.language.text.build.definitions import USAGES, Keyword, whole
 from sysmlc.language.text.build.ends import End, maker
@@ -9,7 +9,6 @@ from sysmlc.language.text.build.names import Names, call
 from sysmlc.language.text.build.owning import FEATURE, made
 from sysmlc.language.text.scan import Remark, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
-from sysmlc.values import dataclass
 
 Rest = End | list[End] | list[Node]
 """What follows the keyword of a connector: ends, one by one or as a list, and its body."""
