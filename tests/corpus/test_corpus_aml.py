@@ -13,12 +13,12 @@ import pytest
 from classes_of_aml import lead_nowhere
 from lxml import etree
 
+from graph_differences import diff
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink
 from sysmlc.diagnostics.locate import locate
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
-from sysmlc.ir.diff import diff
 from sysmlc.ir.verify import verify
 from sysmlc.sources import Source, load
 

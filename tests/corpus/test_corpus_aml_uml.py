@@ -5,10 +5,10 @@ from collections import Counter
 import pytest
 from plants import baygate, refined, sources, units
 
+from graph_differences import diff
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.xmi import FRONTEND
-from sysmlc.ir.diff import diff
 from sysmlc.ir.verify import verify
 from sysmlc.sources import Source
 

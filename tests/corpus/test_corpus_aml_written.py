@@ -9,9 +9,9 @@ import pytest
 from lxml import etree
 from plants import baygate, refined, sources, units
 
+from graph_differences import diff
 from sysmlc.backends.aml.document import documents
 from sysmlc.diagnostics import Sink
-from sysmlc.ir.diff import diff
 from sysmlc.sources import Source, SourceError, load
 
 pytestmark = pytest.mark.corpus

@@ -3,11 +3,11 @@
 import pytest
 
 from dialects.comparing import OF_THE_DIALECT, WRITERS, of_dialect
+from graph_differences import diff
 from long_runs import quick_first
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph
-from sysmlc.ir.diff import diff
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

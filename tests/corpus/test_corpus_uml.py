@@ -7,7 +7,7 @@ import pytest
 from dialects.comparing import OF_THE_DIALECT, of_dialect
 from dialects.metamodel import Metamodel
 from examples.compiling import compile_example, compile_text
-from sysmlc.ir.diff import diff
+from graph_differences import diff
 
 pytestmark = pytest.mark.corpus
 

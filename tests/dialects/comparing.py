@@ -4,8 +4,8 @@ from pathlib import Path
 
 from dialects import enterprise_architect, magicdraw
 from examples.compiling import compile_text, outputs
+from graph_differences import Change, diff
 from sysmlc.driver import Compilation
-from sysmlc.ir.diff import Change, diff
 
 WRITERS = {
     "xml": magicdraw.write_xml,

@@ -1,25 +1,21 @@
-"""Back end ``ecore``: the graph as EMF XMI after ``metamodels/ir.ecore``, and its reader.
+"""Back end ``ecore``: the graph as EMF XMI after ``metamodels/ir.ecore``.
 
-The XMI is written with lxml (pyecore costs 25 times the CPU); tests load it back with pyecore
-and compare.
+The XMI is written with lxml (pyecore costs 25 times the CPU); tests load it with pyecore.
 """
 
 import json
 import re
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph
 from sysmlc.output import Output
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Node
-    from pyecore.ecore import EObject
 
 _XMI = "http://www.omg.org/XMI"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
@@ -109,59 +105,3 @@ def _write_edges(graph: Graph, element: Element, node: "Node", paths: dict[str, 
 def _escaped(text: str) -> str:
     """JSON without its quotes, so that control characters survive in XML attributes."""
     return json.dumps(text)[1:-1]
-
-
-def _unescaped(text: str | None) -> str:
-    return str(json.loads(f'"{text or ""}"'))
-
-
-# -- reading -----------------------------------------------------------------------------------
-
-
-def from_xmi(path: str) -> Graph:
-    """Read a saved graph with pyecore; the inverse of ``to_xmi``."""
-    from pyecore.resources import ResourceSet
-
-    files = ResourceSet()
-    metamodel = files.get_resource(str(resources.path("metamodels", "ir.ecore"))).contents[0]
-    files.metamodel_registry[metamodel.nsURI] = metamodel
-    graph = Graph()
-    objects = list(_objects(files.get_resource(path).contents[0]))
-    for obj, owner in objects:
-        graph.add(_read(obj, owner))
-    for obj, _ in objects:
-        for edge in Edge:
-            if edge is not Edge.OWNS:
-                for target in getattr(obj, feature_name(edge)):
-                    graph.connect(edge, _unescaped(obj.id), _unescaped(target.id))
-    return graph
-
-
-def _objects(root: "EObject") -> "Iterator[tuple[EObject, str | None]]":
-    stack: list[tuple[EObject, str | None]] = [(top, None) for top in reversed(root.roots)]
-    while stack:
-        obj, owner = stack.pop()
-        yield obj, owner
-        stack.extend((child, _unescaped(obj.id)) for child in reversed(obj.owns))
-
-
-def _read(obj: "EObject", owner: str | None) -> Element:
-    attrs: dict[str, AttrValue] = {
-        _unescaped(pair.key): _tuples(json.loads(pair.value)) for pair in obj.attrs
-    }
-    return Element(
-        _unescaped(obj.id),
-        Kind(obj.eClass.name),
-        _unescaped(obj.name),
-        owner,
-        obj.ordinal,
-        _unescaped(obj.source),
-        attrs,
-    )
-
-
-def _tuples(value: object) -> AttrValue:
-    if isinstance(value, list):
-        return tuple(_tuples(item) for item in value)
-    assert value is None or isinstance(value, str | int | float | bool)
-    return value

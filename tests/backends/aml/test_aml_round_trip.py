@@ -9,7 +9,7 @@ from structure_of import structure
 from writing_aml import IGNORED, at, read, refined, root, round_trip, saved
 
 from examples.compiling import EXAMPLES, compile_example
-from sysmlc.ir.diff import diff
+from graph_differences import diff
 from sysmlc.sources import Source
 
 PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">

@@ -2,11 +2,11 @@
 
 from lxml import etree
 
+from graph_differences import diff
 from sysmlc.backends.aml.document import documents
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Graph, parse_text
-from sysmlc.ir.diff import diff
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source

@@ -1,10 +1,10 @@
 """Saves graphs as UML and reads them back, for the tests of the back end ``uml``."""
 
+from graph_differences import diff
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text
-from sysmlc.ir.diff import diff
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source

@@ -16,8 +16,8 @@ from dialects.magicdraw import write_xml
 from dialects.papyrus import XMI
 from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, compile_text, outputs
+from graph_differences import diff
 from long_runs import quick_first
-from sysmlc.ir.diff import diff
 
 _NAMES = """type source target client supplier behavior operation signal event guard covered
     sendEvent receiveEvent memberEnd role constrainedElement annotatedElement general classifier

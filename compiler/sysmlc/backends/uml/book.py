@@ -46,10 +46,6 @@ class Book:
         id = part_id(holder.id, f"{tag}[{number}]")
         return above.add(Node(tag, {"xmi:type": f"uml:{metaclass}", "xmi:id": id}))
 
-    def local_id(self, element: Element) -> str:
-        """Id in the file of what is written, else the empty string."""
-        return self.ids[element.id] if element.id in self.nodes else ""
-
     def refer(
         self, holder: Element, node: Node, feature: str, targets: Sequence[Element], edge: str
     ) -> None:
@@ -72,9 +68,3 @@ class Book:
             self.losses.kept.edge(edge, holder, target)
         kinds = {"kind": str(holder.kind), "target": str(target.kind)}
         self.losses.note(UNSAID_EDGE, holder, edge=edge, **kinds)
-
-    def refer_by(self, holder: Element, feature: str, edge: Edge) -> None:
-        """Write all edges of a kind as one feature."""
-        targets = self.graph.targets(holder, edge)
-        if targets:
-            self.refer(holder, self.node(holder), feature, targets, edge.value)

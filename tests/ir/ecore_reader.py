@@ -1,0 +1,62 @@
+"""Reads the output of the back end ``ecore`` with pyecore, an independent implementation."""
+
+import json
+from collections.abc import Iterator
+
+from pyecore.ecore import EObject
+from pyecore.resources import ResourceSet
+
+from sysmlc import resources
+from sysmlc.backends.ecore import feature_name
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+
+
+def read_ecore_xmi(path: str) -> Graph:
+    """Read a graph that the back end ``ecore`` wrote."""
+    files = ResourceSet()
+    metamodel = files.get_resource(str(resources.path("metamodels", "ir.ecore"))).contents[0]
+    files.metamodel_registry[metamodel.nsURI] = metamodel
+    graph = Graph()
+    objects = list(_objects(files.get_resource(path).contents[0]))
+    for obj, owner in objects:
+        graph.add(_read(obj, owner))
+    for obj, _ in objects:
+        for edge in Edge:
+            if edge is not Edge.OWNS:
+                for target in getattr(obj, feature_name(edge)):
+                    graph.connect(edge, _unescaped(obj.id), _unescaped(target.id))
+    return graph
+
+
+def _objects(root: EObject) -> Iterator[tuple[EObject, str | None]]:
+    stack: list[tuple[EObject, str | None]] = [(top, None) for top in reversed(root.roots)]
+    while stack:
+        obj, owner = stack.pop()
+        yield obj, owner
+        stack.extend((child, _unescaped(obj.id)) for child in reversed(obj.owns))
+
+
+def _read(obj: EObject, owner: str | None) -> Element:
+    attrs: dict[str, AttrValue] = {
+        _unescaped(pair.key): _with_tuples(json.loads(pair.value)) for pair in obj.attrs
+    }
+    return Element(
+        _unescaped(obj.id),
+        Kind(obj.eClass.name),
+        _unescaped(obj.name),
+        owner,
+        obj.ordinal,
+        _unescaped(obj.source),
+        attrs,
+    )
+
+
+def _with_tuples(value: object) -> AttrValue:
+    if isinstance(value, list):
+        return tuple(_with_tuples(item) for item in value)
+    assert value is None or isinstance(value, str | int | float | bool)
+    return value
+
+
+def _unescaped(text: str | None) -> str:
+    return str(json.loads(f'"{text or ""}"'))
