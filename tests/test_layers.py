@@ -7,21 +7,7 @@ import sysmlc
 
 ROOT = Path(sysmlc.__file__).parent
 LAYERS = [
-    {
-        "",
-        "values",
-        "resources",
-        "output",
-        "naming",
-        "patterns",
-        "suggest",
-        "toml_text",
-        "cache",
-        "depth",
-        "escapes",
-        "collecting",
-        "plantuml",
-    },
+    {"", "support"},
     {"sources"},
     {"diagnostics"},
     {"ir"},

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import Struct, field
 
-from sysmlc import resources
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.sources import Roots, SourceError
 from sysmlc.sources.limits import DOCUMENT_LIMITS
 from sysmlc.sources.whole import read_whole
-from sysmlc.suggest import did_you_mean
-from sysmlc.toml_text import TomlError, parse_toml
+from sysmlc.support import resources
+from sysmlc.support.suggestions import did_you_mean
+from sysmlc.support.toml_text import TomlError, parse_toml
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError
@@ -249,7 +249,7 @@ def _validate(file: Path, text: str, table: object) -> None:
 
     from jsonschema import Draft202012Validator
 
-    schema = resources.text("metamodels", "sysmlc-config.schema.json")
+    schema = resources.read_text("metamodels", "sysmlc-config.schema.json")
     validator = Draft202012Validator(json.loads(schema))
     errors = sorted(validator.iter_errors(table), key=lambda e: list(e.path))
     if errors:

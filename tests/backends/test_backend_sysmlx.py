@@ -12,8 +12,8 @@ from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
 from sysmlc.language.exchange import link, read
-from sysmlc.output import Output
 from sysmlc.sources import Source
+from sysmlc.support.output import Output
 
 SCALARS = uuid5(NAMESPACE_URL, "https://www.omg.org/spec/KerML/ScalarValues")
 REAL = uuid5(SCALARS, "ScalarValues::Real")

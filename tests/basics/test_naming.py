@@ -5,11 +5,11 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.naming import file_names
+from sysmlc.support.file_names import assign_file_names
 
 
 def name_of(qualified_name: str) -> str:
-    return file_names([qualified_name])[qualified_name]
+    return assign_file_names([qualified_name])[qualified_name]
 
 
 def test_plain_names_stay_readable():
@@ -26,21 +26,21 @@ def test_names_that_windows_reserves_are_changed():
 
 
 def test_names_that_collide_without_case_all_get_a_suffix():
-    names = file_names(["Gate", "gate", "Bay"])
+    names = assign_file_names(["Gate", "gate", "Bay"])
     assert names["Bay"] == "Bay"
     assert re.fullmatch(r"Gate~[0-9a-f]{6}", names["Gate"])
     assert re.fullmatch(r"gate~[0-9a-f]{6}", names["gate"])
 
 
 def test_long_names_are_cut_and_stay_distinct():
-    names = file_names(["x" * 300 + "a", "x" * 300 + "b"])
+    names = assign_file_names(["x" * 300 + "a", "x" * 300 + "b"])
     assert len(set(names.values())) == 2
     assert all(len(name.encode()) <= 120 for name in names.values())
 
 
 @given(st.lists(st.text(min_size=1), unique=True, max_size=8))
 def test_any_names_become_distinct_safe_file_names(names):
-    made = list(file_names(names).values())
+    made = list(assign_file_names(names).values())
     assert len({name.lower() for name in made}) == len(names)
     for name in made:
         assert len(name.encode()) <= 120

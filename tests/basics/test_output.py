@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.output import Output, append_members, encode_json, encode_row, write_if_changed
+from sysmlc.support.atomic_files import write_if_changed
+from sysmlc.support.json_text import append_members, encode_json, encode_row
+from sysmlc.support.output import Output
 
 _JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),

@@ -6,12 +6,12 @@ import re
 import pytest
 from jsonschema import Draft202012Validator
 
-from sysmlc import resources
 from sysmlc.diagnostics.coverage import covered_tenths, tenths
 from sysmlc.diagnostics.coverage_report import FileReport
 from sysmlc.diagnostics.render import coverage
 from sysmlc.driver import Request
 from sysmlc.driver.covering import cover
+from sysmlc.support import resources
 
 PLANT = """\
 <xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
@@ -109,7 +109,7 @@ def test_three_examples_are_shown_unless_all_are_asked_for(here):
 
 def test_json_follows_the_schema_of_coverage_json_and_adds_up(plant):
     content = json.loads(plant.sysmlc("coverage", "plant.uml", "--format", "json").stdout)
-    schema = json.loads(resources.text("metamodels", "sysmlc-coverage.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-coverage.schema.json"))
     Draft202012Validator.check_schema(schema)
     assert list(Draft202012Validator(schema).iter_errors(content)) == []
     (file,) = content["files"]

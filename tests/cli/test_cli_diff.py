@@ -7,10 +7,10 @@ import jsonschema
 import pytest
 
 from dialects.random_models import random_model
-from sysmlc import resources
 from sysmlc.driver import registry
+from sysmlc.support import resources
 
-SCHEMA = json.loads(resources.text("metamodels", "sysmlc-diff.schema.json"))
+SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-diff.schema.json"))
 
 OLD = """\
 <CAEXFile SchemaVersion="2.15" FileName="plant.aml">
@@ -101,7 +101,7 @@ def test_differences_are_1_and_stand_below_their_owners(plants):
 
 
 def test_the_documentation_shows_what_is_printed(plants):
-    page = (resources.root() / "docs" / "compare-two-models.md").read_text("utf-8")
+    page = (resources.find_root() / "docs" / "compare-two-models.md").read_text("utf-8")
     assert indented(TEXT) in page
 
 

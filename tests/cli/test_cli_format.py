@@ -124,7 +124,7 @@ def test_a_disk_without_space_is_no_fault_of_ours(tmp_path, monkeypatch):
 
     file = tmp_path / "plant.sysml"
     file.write_text(UGLY)
-    monkeypatch.setattr("sysmlc.output._write_all", full)
+    monkeypatch.setattr("sysmlc.support.atomic_files._write_all", full)
     made = run(file)
     message = f"sysmlc: {file.as_posix()} cannot be written: No space left on device\n"
     assert (made.exit_code, made.stderr) == (2, message)

@@ -7,11 +7,11 @@ from jsonschema import Draft202012Validator
 from msgspec.structs import replace
 
 from json_documents import SARIF
-from sysmlc import resources
 from sysmlc.cli.session import has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.diagnostics.render import FORMATS, Report, make_report, render
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 OPEN = rule(
     "SM944",
@@ -101,7 +101,7 @@ def test_concise_is_one_line_each():
 
 def test_json_follows_its_schema():
     content = json.loads(render(report(), "json"))
-    schema = json.loads(resources.text("metamodels", "sysmlc-diagnostics.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-diagnostics.schema.json"))
     Draft202012Validator.check_schema(schema)
     assert list(Draft202012Validator(schema).iter_errors(content)) == []
     assert content == {

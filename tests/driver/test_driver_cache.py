@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 from driver_fakes import FAULTY, PLANT
 
-from sysmlc import cache
-from sysmlc.cache import Cache
 from sysmlc.cli import group
 from sysmlc.driver import cache_key, compilation
+from sysmlc.support import cache
+from sysmlc.support.cache import Cache
 
 
 @pytest.fixture

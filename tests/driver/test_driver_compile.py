@@ -14,8 +14,8 @@ from sysmlc.config import Config
 from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.suppress import Suppression
 from sysmlc.driver import Observer, Request, compile_model, faults, inputs
-from sysmlc.output import Output
 from sysmlc.sources import whole
+from sysmlc.support.output import Output
 
 
 @pytest.fixture

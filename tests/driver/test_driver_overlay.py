@@ -7,11 +7,11 @@ import pytest
 from click.testing import CliRunner
 from jsonschema import Draft202012Validator
 
-from sysmlc import cache, resources
 from sysmlc.cli import group
 from sysmlc.cli.watch import _is_input
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir import Kind
+from sysmlc.support import cache, resources
 
 PLANT = """\
 Package plant "Plant"
@@ -224,7 +224,7 @@ def test_the_manifest_lists_the_overlay_and_the_trace_leads_into_it(folder):
     code, _, _ = sysmlc(folder / "line.ir", "-o", folder / "out", "--no-cache")
     assert code == 0
     manifest = json.loads((folder / "out/manifest.json").read_text())
-    schema = json.loads(resources.text("metamodels", "sysmlc-manifest.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-manifest.schema.json"))
     Draft202012Validator(schema).validate(manifest)
     assert "line.overlay.yaml" in json.dumps(manifest["inputs"])
     trace = (folder / "out/trace.json").read_text()
@@ -237,7 +237,7 @@ def test_the_manifest_lists_the_overlay_and_the_trace_leads_into_it(folder):
 def test_a_shipped_overlay_has_the_shape_of_the_schema():
     from ruamel.yaml import YAML
 
-    schema = json.loads(resources.text("metamodels", "sysmlc-overlay.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-overlay.schema.json"))
     root = resources.path("metamodels").parent
     for path in root.glob("examples/*/*.overlay.yaml"):
         Draft202012Validator(schema).validate(YAML(typ="safe").load(path.read_text()))

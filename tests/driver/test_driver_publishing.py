@@ -7,8 +7,8 @@ import pytest
 from driver_fakes import FAULTY, PLANT, Outlines, compiled
 from jsonschema import Draft202012Validator
 
-from sysmlc import resources
 from sysmlc.driver import Target, compare, outcome, publish
+from sysmlc.support import resources
 
 
 def build(folder, text=PLANT, **given):
@@ -40,7 +40,7 @@ def test_the_folder_holds_what_was_made_and_three_files_about_it(tmp_path):
 @pytest.mark.parametrize("text", [PLANT, FAULTY, "Klass gate\n"])
 def test_they_follow_their_schemas(tmp_path, name, text):
     build(tmp_path, text)
-    schema = json.loads(resources.text("metamodels", f"sysmlc-{name}.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", f"sysmlc-{name}.schema.json"))
     Draft202012Validator.check_schema(schema)
     content = json.loads((tmp_path / "out" / f"{name}.json").read_text())
     assert list(Draft202012Validator(schema).iter_errors(content)) == []

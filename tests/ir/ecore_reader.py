@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from pyecore.ecore import EObject
 from pyecore.resources import ResourceSet
 
-from sysmlc import resources
 from sysmlc.backends.ecore import feature_name
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.support import resources
 
 
 def read_ecore_xmi(path: str) -> Graph:

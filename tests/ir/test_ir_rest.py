@@ -5,10 +5,10 @@ from graphs import graphs
 from hypothesis import given
 
 from graph_differences import Change, diff
-from sysmlc import resources
 from sysmlc.backends.ecore import to_xmi
 from sysmlc.ir import Edge, Element, Graph, Kind, derived_id, parse_text, print_text, verify
 from sysmlc.ir.generate import generate
+from sysmlc.support import resources
 
 GATE = """\
 Package p "Plant"
@@ -20,7 +20,7 @@ Package p "Plant"
 
 
 def test_kinds_are_generated_from_the_metamodel_as_it_is_now():
-    written = resources.root() / "compiler" / "sysmlc" / "ir" / "kinds.py"
+    written = resources.find_root() / "compiler" / "sysmlc" / "ir" / "kinds.py"
     assert "".join(generate().split()) == "".join(written.read_text().split())
 
 

@@ -4,9 +4,9 @@ from functools import cache
 
 from lark import Lark
 
-from sysmlc import resources
 from sysmlc.logic import formula as f
 from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.support import resources
 
 TEMPORAL = {"G": Op.ALWAYS, "[]": Op.ALWAYS, "F": Op.EVENTUALLY, "<>": Op.EVENTUALLY, "X": Op.NEXT}
 UNTIL = {"U": Op.UNTIL, "R": Op.RELEASE, "V": Op.RELEASE, "W": Op.WEAK_UNTIL}
@@ -28,7 +28,9 @@ ATOMS = {
 
 @cache
 def parser():
-    return Lark(resources.text("grammars", "ltl.lark"), parser="lalr", maybe_placeholders=False)
+    return Lark(
+        resources.read_text("grammars", "ltl.lark"), parser="lalr", maybe_placeholders=False
+    )
 
 
 def judge(text):

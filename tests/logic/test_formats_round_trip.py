@@ -9,10 +9,10 @@ import spot
 from contract_cases import canonical, contracts
 from hypothesis import given, settings
 
-from sysmlc import resources
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formats
 from sysmlc.logic.formats import NotExpressibleError
+from sysmlc.support import resources
 
 GAMES = ("gr1c", "slugsin", "structured")
 TEXTS = (*GAMES, "tlsf", "spot", "smv", "chase", "chasejson", "neutral", "contract")
@@ -55,5 +55,5 @@ SCHEMAS = {"neutral": "neutral-contract", "chasejson": "chase-contract"}
 @given(contract=contracts)
 @settings(max_examples=25, deadline=None)
 def test_json_is_as_its_schema_says(form, schema, contract):
-    rules = json.loads(resources.text("metamodels", f"{schema}.schema.json"))
+    rules = json.loads(resources.read_text("metamodels", f"{schema}.schema.json"))
     jsonschema.validate(json.loads(formats.write(contract, form)), rules)

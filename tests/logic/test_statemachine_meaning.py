@@ -1,7 +1,7 @@
 """Derived contracts against the interpreter: the formulas allow exactly the steps it makes.
 
-The interpreter (``machines.interpreter``) runs the drawing and reads no formula. Of its traces every
-conjunct must hold; and of every trace that differs from one of them in one variable of one
+The interpreter (``machines.interpreter``) runs the drawing and reads no formula. Of its traces
+every conjunct must hold; and of every trace that differs from one of them in one variable of one
 step the formulas must say what the interpreter says: legal when the changed step is among
 those that may follow, else violated. No mutation is exempt.
 """

@@ -7,12 +7,12 @@ import sys
 import pytest
 from jsonschema import Draft202012Validator
 
-from sysmlc import resources
 from sysmlc.diagnostics import Sink
 from sysmlc.overlay import files_of, read
 from sysmlc.overlay.paths import beside, join, split
 from sysmlc.overlay.tree import parse
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 RIGHT = "overlay: 1\nitems:\n  MiniPallet: {domain: physical}\n"
 
@@ -192,7 +192,7 @@ def test_files_that_terms_name_are_known():
 
 
 def test_the_schema_is_a_schema_and_its_words_are_explained():
-    schema = json.loads(resources.text("metamodels", "sysmlc-overlay.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-overlay.schema.json"))
     Draft202012Validator.check_schema(schema)
     assert all("description" in one for one in schema["properties"].values() if "$ref" not in one)
 

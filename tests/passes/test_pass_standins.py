@@ -6,9 +6,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from passing import codes, refined
 
-from sysmlc import resources
 from sysmlc.ir import Edge, Kind
 from sysmlc.passes.standins import Libraries, libraries, names_in
+from sysmlc.support import resources
 
 BLOCK = (
     "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Blocks"
@@ -154,15 +154,15 @@ def test_names_are_read_from_fragments(fragment, names):
 
 
 def test_the_data_file_is_as_its_schema_says():
-    schema = json.loads(resources.text("metamodels", "sysmlc-libraries.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-libraries.schema.json"))
     Draft202012Validator.check_schema(schema)
-    data = json.loads(resources.text("metamodels", "libraries.json"))
+    data = json.loads(resources.read_text("metamodels", "libraries.json"))
     Draft202012Validator(schema).validate(data)
     assert list(Draft202012Validator(schema).iter_errors({**data, "elements": {"x": {}}}))
 
 
 def test_the_data_file_is_closed_and_its_ids_are_unique():
-    data = json.loads(resources.text("metamodels", "libraries.json"))["elements"]
+    data = json.loads(resources.read_text("metamodels", "libraries.json"))["elements"]
     ids = [id for entry in data.values() for id in entry.get("ids", ())]
     assert len(ids) == len(set(ids))
     for name, entry in data.items():

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 NO_PORTS = rule(
     "SM949",
@@ -30,7 +30,7 @@ class Outline:
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add one file for each class that has ports."""
         blocks = graph.of_kind(Kind.CLASS)
-        names = file_names(graph.qualified_name(block) for block in blocks)
+        names = assign_file_names(graph.qualified_name(block) for block in blocks)
         for block in blocks:
             ports = [owned for owned in graph.owned(block) if owned.kind is Kind.PORT]
             if not ports:

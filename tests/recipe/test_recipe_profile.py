@@ -7,7 +7,7 @@ from pathlib import Path
 from lxml import etree
 
 import sysmlc.passes
-from sysmlc import resources
+from sysmlc.support import resources
 
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
 PROFILE = etree.parse(resources.path("metamodels", "sysmlc.profile.uml")).getroot()

@@ -3,7 +3,6 @@
 import pytest
 from small_floors import floor
 
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.robots import outcome as flow
@@ -14,6 +13,7 @@ from sysmlc.robots.outcome import studied
 from sysmlc.robots.report import files
 from sysmlc.robots.stored import controller_of, form_of
 from sysmlc.robots.strategy import ANY, controller_contract, measured
+from sysmlc.support.cache import Cache
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controllers.table import Table
 from sysmlc.synthesis.decide import Options

@@ -9,13 +9,13 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from sysmlc import cache
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Diagnostic, Place, Rule, Severity, Subject
 from sysmlc.diagnostics.render import Finding
 from sysmlc.driver import compilation
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.driver.outcome_cache import load_outcome, store_outcome
+from sysmlc.support import cache
+from sysmlc.support.cache import Cache
 
 FAULTY = """\
 Package pkg "Plant"

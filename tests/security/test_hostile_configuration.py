@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from sysmlc.cli.group import sysmlc
-from sysmlc.toml_text import TomlError, parse_toml
+from sysmlc.support.toml_text import TomlError, parse_toml
 
 DEEP = ": more than 50 nested brackets"
 LONG_KEY = ": a dotted key of more than 50 parts"

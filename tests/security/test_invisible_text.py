@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from sysmlc.cli.group import sysmlc
-from sysmlc.escapes import escape_invisible, escape_undecodable
+from sysmlc.support.escapes import escape_invisible, escape_undecodable
 
 HOSTILE = "a\u202eb\u200bc\x1b[31md\x9be\ue000f\u2028g\ufeffh\u3164i"
 SHOWN = r"a\u202eb\u200bc\x1b[31md\u009be" + "\ue000" + r"f\u2028g\ufeffh\u3164i"

@@ -4,20 +4,20 @@ import re
 
 import pytest
 
-from sysmlc import plantuml
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.backends.reqtable.table import Cell, Table
 from sysmlc.backends.reqtable.table import Row as TableRow
 from sysmlc.backends.reqtable.text import csv_text
 from sysmlc.diagnostics import Sink
-from sysmlc.escapes import escape_code, escape_markdown
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.formats import write
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.output import Output
 from sysmlc.passes import pipeline
+from sysmlc.support import plantuml_text as plantuml
+from sysmlc.support.escapes import escape_code, escape_markdown
+from sysmlc.support.output import Output
 
 HOSTILE = "<script>x</script>[y](javascript:z)`|**b**\n## Injected\n\u202e&lt;"
 MODEL = machine(

@@ -15,8 +15,8 @@ from sysmlc.cli import group
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.output import Output
 from sysmlc.passes import pipeline
+from sysmlc.support.output import Output
 
 PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n    Port gate.in "in"\n'
 SHELL = "{{ cycler.__init__.__globals__.os.popen('touch pwned').read() }}"

@@ -9,8 +9,8 @@ import pytest
 import small_games
 from contracts_in_lines import contract
 
-from sysmlc import resources
 from sysmlc.diagnostics import Sink, Subject
+from sysmlc.support import resources
 from sysmlc.synthesis import LimitError, synthesise
 from sysmlc.synthesis.controllers import gr1c_text, table_text
 from sysmlc.synthesis.controllers.machine_text import has_diagram, json_of, plantuml_of
@@ -39,8 +39,8 @@ COUNTER = contract(
     promise always !(go' & n<20) -> n'=n
     """
 )
-MACHINE = json.loads(resources.text("metamodels", "sysmlc-machine.schema.json"))
-TABLE = json.loads(resources.text("metamodels", "sysmlc-controller.schema.json"))
+MACHINE = json.loads(resources.read_text("metamodels", "sysmlc-machine.schema.json"))
+TABLE = json.loads(resources.read_text("metamodels", "sysmlc-controller.schema.json"))
 
 
 def made(contract, form=Form.ANY):

@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
-from sysmlc.output import Output
+from sysmlc.support.output import Output
 
 
 class InputFile(Struct, frozen=True):

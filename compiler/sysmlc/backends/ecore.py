@@ -12,7 +12,7 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.output import Output
+from sysmlc.support.output import Output
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Node

@@ -12,8 +12,8 @@ from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.logic.printing import print_formula
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 _LAMP = """\
 Class c "Lamp"
@@ -64,7 +64,7 @@ class FormBackend(Struct, frozen=True):
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the files of each contract; report what cannot be said."""
         contracts = graph.derived(Contract)
-        names = file_names(contract.component for contract in contracts)
+        names = assign_file_names(contract.component for contract in contracts)
         for contract in contracts:
             told = tuple(trace(graph, contract))
             for form, ending in self.files:

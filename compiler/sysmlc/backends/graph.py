@@ -5,7 +5,8 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Element, Graph
-from sysmlc.output import Output, encode_json
+from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import Output
 
 
 class GraphBackend(Struct, frozen=True):

@@ -6,7 +6,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import print_text
-from sysmlc.output import Output
+from sysmlc.support.output import Output
 
 
 class IrBackend(Struct, frozen=True):

@@ -8,7 +8,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.cli import terminal
-from sysmlc.escapes import escape_undecodable
+from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -47,7 +47,7 @@ def chosen(
     A block that only has parts (``composites``) is a component, too.
     """
     from sysmlc.cli.session import fail
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     names = [one.component for one in contracts] + [one.component for one in composites]
     found = tuple(one for one in contracts if component in ("", one.component))

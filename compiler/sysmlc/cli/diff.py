@@ -108,7 +108,7 @@ def _is_unread(made: "Compilation") -> bool:
 def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
     """Refuse words that make no difference in any model: most likely they are misspelt."""
     from sysmlc.ir.compare.ignoring import words
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     known = words(one.graph for one in made) if ignore else ()
     for word in ignore:

@@ -10,8 +10,8 @@ from typing import Any
 import click
 
 from sysmlc.diagnostics import Place
-from sysmlc.escapes import escape_invisible, escape_markdown
 from sysmlc.ir.compare import Change, Ref, What
+from sysmlc.support.escapes import escape_invisible, escape_markdown
 
 _SIGNS = {What.ADDED: "+", What.REMOVED: "-"}
 _COLORS = {"+": "green", "-": "red", "~": "yellow"}

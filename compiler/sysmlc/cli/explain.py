@@ -23,7 +23,7 @@ Examples:
 def command(code: str | None) -> None:
     """Explain the rule with this code or name; without one, list all rules."""
     from sysmlc.cli.session import fail, known_rules
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     rules = known_rules()
     if code is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 from msgspec import Struct
 
-from sysmlc.escapes import escape_undecodable
+from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.diagnostics.render import Finding
@@ -184,7 +184,7 @@ def _write(texts: list[_Text]) -> None:
 def _replace(target: Path, name: str, content: str) -> None:
     """Write a file anew, with the rights that it has: nobody may write means not we either."""
     from sysmlc.cli.session import fail
-    from sysmlc.output import write
+    from sysmlc.support.atomic_files import write
 
     try:
         mode = target.stat().st_mode

@@ -10,7 +10,8 @@ def write_files(files: Iterable[tuple[str, str]], folder: Path) -> None:
     A symbolic link in *folder* is never followed: whoever made it could choose what is replaced.
     """
     from sysmlc.cli.session import fail
-    from sysmlc.output import OutputPathError, find_obstacle, write_if_changed
+    from sysmlc.support.atomic_files import write_if_changed
+    from sysmlc.support.output import OutputPathError, find_obstacle
 
     try:
         for path, text in files:

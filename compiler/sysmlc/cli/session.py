@@ -12,17 +12,17 @@ from msgspec.structs import replace
 
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
-from sysmlc.escapes import escape_undecodable
+from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
-    from sysmlc.cache import Cache
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation, Opened, Outcome, Publication, Request, Target
     from sysmlc.sources.schema import Schemas
+    from sysmlc.support.cache import Cache
 
 _AS_WRITTEN = frozenset({"resolve", "kept"})
 """Passes that add nothing to what the authors wrote."""
@@ -97,7 +97,7 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
     An isolated command reads no configuration file.
     """
     from sysmlc import config
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     if settings.isolated:
         if settings.config is not None:
@@ -236,8 +236,8 @@ def compile_units(
 
 def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
     """Return the user's cache, or None. A folder that cannot be trusted is reported once."""
-    from sysmlc import cache
     from sysmlc.config import find_project_root
+    from sysmlc.support import cache
 
     roots = {find_project_root(file) for file in inputs}
     roots |= {folder for folder in (config.root, config.folder) if folder is not None}
@@ -338,7 +338,7 @@ def _templates(config: "Config", settings: Settings) -> Path | None:
 
 
 def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     for name in asked:
         if name not in ("read", *known):

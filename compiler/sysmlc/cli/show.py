@@ -54,7 +54,7 @@ def _one(graph: "Graph", wanted: str) -> str:
 
 def _found(graph: "Graph", wanted: str) -> "Element":
     from sysmlc.cli.session import fail
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     by_id = graph.get(wanted)
     if by_id is not None:

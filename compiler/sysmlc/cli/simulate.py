@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options, terminal
-from sysmlc.escapes import escape_undecodable
+from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.sources import Source
@@ -86,7 +86,7 @@ def _read(scenario: Path) -> "Source":
 
 def _save(target: Path | None, text: str) -> None:
     from sysmlc.cli.session import fail
-    from sysmlc.output import write_if_changed
+    from sysmlc.support.atomic_files import write_if_changed
 
     if target is None or not text:
         return

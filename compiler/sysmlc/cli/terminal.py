@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
 import click
 
-from sysmlc.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer

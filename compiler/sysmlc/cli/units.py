@@ -174,11 +174,11 @@ def _open_selection(
 def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Unit]:
     """Open the units of a project below a named folder; their names begin with its path."""
     from sysmlc.cli.session import load_config
-    from sysmlc.naming import file_names
+    from sysmlc.support.file_names import assign_file_names
 
     units = _open_project([project], load_config([project], settings), settings, None)
     path = project.relative_to(root) if project.is_relative_to(root) else Path(project.name)
-    (name,) = file_names(["::".join(path.parts)]).values()
+    (name,) = assign_file_names(["::".join(path.parts)]).values()
     for unit in units:
         yield replace(unit, name=name if len(units) == 1 else f"{name}.{unit.name}")
 

@@ -9,11 +9,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sysmlc import __version__, resources
+from sysmlc import __version__
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import Opened, Request
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
 from sysmlc.sources.whole import read_whole
+from sysmlc.support import resources
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

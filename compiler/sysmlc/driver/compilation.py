@@ -18,11 +18,11 @@ from sysmlc.driver.reading import Reading, read_unit
 from sysmlc.driver.withhold import withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
-from sysmlc.output import Artefact, Output
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.output import Artefact, Output
+from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from sysmlc.sources.schema import Schemas

@@ -2,8 +2,6 @@
 
 import re
 
-from sysmlc.patterns import pattern
-
 _SIGNATURES = (
     (b"\x89PNG", "a PNG image"),
     (b"\xff\xd8\xff", "a JPEG image"),
@@ -18,8 +16,8 @@ _SIGNATURES = (
 )
 _BLANKS = b" \t\r\n\f\v\0\xef\xbb\xbf\xff\xfe"
 """White space and bytes of byte order marks, in UTF-8 and UTF-16."""
-_HTML = pattern(rb"<(?:!doctype\s+)?html", re.IGNORECASE)
-_ROOT = pattern(rb"<([A-Za-z_][\w.:-]*)")
+_HTML = re.compile(rb"<(?:!doctype\s+)?html", re.IGNORECASE)
+_ROOT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
 _HEAD = 4_096
 
 

@@ -12,10 +12,10 @@ from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.driver.contents import describe_content, is_blank
 from sysmlc.driver.ownership import is_output_folder
-from sysmlc.escapes import escape_undecodable
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.escapes import escape_undecodable
+from sysmlc.support.suggestions import did_you_mean
 
 _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar

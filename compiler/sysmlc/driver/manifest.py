@@ -6,7 +6,7 @@ from sysmlc import __version__
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.driver.ownership import FORMAT
-from sysmlc.output import encode_json
+from sysmlc.support.json_text import encode_json
 
 
 def manifest_text(outcome: Outcome, kept: Mapping[str, str]) -> str:

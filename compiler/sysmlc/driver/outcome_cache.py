@@ -10,11 +10,11 @@ from pathlib import Path, PureWindowsPath
 import msgspec
 
 from sysmlc.backends.base import InputFile
-from sysmlc.cache import Cache
 from sysmlc.diagnostics import Diagnostic, Place, Rule, Severity, Subject
 from sysmlc.diagnostics.render import Finding
 from sysmlc.driver.faults import FAILED
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
+from sysmlc.support.cache import Cache
 
 
 class _Rule(msgspec.Struct, array_like=True):

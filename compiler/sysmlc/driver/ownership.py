@@ -14,7 +14,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from sysmlc.output import OutputPathError, check_output_path, find_obstacle
+from sysmlc.support.output import OutputPathError, check_output_path, find_obstacle
 
 MANIFEST = "manifest.json"
 PENDING = "manifest.pending.json"

@@ -36,8 +36,9 @@ from sysmlc.driver.ownership import (
     find_unlisted,
     read_ownership,
 )
-from sysmlc.output import find_obstacle, is_temporary, sync, write, write_temporary
 from sysmlc.sources import Roots
+from sysmlc.support.atomic_files import is_temporary, sync, write, write_temporary
+from sysmlc.support.output import find_obstacle
 
 FOREIGN_FILE = rule(
     "SM910",

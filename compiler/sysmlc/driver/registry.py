@@ -15,7 +15,7 @@ from sysmlc.driver.distributions import may_be_named
 from sysmlc.frontends.base import Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

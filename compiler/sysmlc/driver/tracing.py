@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import positions
 from sysmlc.driver.compilation import Compilation
 from sysmlc.ir import Element
-from sysmlc.output import encode_json
+from sysmlc.support.json_text import encode_json
 
 COVERAGE = "coverage.json"
 TRACE = "trace.json"

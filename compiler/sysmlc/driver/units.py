@@ -19,7 +19,7 @@ from sysmlc.driver.compilation import Opened, Request, load_drawings, open_unit
 from sysmlc.driver.inputs import Recognised, unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, Relating
-from sysmlc.naming import file_names
+from sysmlc.support.file_names import assign_file_names
 
 
 @dataclass(eq=False, slots=True)
@@ -207,7 +207,7 @@ def _name_units(units: Sequence[Sequence[ReadFile]], base: Path) -> list[str]:
         for folder, files in zip(folders, units, strict=True)
     ]
     qualified = [_qualify(path, base) for path in paths]
-    names = file_names(qualified)
+    names = assign_file_names(qualified)
     return [names[name] for name in qualified]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.ir import Graph
-from sysmlc.output import Artefact
+from sysmlc.support.output import Artefact
 
 _Errors = Mapping[str, Sequence[Diagnostic]]
 

@@ -3,13 +3,13 @@
 It serves tests, the examples of ``sysmlc explain``, and bug reports without the original model.
 """
 
+import re
 from collections.abc import Sequence
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 
 IR_SYNTAX = rule(
@@ -22,9 +22,9 @@ IR_SYNTAX = rule(
     wrong='Klass gate "Gate"',
     right='Class gate "Gate"',
 )
-_FIRST = pattern(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
+_FIRST = re.compile(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
 _KINDS = frozenset(kind.value.encode() for kind in Kind)
-_PLACE = pattern(r"line (\d+)")
+_PLACE = re.compile(r"line (\d+)")
 
 
 class IrFrontend(Struct, frozen=True):

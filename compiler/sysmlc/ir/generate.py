@@ -7,7 +7,7 @@ from pathlib import Path
 from pyecore.ecore import EModelElement
 from pyecore.resources import ResourceSet
 
-from sysmlc import resources
+from sysmlc.support import resources
 
 _HEAD = '''"""Kinds of elements and of edges.
 

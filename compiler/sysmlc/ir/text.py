@@ -5,6 +5,7 @@ lines the references that are not resolved yet. docs/ir.md shows the form.
 """
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -14,11 +15,10 @@ from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.reference import Reference
-from sysmlc.patterns import pattern
 
 _E = TypeVar("_E", bound=StrEnum)
-_BARE = pattern(r"[\w.:/#!+~%-]+")
-_BLANK = pattern(r"\s*")
+_BARE = re.compile(r"[\w.:/#!+~%-]+")
+_BLANK = re.compile(r"\s*")
 _DECODER = json.JSONDecoder()
 
 

@@ -5,13 +5,13 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from sysmlc import resources
 from sysmlc.diagnostics import Sink
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
 from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
 from sysmlc.sources.limits import DEFAULT_LIMITS
 from sysmlc.sources.whole import read_whole
+from sysmlc.support import resources
 
 VARIABLE = "SYSML_LIBRARY_PATH"
 """Environment variable: the folder or .kpar of the standard library."""

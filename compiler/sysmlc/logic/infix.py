@@ -7,7 +7,6 @@ grammars/ltl.lark is the grammar of the neutral spelling; the tests hold this re
 from collections.abc import Callable, Mapping
 from typing import ClassVar, NamedTuple, NoReturn
 
-from sysmlc.depth import room_for
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain
@@ -21,6 +20,7 @@ from sysmlc.logic.spelling import (
     Syntax,
     Token,
 )
+from sysmlc.support.recursion import allow_recursion
 
 DEEPEST = 200
 """Levels of nesting that are read: what comes after walks through formulas by recursion."""
@@ -57,7 +57,7 @@ class Reader:
 
         Raises FormulaError.
         """
-        with room_for(DEEPEST):
+        with allow_recursion(DEEPEST):
             return self.truth(self.part(weakest))
 
     def truth(self, part: Part) -> Formula:

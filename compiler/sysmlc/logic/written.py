@@ -5,6 +5,7 @@ Feature Value, its value given by a literal), or gives an output of what it call
 is bound to it (SysML 2.0, 7.16: ``out x = level``).
 """
 
+import re
 from collections.abc import Iterator
 
 from msgspec import Struct
@@ -19,9 +20,8 @@ from sysmlc.logic.expressions.expression import (
     parse_expression,
     print_expression,
 )
-from sysmlc.patterns import pattern
 
-_ASSIGNED = pattern(r"([^\W\d]\w*)\s*:=")
+_ASSIGNED = re.compile(r"([^\W\d]\w*)\s*:=")
 """The last names of what is assigned to where no name is in quotes."""
 
 

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from sysmlc import resources
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.overlay import rules
 from sysmlc.overlay.model import Spot, place_of
 from sysmlc.overlay.tree import Value
-from sysmlc.suggest import did_you_mean
+from sysmlc.support import resources
+from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
@@ -37,7 +37,7 @@ def check(top: Value, file: str, sink: Sink) -> bool:
 def _validator() -> "Draft202012Validator":
     from jsonschema import Draft202012Validator
 
-    schema = resources.text("metamodels", "sysmlc-overlay.schema.json")
+    schema = resources.read_text("metamodels", "sysmlc-overlay.schema.json")
     return Draft202012Validator(json.loads(schema))
 
 

@@ -8,7 +8,7 @@ from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.writers import Writers, called
 from sysmlc.passes.activity_assignments import Written
 from sysmlc.passes.activity_refusals import ELSEWHERE, Unfollowed, report_unfollowed
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 
 def _filling(body: str) -> str:

@@ -1,5 +1,6 @@
 """Data of an activity: which variables its guards, pins and parameters stand for."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
@@ -10,7 +11,6 @@ from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import is_data, is_input, parameter, read, read_time
 from sysmlc.passes.recipe_paths import feature_at, with_values
 from sysmlc.passes.recipe_regions import is_inlined
-from sysmlc.patterns import pattern
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
 
@@ -203,7 +203,7 @@ def _spoken(context: Context, activity: Element) -> frozenset[str]:
     return frozenset(name for found in dotted for name in found)
 
 
-_DOTTED = pattern(r"[^\W\d]\w*\.[^\W\d]\w*")
+_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 
 
 def data_parameters(context: Context, element: Element, *directions: str) -> tuple[Parameter, ...]:

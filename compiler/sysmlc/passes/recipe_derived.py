@@ -11,7 +11,6 @@ from msgspec import Struct
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, measures, query
 from sysmlc.passes.recipe_context import Context
-from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
 
 DERIVED = rule(
@@ -28,7 +27,7 @@ DERIVED = rule(
     samples.OWNED_FUNCTION.replace('"Robot"', '"Robot" level="machine"'),
 )
 
-_NODE_ID = pattern(
+_NODE_ID = re.compile(
     r"(?:nsu?=[^;]+;)?"
     r"(?:i=\d+|s=.+|b=[A-Za-z0-9+/=]+|g=[0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})",
     re.DOTALL,

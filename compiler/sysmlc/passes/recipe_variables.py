@@ -10,7 +10,6 @@ from sysmlc.passes.recipe_context import Context
 from sysmlc.passes.recipe_expressions import value, value_type
 from sysmlc.passes.recipe_machines import opcua_node
 from sysmlc.passes.recipe_paths import member
-from sysmlc.patterns import pattern
 from sysmlc.recipe.checks import graphs
 from sysmlc.recipe.expression import Expr, variables
 from sysmlc.recipe.model import (
@@ -21,7 +20,7 @@ from sysmlc.recipe.model import (
     ReferenceType,
 )
 
-_NAME = pattern(r"[^\W\d]\w*")
+_NAME = re.compile(r"[^\W\d]\w*")
 
 
 def with_variables(context: Context, model: Model) -> Model:

@@ -12,13 +12,12 @@ from urllib.parse import unquote
 
 from msgspec import Struct
 
-from sysmlc import resources
 from sysmlc.ir import Kind
-from sysmlc.patterns import pattern
+from sysmlc.support import resources
 
-_ROLE_NAME = pattern(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
-_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
-_METACLASS = pattern(r"[A-Z][A-Za-z]+")
+_ROLE_NAME = re.compile(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
+_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
+_METACLASS = re.compile(r"[A-Z][A-Za-z]+")
 
 
 class StandIn(Struct, frozen=True):
@@ -152,7 +151,7 @@ def names_in(fragment: str) -> list[str]:
 @cache
 def libraries() -> Libraries:
     """The stand-ins; read once."""
-    return Libraries(resources.text("metamodels", "libraries.json"))
+    return Libraries(resources.read_text("metamodels", "libraries.json"))
 
 
 def _library(entry: dict[str, object]) -> _Library:

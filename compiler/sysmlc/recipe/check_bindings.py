@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import Tables
@@ -33,7 +32,7 @@ NODE_ID = rule(
     samples.task(),
 )
 
-_NODE_ID = pattern(r"(?:(ns)=\d+;|nsu=[^;]+;)?[isgb]=.+", re.DOTALL)
+_NODE_ID = re.compile(r"(?:(ns)=\d+;|nsu=[^;]+;)?[isgb]=.+", re.DOTALL)
 
 
 def materials(model: Model, tables: Tables) -> Iterator[Finding]:

@@ -12,12 +12,12 @@ import msgspec
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from sysmlc.cache import Cache
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.robots.relations import Relation
 from sysmlc.robots.stored import controller_of, form_of
 from sysmlc.robots.strategy import Times, controller_contract
 from sysmlc.robots.study import Study
+from sysmlc.support.cache import Cache
 from sysmlc.synthesis.decide import Verdict
 from sysmlc.synthesis.synthesise import Synthesis
 

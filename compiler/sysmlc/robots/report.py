@@ -4,15 +4,15 @@ from collections.abc import Iterator
 
 from msgspec.structs import replace
 
-from sysmlc.escapes import escape_markdown
 from sysmlc.logic.formats import write
-from sysmlc.naming import file_names
 from sysmlc.robots.mission import mission_contract
 from sysmlc.robots.outcome import Outcome, told_steps
 from sysmlc.robots.schedule import Schedule
 from sysmlc.robots.story import cell_text, lines, sequence_diagram
 from sysmlc.robots.study import Study
 from sysmlc.robots.travel import START
+from sysmlc.support.escapes import escape_markdown
+from sysmlc.support.file_names import assign_file_names
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.files import files_of
 
@@ -20,7 +20,7 @@ from sysmlc.synthesis.files import files_of
 def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
     """Paths and texts of all files about one study."""
     study = outcome.study
-    names = file_names([study.component, outcome.controller.contract.component])
+    names = assign_file_names([study.component, outcome.controller.contract.component])
     name = names[study.component]
     yield f"robots/{name}.md", markdown(outcome)
     if outcome.run:

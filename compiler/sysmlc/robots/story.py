@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 
 from msgspec import Struct
 
-from sysmlc.plantuml import label, plain
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.planes import Runs, but
 from sysmlc.robots.study import STAY, Study
 from sysmlc.robots.world import Allocation, World
+from sysmlc.support.plantuml_text import label, plain
 
 
 class Moment(Struct, frozen=True):

@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 
 from msgspec import Struct, field
 
-from sysmlc.escapes import escape_invisible
 from sysmlc.logic.formula import Literal
-from sysmlc.plantuml import plain
+from sysmlc.support.escapes import escape_invisible
+from sysmlc.support.plantuml_text import plain
 
 Valuation = dict[str, Literal]
 

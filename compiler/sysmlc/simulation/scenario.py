@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from sysmlc import resources
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.logic.formula import Literal
 from sysmlc.simulation import rules
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
@@ -120,7 +120,7 @@ def _is_valid(document: Mapping[str, object], source: Source, sink: Sink) -> boo
     from jsonschema import Draft202012Validator
     from jsonschema.exceptions import best_match
 
-    schema = json.loads(resources.text("metamodels", "sysmlc-scenario.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-scenario.schema.json"))
     # The schema of what the document means to be gives better messages than ``oneOf``.
     chosen = schema["oneOf"][1] if "scenarios" in document else schema["oneOf"][0]
     validator = Draft202012Validator({**chosen, "$defs": schema["$defs"]})

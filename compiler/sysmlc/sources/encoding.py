@@ -5,8 +5,8 @@ What the XML declaration says counts; nothing is guessed. Encodings of several b
 """
 
 import codecs
+import re
 
-from sysmlc.patterns import pattern
 from sysmlc.sources.source import Source
 
 _MARKS = (
@@ -19,8 +19,8 @@ _MARKS = (
 """Byte order marks; that of UTF-32 starts as that of UTF-16 does."""
 _FIRST = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
 """How XML in UTF-16 starts that has no byte order mark."""
-_DECLARATION = pattern(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._:+-]+)["']""")
-_IN_TEXT = pattern(r"""(<\?xml[^>]*?encoding\s*=\s*["'])([^"']+)""")
+_DECLARATION = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._:+-]+)["']""")
+_IN_TEXT = re.compile(r"""(<\?xml[^>]*?encoding\s*=\s*["'])([^"']+)""")
 _OTHER_NAMES = {"windows-31j": "cp932", "x-sjis": "cp932", "x-euc-jp": "euc_jp", "x-gbk": "gbk"}
 _TRANSLATED = frozenset(
     {"big5", "big5hkscs", "cp932", "cp949", "cp950", "euc_jp", "euc_jis_2004", "euc_kr", "gb18030"}

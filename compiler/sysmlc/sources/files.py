@@ -1,9 +1,9 @@
 """Files as sources: one file, or the model entries of one archive."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
-from sysmlc.patterns import pattern
 from sysmlc.sources import package
 from sysmlc.sources.archive import entries, is_archive, names
 from sysmlc.sources.encoding import in_utf8
@@ -12,18 +12,18 @@ from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
 from sysmlc.sources.whole import read_whole
 
-_MODEL_ENTRY = pattern(
+_MODEL_ENTRY = re.compile(
     r"(^|/)com\.nomagic\.magicdraw\.uml_model(?!____sharepoints).*\.(shared_)?model$"
     r"|\.(uml|xmi|mdxml|aml|caex|sysml|kerml|sysmlx|kermlx)$"
 )
 
 
-_LIBRARY_ENTRY = pattern(
+_LIBRARY_ENTRY = re.compile(
     r"(^|/)proxy\..*_resource_com\$dnomagic\$dmagicdraw\$duml_umodel\$d(shared_u)?model\$dsnapshot$"
 )
 
 
-_DESCRIPTION_ENTRY = pattern(r"(^|/)\.(project|meta)\.json$")
+_DESCRIPTION_ENTRY = re.compile(r"(^|/)\.(project|meta)\.json$")
 """What a project archive says about itself and its files (KerML 1.0, 10.3)."""
 
 

@@ -1,18 +1,17 @@
 """Which files a reference in a model may reach."""
 
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
 from msgspec import Struct
 
-from sysmlc.patterns import pattern
-
 _LONGEST = 4096
 """No file system has longer paths; looking for one takes a call for each of its parts."""
-_WORKSPACE = pattern(r"platform:/resource/([^/]+)/(.+)")
-_SCHEME = pattern(r"[A-Za-z][A-Za-z0-9+.-]+:")
+_WORKSPACE = re.compile(r"platform:/resource/([^/]+)/(.+)")
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
 class Roots(Struct, frozen=True):

@@ -8,9 +8,9 @@ from typing import cast
 from lxml import etree
 from msgspec import Struct
 
-from sysmlc.escapes import escape_undecodable
 from sysmlc.sources.roots import Roots
 from sysmlc.sources.source import Source
+from sysmlc.support.escapes import escape_undecodable
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
 _LOADING = frozenset({f"{_XS}{tag}" for tag in ("include", "import", "redefine", "override")})

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
-from sysmlc.naming import file_names
+from sysmlc.support.file_names import assign_file_names
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers import gr1c_text, machine_text, table_text
@@ -30,7 +30,7 @@ class Written(Struct, frozen=True):
 
 def written(made: Sequence[Synthesis], place: Place, sink: Sink, form: str = OWN) -> Written:
     """The files of all controllers there are; what cannot be said in this form is reported."""
-    names = file_names([one.contract.component for one in made])
+    names = assign_file_names([one.contract.component for one in made])
     files: list[tuple[str, str]] = []
     kept: list[Synthesis] = []
     for one in made:

@@ -8,8 +8,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.naming import file_names
-from sysmlc.plantuml import label, plain
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.plantuml_text import label, plain
 from sysmlc.synthesis.algebra.traces import Trace
 
 _SHOWN = 12
@@ -71,7 +71,7 @@ def files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
     found: dict[str, list[Witness]] = {}
     for one in witnesses:
         found.setdefault(one.component, []).append(one)
-    for component, name in file_names(found).items():
+    for component, name in assign_file_names(found).items():
         for number, one in enumerate(found[component], 1):
             yield f"{name}.run{number}.puml", diagram(one)
 

@@ -5,7 +5,6 @@ import json
 import jsonschema
 import pytest
 
-from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.diagnostics import Sink
@@ -18,8 +17,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.ltl import parse_formula
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.output import Output
 from sysmlc.passes import pipeline
+from sysmlc.support import resources
+from sysmlc.support.output import Output
 
 GATE = machine(
     arrow("a", "b", "start", "level < 9", "level := level + 1; send opened"),
@@ -35,7 +35,7 @@ def emitted(text, templates=None):
 
 
 def schema():
-    return json.loads(resources.text("metamodels", "sysmlc-contract.schema.json"))
+    return json.loads(resources.read_text("metamodels", "sysmlc-contract.schema.json"))
 
 
 def domain_of(type_):

@@ -11,8 +11,8 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.output import Output
 from sysmlc.passes import pipeline
+from sysmlc.support.output import Output
 
 GATE = machine(arrow("a", "b", "start", "level < 9", "level := level + 1; send opened"))
 ENDINGS = {

@@ -7,7 +7,7 @@ from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
-from sysmlc.output import Artefact, Output
+from sysmlc.support.output import Artefact, Output
 
 MODELS = Path(__file__).parent / "models"
 

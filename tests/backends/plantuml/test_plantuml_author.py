@@ -10,7 +10,7 @@ from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge
 from sysmlc.ir.text import parse_text
-from sysmlc.output import Output
+from sysmlc.support.output import Output
 
 
 def emitted(graph, diagrams="author"):

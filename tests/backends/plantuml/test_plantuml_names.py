@@ -11,7 +11,7 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from sysmlc.ir.text import parse_text
-from sysmlc.plantuml import lines, plain
+from sysmlc.support.plantuml_text import lines, plain
 
 NASTY = (
     '**bold** //it// __u__ ""mono"" ~~w~~ --s-- ~x',

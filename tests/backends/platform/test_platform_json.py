@@ -6,11 +6,11 @@ import shutil
 import jsonschema
 import pytest
 
-from sysmlc import resources
 from sysmlc.driver import Request, compile_model, select_backends
+from sysmlc.support import resources
 
-SCHEMA = json.loads(resources.text("metamodels", "sysmlc-platform.schema.json"))
-ROOT = resources.root()
+SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-platform.schema.json"))
+ROOT = resources.find_root()
 PAGE = (ROOT / "docs" / "map-a-recipe-to-a-plant.md").read_text("utf-8")
 OVERLAY = PAGE.split("```yaml\n")[1].split("```")[0]
 PLANT = """\

@@ -7,11 +7,11 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from dialects.magicdraw import write_xml
-from sysmlc import resources
 from sysmlc.driver import Request, compile_model, select_backends
+from sysmlc.support import resources
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-SCHEMA = json.loads(resources.text("metamodels", "sysmlc-recipe.schema.json"))
+SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-recipe.schema.json"))
 
 
 def compiled(name: str):

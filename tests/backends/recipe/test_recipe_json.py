@@ -6,17 +6,17 @@ import json
 import pytest
 from jsonschema import Draft202012Validator
 
-from sysmlc import resources
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import full_catalogue
 from sysmlc.ir import parse_text
-from sysmlc.output import Output
 from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe import samples
+from sysmlc.support import resources
+from sysmlc.support.output import Output
 
-SCHEMA = json.loads(resources.text("metamodels", "sysmlc-recipe.schema.json"))
+SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-recipe.schema.json"))
 INPUTS = (InputFile("b.uml", "0" * 64, "xmi"), InputFile("a.uml", "1" * 64, "xmi"))
 LOOP = ("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")
 

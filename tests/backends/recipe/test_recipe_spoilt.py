@@ -8,11 +8,13 @@ from random import Random
 import pytest
 from jsonschema import Draft202012Validator
 
-from sysmlc import resources
 from sysmlc.driver import Request, compile_model, select_backends
+from sysmlc.support import resources
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-SCHEMA = Draft202012Validator(json.loads(resources.text("metamodels", "sysmlc-recipe.schema.json")))
+SCHEMA = Draft202012Validator(
+    json.loads(resources.read_text("metamodels", "sysmlc-recipe.schema.json"))
+)
 ATTRIBUTE = re.compile(r' (?!xmi:)\w+="[^"]*"')
 
 

@@ -13,8 +13,8 @@ from sysmlc.backends.reqtable.text import markdown_cell
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir.text import parse_text
-from sysmlc.output import Output
 from sysmlc.passes import pipeline
+from sysmlc.support.output import Output
 
 SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
 MAGICDRAW = "http://www.magicdraw.com/spec/Customization/180/SysML"

@@ -4,9 +4,9 @@ import pytest
 from judging import judged
 from writing import lines_of, refined
 
-from sysmlc import resources
 from sysmlc.backends.sysml import generate_inherited
 from sysmlc.backends.sysml.inherited import BASES, FILE, inherited
+from sysmlc.support import resources
 
 MODEL = """\
 Package p "Plant"
@@ -22,7 +22,7 @@ Package p "Plant"
 
 
 def test_the_names_are_those_of_the_standard_library():
-    assert resources.text("metamodels", FILE) == generate_inherited.text()
+    assert resources.read_text("metamodels", FILE) == generate_inherited.text()
 
 
 @pytest.mark.parametrize("keyword", sorted(BASES))

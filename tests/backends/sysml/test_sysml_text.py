@@ -13,10 +13,10 @@ from writing import lines_of, refined, text_of, written
 
 from examples.compiling import PLANT, compile_example
 from long_runs import quick_first
-from sysmlc import resources
 from sysmlc.backends.sysml.library import IMPORTED, IMPORTS, UNITS, unit_name
 from sysmlc.backends.sysml.words import RESERVED, quoted
 from sysmlc.ir import Element, Kind
+from sysmlc.support import resources
 
 STRUCTURE = """
 Package p "Plant"
@@ -167,11 +167,11 @@ def test_every_unit_is_one_of_the_library_or_of_ours():
 
 
 def with_library(text):
-    return {"m.sysml": text, "l.sysml": resources.text("metamodels", "SysMLC.sysml")}
+    return {"m.sysml": text, "l.sysml": resources.read_text("metamodels", "SysMLC.sysml")}
 
 
 def test_our_library_has_the_names_that_we_import():
-    text = resources.text("metamodels", "SysMLC.sysml")
+    text = resources.read_text("metamodels", "SysMLC.sysml")
     loaded = load({"l.sysml": text})
     assert loaded.complaints == []
     short = set(re.findall(r"(?:metadata|item) def <(\w+)>", text))

@@ -1,6 +1,5 @@
 """Writes graphs as SysML v2 text, for the tests of the back end ``sysml``."""
 
-from sysmlc import resources
 from sysmlc.backends.sysml.backend import LIBRARY
 from sysmlc.backends.sysml.document import document
 from sysmlc.diagnostics import Coverage, Sink
@@ -8,6 +7,7 @@ from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 PASSES = ("resolve", "inherit", "classify", "ports")
 
@@ -33,7 +33,7 @@ def written(graph):
     text, uses_library = document(graph, sink)
     files = {"model.sysml": text}
     if uses_library:
-        files[LIBRARY] = resources.text("metamodels", LIBRARY)
+        files[LIBRARY] = resources.read_text("metamodels", LIBRARY)
     return files, [f"{found.rule.code} {found.message}" for found in sink]
 
 

@@ -10,7 +10,6 @@ from saving import PASSES, read, refined, round_trip, saved
 
 from dialects.papyrus import XMI
 from dialects.random_plants import random_plant
-from sysmlc import resources
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
@@ -20,6 +19,7 @@ from sysmlc.ir.kept import PREFIX
 from sysmlc.passes import pipeline
 from sysmlc.passes.kept import UNREADABLE
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">
 <SourceDocumentInformation OriginName="us" OriginID="u" OriginVersion="1"
@@ -88,7 +88,7 @@ def comment(text):
 
 def test_the_comment_follows_its_schema(plant):
     record = json.loads(comment(saved(plant)[0]))
-    schema = json.loads(resources.text("metamodels", "sysmlc-kept.schema.json"))
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-kept.schema.json"))
     jsonschema.validate(record, schema)
     assert record["elements"] and record["edges"] and record["made"]  # noqa: PT018
     with pytest.raises(jsonschema.ValidationError):

@@ -8,7 +8,7 @@ from sysmlc.backends.aml.document import documents
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.output import Output
+from sysmlc.support.output import Output
 
 
 class AmlBackend(Struct, frozen=True):

@@ -6,7 +6,7 @@ from sysmlc.backends.aml import header
 from sysmlc.backends.aml.book import Book, File
 from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.naming import file_names
+from sysmlc.support.file_names import assign_file_names
 
 FOLDER = "aml"
 
@@ -37,7 +37,7 @@ def _file(name: str, path: str, title: str, document: Element | None) -> File:
 def _paths(names: list[str]) -> dict[str, str]:
     """Where each file goes: below the folder as it stands in the unit, ending in ``.aml``."""
     stems = {name: posixpath.splitext(name.replace("!", "/"))[0].split("/") for name in names}
-    parts = file_names(sorted({part for stem in stems.values() for part in stem}))
+    parts = assign_file_names(sorted({part for stem in stems.values() for part in stem}))
     found: dict[str, str] = {}
     taken: set[str] = set()
     for name, stem in stems.items():

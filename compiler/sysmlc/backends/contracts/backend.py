@@ -12,8 +12,8 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.document_text import text
 from sysmlc.logic.formats.lower import unambiguous
 from sysmlc.logic.formats.spin_text import TooLargeError, spin
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 TOO_LARGE = rule(
     "SM520",
@@ -48,7 +48,7 @@ class ContractsBackend(Struct, frozen=True):
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files a contract; their trace names every element that they tell of."""
         contracts = graph.derived(Contract)
-        names = file_names(contract.component for contract in contracts)
+        names = assign_file_names(contract.component for contract in contracts)
         with Templates(self.name, options.templates) as templates:
             for contract in contracts:
                 path = f"contracts/{names[contract.component]}"

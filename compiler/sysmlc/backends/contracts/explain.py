@@ -12,12 +12,11 @@ from functools import cache
 from msgspec import Struct
 
 from sysmlc.backends.templates import Templates
-from sysmlc.escapes import escape_code, escape_markdown
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
-from sysmlc.patterns import pattern
+from sysmlc.support.escapes import escape_code, escape_markdown
 
 _SHIPPED = Templates("contracts", None)
 _TITLES = {
@@ -39,11 +38,11 @@ _PREFIXES = {
     "was_": "what the condition was in the step before",
 }
 """What variables of diagrams begin with, up to the first ``_``."""
-_UNSET = pattern(r"!\w+$")
+_UNSET = re.compile(r"!\w+$")
 _MANY = 3
 _CONSTRAINT = Kind.CONSTRAINT
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-_MARKUP = pattern(r"[<>`|\[\]]")
+_MARKUP = re.compile(r"[<>`|\[\]]")
 """What would not be shown as it is written."""
 
 

@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.backends.plantuml import allocated, labels
 from sysmlc.backends.plantuml.stm import trigger_text
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.plantuml import label, lines
+from sysmlc.support.plantuml_text import label, lines
 
 _CONTROL = {
     "initial": "start",

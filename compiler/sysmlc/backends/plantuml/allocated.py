@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.plantuml import lines
+from sysmlc.support.plantuml_text import lines
 
 _WIDTH = 44
 _PLACES = (Kind.PROPERTY, Kind.PORT)

@@ -29,7 +29,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
-from sysmlc.plantuml import plain
+from sysmlc.support.plantuml_text import plain
 
 NOT_DRAWN = rule(
     "SM702",

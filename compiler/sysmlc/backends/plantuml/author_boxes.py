@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml.uc_relations import use_case_relations
 from sysmlc.backends.plantuml.views import Box, BoxView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
-from sysmlc.plantuml import lines
+from sysmlc.support.plantuml_text import lines
 
 _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
 _TEXT = 44

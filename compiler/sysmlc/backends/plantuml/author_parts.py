@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
-from sysmlc.plantuml import keyword_label, label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import keyword_label, label, lines, plain, small, stack
 
 _Ids = tuple[str, ...]
 _PORTS = (Kind.PORT,)

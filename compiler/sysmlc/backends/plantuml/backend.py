@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
-from sysmlc import naming
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
 from sysmlc.backends.plantuml import (
     act,
@@ -22,11 +21,12 @@ from sysmlc.backends.plantuml import (
 )
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
-from sysmlc.depth import room_for
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
-from sysmlc.output import Output
-from sysmlc.plantuml import comment
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
+from sysmlc.support.plantuml_text import comment
+from sysmlc.support.recursion import allow_recursion
 
 BAD_TEMPLATE = rule(
     "SM700",
@@ -60,7 +60,7 @@ class PlantUml(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""
-        with room_for(stm.depth(graph)):
+        with allow_recursion(stm.depth(graph)):
             self._emit(graph, output, sink, options)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
@@ -109,7 +109,7 @@ def _named(found: list[_Traced]) -> Iterable[tuple[_Traced, str]]:
     keys: dict[str, _Traced] = {}
     for one in found:
         keys[_free(one.diagram.name, keys)] = one
-    files = naming.file_names(keys)
+    files = assign_file_names(keys)
     return [(one, files[key]) for key, one in keys.items()]
 
 

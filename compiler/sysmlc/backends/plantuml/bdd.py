@@ -9,7 +9,7 @@ from sysmlc.backends.plantuml.grid import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import BoxView, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.plantuml import keyword_label, padded, plain
+from sysmlc.support.plantuml_text import keyword_label, padded, plain
 
 CLASSIFIERS = (
     Kind.CLASS,

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import allocated, labels, measured
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.plantuml import lines, plain, small, stack
+from sysmlc.support.plantuml_text import lines, plain, small, stack
 
 _BY_ROLE = {
     "value": "values",

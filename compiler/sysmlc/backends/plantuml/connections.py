@@ -9,7 +9,7 @@ from sysmlc.backends.plantuml.domains import coloured, styled
 from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import runs_both_ways
-from sysmlc.plantuml import keyword_label, label, stack
+from sysmlc.support.plantuml_text import keyword_label, label, stack
 
 
 class Path(Struct, frozen=True):

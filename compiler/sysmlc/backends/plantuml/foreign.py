@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import Relation
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Graph
-from sysmlc.plantuml import lines
+from sysmlc.support.plantuml_text import lines
 
 MOST = 3
 """Foreign clients in one diagram that still are boxes with lines."""

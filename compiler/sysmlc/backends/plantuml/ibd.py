@@ -22,7 +22,7 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
-from sysmlc.plantuml import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 
 FORMS = {"in": "portin", "out": "portout"}
 """How ports are drawn, by direction."""

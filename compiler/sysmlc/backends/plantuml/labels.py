@@ -1,14 +1,14 @@
 """How one element reads in a diagram, in UML notation (UML 2.5.1, clauses 9 and 11)."""
 
+import re
 from collections.abc import Iterable
 
 from sysmlc.ir import Edge, Element, Graph, Kind, templates
 from sysmlc.ir.query import applications, lineage, redefined
-from sysmlc.patterns import pattern
 
-_TOOL_ID = pattern(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
+_TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
-_TOOL_NAMESPACE = pattern(
+_TOOL_NAMESPACE = re.compile(
     r"https?://www\.magicdraw\.com/(spec/Customization/|schemas/additional_stereotypes)"
 )
 """MagicDraw's own stereotypes (PartProperty, ValueProperty) repeat what the type says."""

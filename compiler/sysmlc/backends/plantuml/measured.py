@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.ir.measures import is_quantity_kind, is_unit, quantity_kind_of, unit_of
-from sysmlc.plantuml import lines
+from sysmlc.support.plantuml_text import lines
 
 
 def rows(graph: Graph, item: Element) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Note
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.plantuml import label, lines, stack
+from sysmlc.support.plantuml_text import label, lines, stack
 
 _WIDTH = 48
 _NOTED = (Kind.COMMENT, Kind.CONSTRAINT)

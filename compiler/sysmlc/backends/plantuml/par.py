@@ -16,7 +16,7 @@ from sysmlc.backends.plantuml.connections import Path
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
-from sysmlc.plantuml import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 
 _ROW = 40
 

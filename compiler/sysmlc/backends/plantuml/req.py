@@ -9,7 +9,7 @@ from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
-from sysmlc.plantuml import lines, plain
+from sysmlc.support.plantuml_text import lines, plain
 
 _WORDS = {"derive": "deriveReqt"}
 _EDGES = {

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView
 from sysmlc.ir import Element, Graph, Kind, sequence
-from sysmlc.plantuml import label, plain, small, stack
+from sysmlc.support.plantuml_text import label, plain, small, stack
 
 _WIDTH = 24
 

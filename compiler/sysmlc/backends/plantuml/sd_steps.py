@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml.sd_walk import Walk
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Edge, Element, Kind, sequence
 from sysmlc.ir.graph import Graph
-from sysmlc.plantuml import label, lines, plain, stack
+from sysmlc.support.plantuml_text import label, lines, plain, stack
 
 _FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
 """Operators that PlantUML has words for; others are groups."""

@@ -8,7 +8,7 @@ from sysmlc.backends.plantuml.notes import notes
 from sysmlc.backends.plantuml.pieces import pieces
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.plantuml import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 
 VERTICES = (Kind.STATE, Kind.PSEUDOSTATE, Kind.FINAL_STATE)
 _SHAPES = {

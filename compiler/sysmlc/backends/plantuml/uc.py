@@ -7,7 +7,7 @@ from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.plantuml import keyword_label, label, lines, padded, plain, small, stack
+from sysmlc.support.plantuml_text import keyword_label, label, lines, padded, plain, small, stack
 
 FIGURES = (Kind.USE_CASE, Kind.ACTOR)
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)

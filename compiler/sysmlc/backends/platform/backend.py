@@ -8,7 +8,8 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.output import Output, encode_json
+from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import Output
 
 if TYPE_CHECKING:
     from sysmlc.recipe.platform import Platform

@@ -8,9 +8,10 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.naming import file_names
-from sysmlc.output import Output, encode_json
 from sysmlc.recipe import samples
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import Output
 
 if TYPE_CHECKING:
     from sysmlc.recipe.model import Model
@@ -42,7 +43,7 @@ class RecipeBackend(Struct, frozen=True):
         from sysmlc.recipe.model import Model
 
         models = graph.derived(Model)
-        names = file_names(model.recipe.id for model in models)
+        names = assign_file_names(model.recipe.id for model in models)
         for model in models:
             if not model.recipe.tasks:
                 subject = graph.subject(graph[model.recipe.element])

@@ -11,10 +11,10 @@ from sysmlc.backends.reqtable.text import csv_text, markdown_cell
 from sysmlc.backends.reqtable.unmet import report_open
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.escapes import escape_markdown
 from sysmlc.ir import Graph
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support.escapes import escape_markdown
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 _TEMPLATE = "requirements.md.j2"
 _ALWAYS = ("id", "name")
@@ -30,7 +30,7 @@ class ReqTableBackend(Struct, frozen=True):
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""
         found = {_free(table.name, number): table for number, table in _numbered(graph)}
-        names = file_names(found)
+        names = assign_file_names(found)
         with Templates(self.name, options.templates) as templates:
             for key, table in found.items():
                 path = f"requirements/{names[key]}.requirements"

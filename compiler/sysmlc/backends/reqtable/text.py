@@ -4,7 +4,7 @@ import csv
 import io
 
 from sysmlc.backends.reqtable.table import Cell, Table
-from sysmlc.escapes import escape_markdown
+from sysmlc.support.escapes import escape_markdown
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
 """First characters that make a spreadsheet calculate (OWASP, CSV injection)."""

@@ -4,13 +4,13 @@ import posixpath
 
 from msgspec import Struct
 
-from sysmlc import resources
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysml.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support import resources
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 LIBRARY = "SysMLC.sysml"
 """Our library of metadata definitions, which the text refers to."""
@@ -27,9 +27,11 @@ class SysmlBackend(Struct, frozen=True):
         """Add ``sysml/<unit>.sysml``; report what the text cannot say."""
         unit = _unit(graph, options)
         text, uses_library = document(graph, sink)
-        output.add(f"sysml/{file_names([unit])[unit]}.sysml", text, (), self.name)
+        output.add(f"sysml/{assign_file_names([unit])[unit]}.sysml", text, (), self.name)
         if uses_library:
-            output.add(f"sysml/{LIBRARY}", resources.text("metamodels", LIBRARY), (), self.name)
+            output.add(
+                f"sysml/{LIBRARY}", resources.read_text("metamodels", LIBRARY), (), self.name
+            )
 
 
 def _unit(graph: Graph, options: EmitOptions) -> str:

@@ -28,9 +28,9 @@ from sysmlc.backends.sysml.printing import Line, printed
 from sysmlc.backends.sysml.profiles import define
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.words import quoted
-from sysmlc.depth import room_for
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
+from sysmlc.support.recursion import allow_recursion
 
 
 def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
@@ -68,7 +68,7 @@ def _written(
     caex = frozenset(one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
     book = Book(graph, plan, losses, WRITERS, public=public, caex=caex)
     relations.prepare(book)
-    with room_for(plan.depth):
+    with allow_recursion(plan.depth):
         return book, [line for top in plan.tops for line in book.member(top)]
 
 

@@ -5,10 +5,10 @@ Who moves on to another release of the standard library runs it; a test says whe
 
 from textwrap import wrap
 
-from sysmlc import resources
 from sysmlc.backends.sysml.inherited import BASES, FILE
 from sysmlc.language.library import find
 from sysmlc.language.names import Model
+from sysmlc.support import resources
 
 _WIDTH = 98
 

@@ -6,7 +6,7 @@ package in a part, which has a shape of its own.
 
 from functools import cache
 
-from sysmlc import resources
+from sysmlc.support import resources
 
 FILE = "library-members.txt"
 """Names by base; ``generate_inherited`` makes it of the library."""
@@ -48,7 +48,7 @@ def inherited(keyword: str) -> frozenset[str]:
 def _names() -> dict[str, frozenset[str]]:
     """By base; its names follow in lines that are indented."""
     found: dict[str, list[str]] = {}
-    for line in resources.text("metamodels", FILE).splitlines():
+    for line in resources.read_text("metamodels", FILE).splitlines():
         if not line.startswith(" "):
             names = found[line] = []
         else:

@@ -16,8 +16,8 @@ from sysmlc.language.names import Model
 from sysmlc.language.names.adding import implied_redefinitions
 from sysmlc.language.text.nesting import LIMIT
 from sysmlc.language.tree import Document
-from sysmlc.output import Output
 from sysmlc.sources import SourceError
+from sysmlc.support.output import Output
 
 _LIBRARY = "sysml.library.xmi"
 """The folder of the standard library's interchange files in its releases; references lead there."""

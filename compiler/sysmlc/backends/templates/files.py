@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from sysmlc import resources
 from sysmlc.backends.templates.error import UnusableFolderError
 from sysmlc.sources import SourceError
 from sysmlc.sources.limits import Limits
 from sysmlc.sources.roots import Roots
 from sysmlc.sources.whole import read_whole
+from sysmlc.support import resources
 
 MAX_BYTES = 256 * 1024
 """Size limit of one template; the largest shipped one has 1.5 KiB."""

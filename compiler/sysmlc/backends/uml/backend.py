@@ -8,8 +8,8 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.uml.document import document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.naming import file_names
-from sysmlc.output import Output
+from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import Output
 
 
 class UmlBackend(Struct, frozen=True):
@@ -22,7 +22,9 @@ class UmlBackend(Struct, frozen=True):
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``uml/<unit>.uml``; report what UML cannot say."""
         unit = _unit(graph, options)
-        output.add(f"uml/{file_names([unit])[unit]}.uml", document(graph, sink), (), self.name)
+        output.add(
+            f"uml/{assign_file_names([unit])[unit]}.uml", document(graph, sink), (), self.name
+        )
 
 
 def _unit(graph: Graph, options: EmitOptions) -> str:

@@ -5,9 +5,9 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from sysmlc import resources
 from sysmlc.backends.uml.meant import applications
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.support import resources
 
 NAMESPACE = "http://www.eclipse.org/papyrus/sysml/1.6/SysML/"
 _OTHERS = re.compile(
@@ -63,7 +63,7 @@ _PORTS = ("full port", "proxy port", "flow port")
 @cache
 def packages() -> dict[str, str]:
     """Package of SysML, as namespaces write it, by the name of a stereotype."""
-    elements = json.loads(resources.text("metamodels", "libraries.json"))["elements"]
+    elements = json.loads(resources.read_text("metamodels", "libraries.json"))["elements"]
     found = {}
     for name, entry in elements.items():
         parts = name.split("::")
@@ -75,7 +75,7 @@ def packages() -> dict[str, str]:
 @cache
 def bases() -> dict[str, tuple[str, ...]]:
     """Metaclasses that SysML's stereotypes extend, by the name of the stereotype."""
-    elements = json.loads(resources.text("metamodels", "libraries.json"))["elements"]
+    elements = json.loads(resources.read_text("metamodels", "libraries.json"))["elements"]
     return {
         name.rpartition("::")[2]: tuple(entry.get("extends", ()))
         for name, entry in elements.items()

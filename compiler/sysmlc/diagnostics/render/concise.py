@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics.render.report import Finding, Report
 from sysmlc.diagnostics.render.text import summary_line
-from sysmlc.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible
 
 
 def render(report: Report, *, color: bool = False) -> str:

@@ -21,7 +21,7 @@ from sysmlc.diagnostics.coverage_report import (
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
 from sysmlc.diagnostics.render import sarif as findings_as_sarif
 from sysmlc.diagnostics.render.report import Finding, Report
-from sysmlc.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible
 
 _COLUMNS = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
 _TITLES = {Verdict.IGNORED_NOTATION: "notation"}

@@ -3,7 +3,7 @@
 from sysmlc.diagnostics.render.report import Finding, Report
 from sysmlc.diagnostics.render.text import summary_line
 from sysmlc.diagnostics.rule import Severity
-from sysmlc.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics.render.report import Finding, Report
 from sysmlc.diagnostics.rule import Severity
-from sysmlc.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible
 
 _COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 _WIDTH = 100

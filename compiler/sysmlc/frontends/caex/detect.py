@@ -1,11 +1,12 @@
 """Whether a source is AutomationML: told by its root element, not by its name."""
 
-from sysmlc.patterns import pattern
+import re
+
 from sysmlc.sources import Source
 
 _HEAD = 1 << 14
-_ROOT = pattern(rb"<(?:[\w.-]+:)?CAEXFile[\s>/]")
-_FIRST = pattern(rb"<(?![?!])")
+_ROOT = re.compile(rb"<(?:[\w.-]+:)?CAEXFile[\s>/]")
+_FIRST = re.compile(rb"<(?![?!])")
 
 
 def score(source: Source) -> float:

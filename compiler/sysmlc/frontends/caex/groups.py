@@ -13,7 +13,7 @@ from sysmlc.frontends.caex.site import Site
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 DESCRIBED_MIRROR = rule(
     "SM638",

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.caex import (
     account,
@@ -23,12 +22,13 @@ from sysmlc.frontends.caex.standard import Standard
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.support.garbage_collection import pause_garbage_collection
 
 
 def read_all(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
     """Read the files into the graph; see ``CaexFrontend.read``."""
     ordered = sorted(sources, key=lambda source: source.name)
-    with uncollected():
+    with pause_garbage_collection():
         documents = [d for source in ordered if (d := _read(source, sink)) is not None]
         standard = Standard()
         context = Context(documents, graph, sink, standard.provide)

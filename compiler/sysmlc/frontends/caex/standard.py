@@ -2,12 +2,12 @@
 
 from functools import cache
 
-from sysmlc import resources
 from sysmlc.frontends.caex import features, libraries
 from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
 from sysmlc.sources import Source
+from sysmlc.support import resources
 
 FILE = "automationml-libraries.aml"
 

@@ -9,7 +9,7 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.sources import Source
 from sysmlc.sources.caex import ATTRIBUTES, TEXTS
 from sysmlc.sources.xml import SEPARATOR, parse, parser
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 UNKNOWN_ATTRIBUTE = rule(
     "SM633",

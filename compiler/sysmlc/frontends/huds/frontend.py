@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.ir import Graph
-from sysmlc.patterns import pattern
 from sysmlc.sources import Fault, Source, SourceError
 
 if TYPE_CHECKING:
     from sysmlc.frontends.huds.records import Record
 
-_ROOT = pattern(
+_ROOT = re.compile(
     rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>\[]*(\[.*?\])?\s*>\s*)*<packet[\s>]",
     re.DOTALL,
 )

@@ -2,13 +2,12 @@
 
 import re
 
-from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 from sysmlc.sources.files import is_description_entry
 
 _SUFFIXES = (".sysml", ".kerml")
-_SKIPPED = pattern(rb"(?:\xef\xbb\xbf)?(?:\s+|//\*.*?\*/|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
-_WORD = pattern(rb"[a-z]+|#(?=[\w'])|@(?=[\w'])")
+_SKIPPED = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s+|//\*.*?\*/|//[^\n]*|/\*.*?\*/)*", re.DOTALL)
+_WORD = re.compile(rb"[a-z]+|#(?=[\w'])|@(?=[\w'])")
 _WORDS = """
     package library standard private public protected import part action state item attribute port
     requirement constraint abstract doc comment enum interface connection flow use verification
@@ -17,7 +16,7 @@ _WORDS = """
     dependency variation rendering case rep language locale ref # @ metaclass
 """
 _FIRST = frozenset(word.encode() for word in _WORDS.split())
-_XMI = pattern(rb"<(?:sysml|kerml):[A-Z]\w*[\s>]")
+_XMI = re.compile(rb"<(?:sysml|kerml):[A-Z]\w*[\s>]")
 
 
 def score(source: Source) -> float:

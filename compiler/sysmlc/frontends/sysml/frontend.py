@@ -43,11 +43,11 @@ class SysmlFrontend(Struct, frozen=True):
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
         """Parse, resolve and lower all files of the unit."""
-        from sysmlc.collecting import uncollected
         from sysmlc.frontends.sysml.reading import read
+        from sysmlc.support.garbage_collection import pause_garbage_collection
 
         ordered = sorted(sources, key=lambda one: one.name)
-        with uncollected():
+        with pause_garbage_collection():
             read(ordered, graph, sink, coverage, library=self.library)
 
 

@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import nodes
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
-from sysmlc.patterns import pattern
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-_FACT = pattern(
+_FACT = re.compile(
     r'(?:(node|region|trigger|start|done)\.)?("(?:[^"\\]|\\.)*"|[^="]*?)(=>|=|->)(.*)', re.DOTALL
 )
-_STEP = pattern(r"'((?:[^'\\]|\\.)*)'|([^:']+)")
-_ESCAPED = pattern(r"\\(.)", re.DOTALL)
+_STEP = re.compile(r"'((?:[^'\\]|\\.)*)'|([^:']+)")
+_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
 _EDGES = {edge.value: edge for edge in Edge}
 _KINDS = {Edge.APPLIES: Kind.PROFILE}

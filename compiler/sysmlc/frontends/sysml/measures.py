@@ -1,17 +1,17 @@
 """Quantities and units of value types: those of the libraries ISQ and SI as docs/ir.md has them."""
 
+import re
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
-from sysmlc.patterns import pattern
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-_VALUE = pattern(r"(?P<name>\w+)Value")
-_UPPER = pattern(r"(?<=[a-z])(?=[A-Z])")
+_VALUE = re.compile(r"(?P<name>\w+)Value")
+_UPPER = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
 
 def is_measured(found: Reference) -> bool:

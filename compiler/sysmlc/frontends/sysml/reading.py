@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sysmlc import resources
 from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.sysml.detect import is_description, is_xml, language
 from sysmlc.frontends.sysml.libraries import FILES, READ
@@ -15,6 +14,7 @@ from sysmlc.ir import Graph
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document
 from sysmlc.sources import Source, SourceError
+from sysmlc.support import resources
 
 if TYPE_CHECKING:
     from sysmlc.language.library import Library
@@ -102,7 +102,7 @@ def _missing(documents: Sequence[Document], known: Sequence[Document]) -> list[D
     for name, file in FILES.items():
         is_named = any(name in one.text or _is_interchange(one) for one in documents)
         if is_named and name not in there:
-            source = Source(f"{SHIPPED}{file}", resources.text("metamodels", file).encode())
+            source = Source(f"{SHIPPED}{file}", resources.read_text("metamodels", file).encode())
             found.append(_parse(source, "sysml", Sink()))
     return found
 

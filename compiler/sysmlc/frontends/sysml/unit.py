@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
-from sysmlc.depth import room_for
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml.account import account
 from sysmlc.frontends.sysml.blame import blame
@@ -19,6 +18,7 @@ from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.pins import pin_subkind
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document, Node
+from sysmlc.support.recursion import allow_recursion
 
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
@@ -44,7 +44,7 @@ def lower(
     low.accepted = accepted(found)
     low.flowing = flowing(found)
     # What waits until all else is there, such as ends of connections, may be as deep.
-    with room_for(depth):
+    with allow_recursion(depth):
         for root in low.roots:
             low.lower_all(root.members, None)
         low.last(lambda: _give_pins(low, found))

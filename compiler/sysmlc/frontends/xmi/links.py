@@ -1,15 +1,16 @@
 """How a document refers to others; found without parsing it, before the unit is known."""
 
+import re
+
 from sysmlc.frontends.xmi.profiles import default_namespace
-from sysmlc.patterns import pattern
 from sysmlc.sources import Source
 
-_HREF = pattern(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+_HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
 
-_ROOT = pattern(rb"<uml:(Profile|Model|Package)\b([^>]*)")
-_NAME = pattern(rb"""\sname\s*=\s*(?:"([^"]*)|'([^']*))""")
-_EMF_NAMESPACE = pattern(rb"""\bnsURI\s*=\s*["']([^"']+)""")
-_XML_NAMESPACE = pattern(rb"""\bxmlns:[\w.-]+\s*=\s*["']([^"']+)""")
+_ROOT = re.compile(rb"<uml:(Profile|Model|Package)\b([^>]*)")
+_NAME = re.compile(rb"""\sname\s*=\s*(?:"([^"]*)|'([^']*))""")
+_EMF_NAMESPACE = re.compile(rb"""\bnsURI\s*=\s*["']([^"']+)""")
+_XML_NAMESPACE = re.compile(rb"""\bxmlns:[\w.-]+\s*=\s*["']([^"']+)""")
 
 
 def links(source: Source) -> list[str]:

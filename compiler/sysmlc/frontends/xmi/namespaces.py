@@ -1,20 +1,19 @@
 """Namespaces of XMI and UML in all their versions, and which files they make ours."""
 
+import re
 from functools import lru_cache
 
-from sysmlc.patterns import pattern
-
-_XMI = pattern(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
-_UML = pattern(
+_XMI = re.compile(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
+_UML = re.compile(
     r"https?://www\.eclipse\.org/uml2/[\d.]+/UML/?$"
     r"|https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/?$"
 )
-_SYSML = pattern(
+_SYSML = re.compile(
     r"https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)/\w"
     r"|https?://(www|schema)\.omg\.org/spec/SysML/"
     r"|https?://www\.sparxsystems\.com/profiles/SysML"
 )
-_SETTINGS = pattern(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[IC]/?$|/spec/MOF/")
+_SETTINGS = re.compile(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[IC]/?$|/spec/MOF/")
 
 
 @lru_cache(256)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from sysmlc.collecting import uncollected
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.xmi import applications, behaviour, comments, dangling, lowering, parts, rules
 from sysmlc.frontends.xmi import coverage as account
@@ -18,6 +17,7 @@ from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.support.garbage_collection import pause_garbage_collection
 
 
 def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
@@ -29,7 +29,7 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
     ordered = sorted(sources, key=lambda source: source.name)
     models = [source for source in ordered if not is_snapshot(source)]
     beside = [source for source in ordered if is_snapshot(source)]
-    with uncollected():
+    with pause_garbage_collection():
         found = [_read(source, sink) for source in models]
         documents = [document for document in found if document is not None]
         unit = Unit(documents, graph)

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from sysmlc import resources
+from sysmlc.support import resources
 
 _Table = dict[str, tuple[tuple[str, ...], frozenset[str]]]
 
@@ -31,7 +31,7 @@ def _placed() -> frozenset[str]:
 
 @cache
 def _table() -> _Table:
-    lines = resources.text("metamodels", "uml-features.txt").splitlines()
+    lines = resources.read_text("metamodels", "uml-features.txt").splitlines()
     return dict(_entry(line) for line in lines if not line.startswith("#"))
 
 

@@ -121,7 +121,7 @@ def _shown(name: str) -> str:
 
 def _near(name: str) -> str:
     """Help that names the feature most like this one; empty where there is none."""
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     known = [f"xmi:{one}" for one in _OF_XMI] if "}" in name else FEATURES
     told = did_you_mean(_shown(name), known)

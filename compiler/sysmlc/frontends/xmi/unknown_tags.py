@@ -83,7 +83,7 @@ def _report(context: Context, stereotype: str, name: str, rows: list[int], more:
 
 
 def _near(name: str) -> str:
-    from sysmlc.suggest import did_you_mean
+    from sysmlc.support.suggestions import did_you_mean
 
     told = did_you_mean(name, _TAGS)
     return told if told.startswith("did you mean") else ""

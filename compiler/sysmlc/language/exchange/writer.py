@@ -14,9 +14,8 @@ from sysmlc.language.exchange.xmi import Targets, is_writable, lines
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node
-from sysmlc.patterns import pattern
 
-_REPOSITORY = pattern(r"(^|/)\.(git(?:/|$))", re.IGNORECASE)
+_REPOSITORY = re.compile(r"(^|/)\.(git(?:/|$))", re.IGNORECASE)
 _SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
 
 

@@ -5,7 +5,7 @@ from sysmlc.language.names import contexts
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Node, Relation
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _WANTED = {
     "Subclassification": "a definition",

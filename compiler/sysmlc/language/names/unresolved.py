@@ -1,5 +1,7 @@
 """Names that lead nowhere, told in the modeller's words, once for each use."""
 
+import re
+
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.language.names import contexts
 from sysmlc.language.names.advice import advice
@@ -10,10 +12,9 @@ from sysmlc.language.names.results import result
 from sysmlc.language.names.rules import TOO_CIRCULAR, UNRESOLVED
 from sysmlc.language.places import place
 from sysmlc.language.tree import Document, Node, Reference, Relation
-from sysmlc.patterns import pattern
 
 _NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"
-_LINK = pattern(rf"{_NAME}(?:\s*::\s*{_NAME})*")
+_LINK = re.compile(rf"{_NAME}(?:\s*::\s*{_NAME})*")
 """A qualified name, one link of a chain."""
 
 

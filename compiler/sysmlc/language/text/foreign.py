@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection
 
 from sysmlc.language.text.scan import Tokens
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _SHORTEST = 5
 """Letters of a word that may be a keyword with a slip in it; shorter ones are names."""

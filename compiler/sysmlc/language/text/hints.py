@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 
 from sysmlc.language.text.foreign import direction, foreign
 from sysmlc.language.text.scan import Tokens
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 INITIAL = "':=' gives an initial value, '=' binds for good, 'default' may be overridden"
 _PARAMETERS = "parameters are members of the body: {{ in {0}; }}"

@@ -10,9 +10,9 @@ from typing import Any
 
 from msgspec import Struct
 
-from sysmlc import resources
 from sysmlc.language.text.scan import Types
-from sysmlc.output import write as write_file
+from sysmlc.support import resources
+from sysmlc.support.atomic_files import write as write_file
 
 SHIPPED = Path(__file__).with_name("generated")
 """Folder of the tables that are made when the package is built or installed."""
@@ -45,7 +45,7 @@ class Tables(Struct, frozen=True, eq=False):
 
 def grammar(language: str) -> str:
     """The text of a language's grammar: ``kerml`` or ``sysml``."""
-    return "\n".join(resources.text("grammars", name) for name in _GRAMMARS[language])
+    return "\n".join(resources.read_text("grammars", name) for name in _GRAMMARS[language])
 
 
 def digest(language: str) -> bytes:

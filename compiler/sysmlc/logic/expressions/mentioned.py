@@ -1,5 +1,6 @@
 """Texts and numbers that a behaviour compares its values with, or gives them."""
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -7,15 +8,14 @@ from msgspec import Struct
 
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.expressions.enumerations import Enumerations
-from sysmlc.patterns import pattern
 
 BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
 _KEYS = ("guard", "body", "condition", "value")
-_TEXT = pattern(r'"((?:[^"\\]|\\.)*)"')
+_TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
 _NAME = r"[^\W\d][\w.]*"
 _VALUE = rf"-?\d+(?![\w.])|{_NAME}::\w+"
-_AFTER = pattern(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
-_BEFORE = pattern(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
+_AFTER = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
+_BEFORE = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
 _REMEMBERED = 4096
 """Texts that are kept: the same guards come again and again."""
 _GREATEST = 255

@@ -18,9 +18,8 @@ from sysmlc.logic.expressions.expression import (
     parse_expression,
 )
 from sysmlc.logic.expressions.expression import Literal as Constant
-from sysmlc.patterns import pattern
 
-_RANGE = pattern(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
+_RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
 _BOUNDS = (("min", "max"), ("lower", "upper"), ("minimum", "maximum"))
 _TAGS = frozenset(f"tag.{name}" for pair in (("range",), *_BOUNDS) for name in pair)
 _MOMENTARY = frozenset(["precondition", "postcondition", "body"])

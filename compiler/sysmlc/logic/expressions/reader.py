@@ -12,7 +12,6 @@ from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import UnexpectedInput, VisitError
 from lark.tree import Meta
 
-from sysmlc import resources
 from sysmlc.logic.expressions.expression import (
     Assignment,
     Binary,
@@ -29,6 +28,7 @@ from sysmlc.logic.expressions.expression import (
     Statement,
     Unary,
 )
+from sysmlc.support import resources
 
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _ESCAPE = {"n": "\n"}
@@ -69,7 +69,7 @@ def _explain(text: str, offset: int) -> str:
 @cache
 def _make_parser() -> Lark:
     return Lark(
-        resources.text("grammars", "expression.lark"),
+        resources.read_text("grammars", "expression.lark"),
         parser="lalr",
         start=["expression", "effect"],
         propagate_positions=True,

@@ -19,7 +19,7 @@ from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.placed import PlacedList, PlacedObject, PlacedText
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.ltl import FormulaError, parse_formula
-from sysmlc.output import encode_json
+from sysmlc.support.json_text import encode_json
 
 __all__ = ["plain", "read", "write"]
 _DECLARING = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}

@@ -15,7 +15,7 @@ from sysmlc.logic.contract import (
     IntegerDomain,
 )
 from sysmlc.logic.printing import print_formula
-from sysmlc.output import encode_json
+from sysmlc.support.json_text import encode_json
 
 FORMAT = "sysmlc-contract/1"
 

@@ -5,7 +5,6 @@ Source: slugs, doc/input_formats.md and examples.
 
 from collections.abc import Mapping
 
-from sysmlc.depth import room_for
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Contract, Domain
 from sysmlc.logic.formats.base import game, lowered
@@ -15,6 +14,7 @@ from sysmlc.logic.formats.lower import each_formula
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST
 from sysmlc.logic.simplify import rebuild
+from sysmlc.support.recursion import allow_recursion
 
 _JOINS = {"&": f.both, "|": f.either}
 
@@ -26,7 +26,7 @@ class PrefixError(ValueError):
 def from_prefix(line: str, domains: Mapping[str, Domain]) -> Formula:
     """The formula that a line is. Raises PrefixError."""
     reader = _Prefix(line.split(), domains)
-    with room_for(DEEPEST):
+    with allow_recursion(DEEPEST):
         found = reader.formula(0)
     if reader.has_more():
         raise PrefixError

@@ -4,6 +4,7 @@ Tools read ``{x==3}`` as an opaque proposition, so that comparisons and arithmet
 out over the values of the variables, and a primed variable as X before its propositions.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
@@ -13,7 +14,6 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Doma
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_literal
-from sysmlc.patterns import pattern
 
 _INFIX = {
     Op.AND: "&&",
@@ -25,8 +25,8 @@ _INFIX = {
     Op.WEAK_UNTIL: "W",
 }
 _PREFIX = {Op.NOT: "!", Op.NEXT: "X ", Op.ALWAYS: "[]", Op.EVENTUALLY: "<>"}
-_ATOM = pattern(r"!?(X )?(\{[^{}]*\}|\w+)")
-_NAME = pattern(r"[a-z_]\w*")
+_ATOM = re.compile(r"!?(X )?(\{[^{}]*\}|\w+)")
+_NAME = re.compile(r"[a-z_]\w*")
 _WORDS = ("false", "true")
 LIMIT = 20_000
 """Most propositions that one comparison may be written out to."""

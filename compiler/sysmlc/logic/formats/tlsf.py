@@ -9,8 +9,6 @@ from pathlib import PurePath
 
 from msgspec.structs import replace
 
-from sysmlc.depth import room_for
-from sysmlc.escapes import escape_invisible
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, Owner
 from sysmlc.logic.formats import rules
@@ -25,6 +23,8 @@ from sysmlc.logic.formats.tlsf_values import DEEPEST_CALL, Bus, Definition, Valu
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import DEEPEST
 from sysmlc.logic.spelling import Cursor, Syntax, tokens
+from sysmlc.support.escapes import escape_invisible
+from sysmlc.support.recursion import allow_recursion
 
 _SIGNS = ("!", "&&", "||", "->", "<->", "==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "%")
 SYNTAX = Syntax(
@@ -57,7 +57,7 @@ _Handler = Callable[[Cursor, str], None]
 
 def read(file: File) -> tuple[Contract, ...]:
     """The contract of the file, whose name it has."""
-    with room_for(DEEPEST + 2 * DEEPEST_CALL):
+    with allow_recursion(DEEPEST + 2 * DEEPEST_CALL):
         return _File(file).read()
 
 

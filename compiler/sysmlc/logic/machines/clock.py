@@ -1,12 +1,12 @@
 """Time triggers: durations in steps, and what only the environment can time."""
 
+import re
 from math import ceil
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Element
 from sysmlc.logic.machines.actions import Reading
 from sysmlc.logic.samples import arrow, machine
-from sysmlc.patterns import pattern
 
 
 def _waiting(after: str) -> str:
@@ -41,7 +41,7 @@ _SECONDS = {
     "hour": 3600.0,
     "hours": 3600.0,
 }
-_TIME = pattern(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
+_TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
 
 
 def ticks_of(reading: Reading, trigger: Element) -> int | None:

@@ -12,9 +12,8 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import Symbol, literal_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild
-from sysmlc.patterns import pattern
 
-_DOTTED = pattern(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+_DOTTED = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
 class Scope(Struct, frozen=True):

@@ -13,14 +13,15 @@ from sysmlc.ir.measures import is_quantity_kind, is_unit
 from sysmlc.ir.query import generals
 from sysmlc.passes.classify.tags import elements, value
 from sysmlc.passes.classify.unit_factors import give_symbols
-from sysmlc.patterns import pattern
 
-_QUANTITY_KIND = pattern(r"(Simple|Derived|Specialized)?QuantityKind")
-_UNIT = pattern(r"(Simple|Derived|Prefixed|ConversionBased|(Linear|Affine|General)Conversion)?Unit")
+_QUANTITY_KIND = re.compile(r"(Simple|Derived|Specialized)?QuantityKind")
+_UNIT = re.compile(
+    r"(Simple|Derived|Prefixed|ConversionBased|(Linear|Affine|General)Conversion)?Unit"
+)
 _KINDS = (Kind.UNIT, Kind.QUANTITY_KIND, Kind.INSTANCE, Kind.DATA_TYPE)
-_LIBRARY = pattern(r"UnitAndQuantityKind|QUDV")
+_LIBRARY = re.compile(r"UnitAndQuantityKind|QUDV")
 _TEXTS = {"symbol": "symbol", "description": "description", "definitionURI": "definition_uri"}
-_NAMED = pattern(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
+_NAMED = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
 """Name of a value type of MagicDraw's ISO 80000 library: ``length[metre]``."""
 
 

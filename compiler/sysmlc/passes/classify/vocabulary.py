@@ -9,7 +9,6 @@ from enum import StrEnum
 from functools import cache
 
 from sysmlc.ir import Edge
-from sysmlc.patterns import pattern
 
 
 class Family(StrEnum):
@@ -24,10 +23,10 @@ class Family(StrEnum):
 
 
 _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
-    (Family.SYSMLC, pattern(r"urn:sysmlc:profile:|pathmap://SYSMLC_PROFILES/")),
+    (Family.SYSMLC, re.compile(r"urn:sysmlc:profile:|pathmap://SYSMLC_PROFILES/")),
     (
         Family.SYSML,
-        pattern(
+        re.compile(
             r"""https?://www\.omg\.org/spec/SysML/
             | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)
             | https?://www\.sparxsystems\.com/profiles/SysML
@@ -41,7 +40,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
     ),
     (
         Family.STANDARD,
-        pattern(
+        re.compile(
             r"""https?://www\.eclipse\.org/uml2/[\d.]+/UML/Profile/
             | https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/StandardProfile
             | pathmap://UML_PROFILES/
@@ -54,7 +53,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
         # MARTE has a FlowPort and an Allocate of its own, and Papyrus writes its sub-profiles
         # as /papyrus/GCM/1 and so on.
         Family.FOREIGN,
-        pattern(
+        re.compile(
             r"""https?://www\.omg\.org/spec/(MARTE|UTP|FUML)
             | https?://www\.eclipse\.org/papyrus/(MARTE\w*|GCM|Alloc|FCM|HLAM|HRM|HwLayout|GRM
               |GQAM|SAM|PAM|SRM|RSM|NFPs|Time|VSL|C_Cpp|Codegen|FMIProfile|umlrt)/
@@ -66,7 +65,7 @@ _NAMESPACES: tuple[tuple[Family, re.Pattern[str]], ...] = (
     ),
     (
         Family.TOOL,
-        pattern(
+        re.compile(
             r"""https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/MagicDraw
             | https?://www\.magicdraw\.com/schemas/(DSL_Customization|Validation_Profile
               |Dependency_Matrix_Profile|Matrix_Templates_Profile|matrix_templates)

@@ -12,7 +12,7 @@ from sysmlc.overlay.model import BlockEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.behaviors import behaviors_of, block_of
 from sysmlc.passes.overlay.finder import OPERATION, Finder
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _IN = ("in", "inout")
 _OUT = ("out", "inout", "return")

@@ -7,7 +7,7 @@ from sysmlc.ir.query import ends, role_of
 from sysmlc.overlay.model import ConnectorEntry, FlowEntry, Term
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import CONNECTOR, FEATURE, TYPE, Finder, plain
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _Ends = tuple[list[Element], list[Element]]
 

@@ -9,7 +9,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.passes.platform.statements import is_structure, of_machine
 from sysmlc.recipe.model import Machine, Model, Service
 from sysmlc.recipe.plant import Plant, PlantElement
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _TELLING = 5_000
 """Names among which the nearest is looked for; comparing more takes seconds."""

@@ -12,7 +12,7 @@ from sysmlc.passes.platform.statements import allocations
 from sysmlc.recipe.model import Service
 from sysmlc.recipe.plant import PlantElement
 from sysmlc.recipe.platform import Binding, Offer
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 
 class _Place(NamedTuple):

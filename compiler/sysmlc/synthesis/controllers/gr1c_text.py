@@ -11,7 +11,7 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Literal
-from sysmlc.output import append_members, encode_row
+from sysmlc.support.json_text import append_members, encode_row
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers.closed import Controller
 

@@ -6,8 +6,8 @@ from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.formats.document_text import type_of
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.output import append_members, encode_row
-from sysmlc.plantuml import plain
+from sysmlc.support.json_text import append_members, encode_row
+from sysmlc.support.plantuml_text import plain
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 
 FORMAT = "sysmlc-machine/2"

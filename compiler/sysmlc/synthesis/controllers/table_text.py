@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.logic.contract import Contract
-from sysmlc.output import append_members, encode_row
+from sysmlc.support.json_text import append_members, encode_row
 from sysmlc.synthesis.controllers.machine_text import declared
 from sysmlc.synthesis.controllers.table import Entry, Table
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.logic.contract import Contract, Variable
 from sysmlc.logic.printing import print_literal
-from sysmlc.plantuml import label
+from sysmlc.support.plantuml_text import label
 from sysmlc.synthesis.counter.machine import Counter, Row, State, example
 from sysmlc.synthesis.witness import Party, as_formula, sequence
 

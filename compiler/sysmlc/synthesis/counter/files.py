@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.logic.contract import Contract
-from sysmlc.naming import file_names
+from sysmlc.support.file_names import assign_file_names
 from sysmlc.synthesis.counter import drawing, sysml
 from sysmlc.synthesis.counter.machine import Counter
 
@@ -13,7 +13,7 @@ def files(
 ) -> Iterator[tuple[str, str]]:
     """Name and text of the files of counter-strategies; small ones have a diagram of states."""
     known = {contract.component: (counter, contract) for counter, contract in made}
-    for component, name in file_names(known).items():
+    for component, name in assign_file_names(known).items():
         counter, contract = known[component]
         if len(counter.states) <= drawing.MOST_SHOWN:
             yield f"{name}.counter.puml", drawing.diagram(counter, contract)

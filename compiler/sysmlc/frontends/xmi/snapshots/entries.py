@@ -4,16 +4,16 @@ The fourth dialect: XMI 2.0 with ``xsi:type``, an ``ID`` for each element, and a
 stereotypes inside the elements they are applied to.
 """
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from sysmlc.patterns import pattern
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
 from sysmlc.sources.xml import parse, parser, too_deep
 
 _HEAD = 4096
-_NAMESPACE = pattern(rb"""["']https?://www\.nomagic\.com/magicdraw/UML/""")
-_ENTRY = pattern(r"[!/][^!/]*snapshot$")
+_NAMESPACE = re.compile(rb"""["']https?://www\.nomagic\.com/magicdraw/UML/""")
+_ENTRY = re.compile(r"[!/][^!/]*snapshot$")
 _TYPE = "http://www.w3.org/2001/XMLSchema-instance}type"
 
 

@@ -12,7 +12,7 @@ from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.frontends.xmi.unknown_attributes import WITH_READERS
 from sysmlc.sources import Source
 from sysmlc.sources.xml import SEPARATOR, parse, parser
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
 
 _OF_THE_TOOL = WITH_READERS | {"ID", "_extensionEndOfType"}
 """Attributes without namespace that MagicDraw writes in snapshots beside UML's own."""

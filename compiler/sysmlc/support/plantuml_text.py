@@ -6,8 +6,7 @@ import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
 
-from sysmlc.escapes import escape_invisible
-from sysmlc.patterns import pattern
+from sysmlc.support.escapes import escape_invisible
 
 WIDTH = 36
 """Characters in one line of a name before it is broken."""
@@ -21,7 +20,7 @@ _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
 """PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
 _ALWAYS = frozenset('"\\<>~%$&{')
-_TRAPS = pattern(
+_TRAPS = re.compile(
     r'["\\<>~%$&{]|^[^A-Za-z0-9]|(?<=\*)\*|(?<=/)/|(?<=_)_|(?<=-)-|(?<=\[)\[|(?<=/)\'|(?<=\')[/\']|[^\x00-\x7f]'
 )
 """Markup, what a line may not begin with, second characters of pairs, what may not be seen."""
@@ -29,9 +28,9 @@ _HARMLESS_FIRST = frozenset("«([:/≤≥→←…✕⚡")
 _UNSEEN = frozenset(["Cf", "Zl", "Zp", "Co", "Cn"])
 _HARMLESS = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.,:;()=+]|[ _-](?=[A-Za-z0-9.,:;()=+]))*")
 """Text that stays as it is; most names are such, and to look at each character takes long."""
-_BLANKS = pattern(r"[\t\n\x0b\x0c\r]|  |^ | $|^$")
+_BLANKS = re.compile(r"[\t\n\x0b\x0c\r]|  |^ | $|^$")
 """Blanks other than one between two words."""
-_JOINT = pattern(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
+_JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
 @lru_cache(_REMEMBERED)

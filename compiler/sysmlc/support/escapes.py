@@ -3,19 +3,19 @@
 import re
 import unicodedata
 
-from sysmlc.patterns import pattern
-
 _INVISIBLE = frozenset(["Cc", "Cf", "Cs", "Zl", "Zp"])
 """Unicode categories of controls, bidirectional and zero-width signs, surrogates, separators."""
 _BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
 """Letters and marks that take part in names but are displayed as nothing."""
 
-_MARKDOWN = pattern(r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)")
+_MARKDOWN = re.compile(
+    r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)"
+)
 """Characters that CommonMark interprets within a line: '<' where a tag can start, ']' where the
 target of a link can follow, '_' unless it stands between letters."""
-_BLOCK = pattern(r"[#=+>\[-]|([0-9]+)[.)](?=\s|$)")
+_BLOCK = re.compile(r"[#=+>\[-]|([0-9]+)[.)](?=\s|$)")
 """The start of a line that CommonMark reads as a heading, rule, quotation, list item or target."""
-_SURROGATE = pattern("[\ud800-\udfff]")
+_SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def escape_invisible(text: str, allowed: str = "") -> str:

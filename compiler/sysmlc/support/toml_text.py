@@ -3,8 +3,6 @@
 import re
 from typing import Any
 
-from sysmlc.patterns import pattern
-
 _MAX_CHARACTERS = 1_000_000
 _MAX_DEPTH = 50
 """Nested brackets, and parts of a dotted key: the parser recurses for the first and takes time
@@ -12,12 +10,12 @@ that grows with the square of the second."""
 _MAX_WORD = 1_000
 """Characters of a number or a bare key; Python refuses integers of more than 4,300 digits."""
 
-_TOKEN = pattern(
+_TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?"""' + r"|'''.*?'''" + r'|"(?:\\.|[^"\\\n])*"' + r"|'[^'\n]*'"
     r"|\#[^\n]*|[A-Za-z0-9_+-]+|[\[\]{}.,=\n]",
     re.DOTALL,
 )
-_POSITION = pattern(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
+_POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
 class TomlError(Exception):
