@@ -7,7 +7,9 @@ from lxml import etree
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND, lowering, metaclasses
-from sysmlc.ir import Edge, Graph, Kind, sequence, templates
+from sysmlc.ir import Edge, Graph, Kind
+from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import templates
 from sysmlc.passes import pipeline
 from sysmlc.sources import load
 

@@ -5,7 +5,7 @@ import random
 import pytest
 
 from sysmlc.ir import Edge, Kind
-from sysmlc.ir.branches import is_joined
+from sysmlc.ir.query.activities import is_joined
 from sysmlc.ir.text import parse_text
 
 SUBKINDS = {"s": "initial", "f": "fork", "j": "join", "d": "decision", "m": "merge", "e": "final"}

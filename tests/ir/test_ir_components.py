@@ -4,7 +4,7 @@ import networkx as nx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.ir.components import strong_components
+from sysmlc.ir.algorithms import strong_components
 
 _NODES = st.sampled_from("abcdefgh")
 _GRAPHS = st.dictionaries(_NODES, st.lists(_NODES, max_size=4), max_size=8)

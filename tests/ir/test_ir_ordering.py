@@ -2,7 +2,7 @@
 
 import pytest
 
-from sysmlc.ir.ordering import in_topological_order
+from sysmlc.ir.algorithms import in_topological_order
 
 
 def order(nodes, *edges):

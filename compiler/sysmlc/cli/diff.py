@@ -107,7 +107,7 @@ def _is_unread(made: "Compilation") -> bool:
 
 def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
     """Refuse words that make no difference in any model: most likely they are misspelt."""
-    from sysmlc.ir.compare.ignoring import words
+    from sysmlc.ir.compare.content import words
     from sysmlc.support.suggestions import did_you_mean
 
     known = words(one.graph for one in made) if ignore else ()

@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.components import strong_components
+from sysmlc.ir.algorithms import strong_components
 from sysmlc.ir.query import CLASSIFIERS, FEATURES, bounds, conforms, generals
 from sysmlc.passes.inherit_rules import (
     GENERALIZATION_CYCLE,

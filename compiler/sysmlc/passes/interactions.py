@@ -6,7 +6,8 @@ from typing import ClassVar
 from msgspec import Struct
 
 from sysmlc.diagnostics import Rule, Sink
-from sysmlc.ir import Edge, Element, Graph, Kind, query, sequence
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.query import interactions as sequence
 from sysmlc.passes import interaction_rules as rules
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})

@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.kept import PREFIX
+from sysmlc.ir.round_trip import PREFIX
 
 UNREADABLE = rule(
     "SM189",

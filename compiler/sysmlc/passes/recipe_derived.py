@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Kind, measures, query
+from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.ir.query import units as measures
 from sysmlc.passes.recipe_context import Context
 from sysmlc.recipe import samples
 

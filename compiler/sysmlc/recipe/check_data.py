@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.ir.ordering import in_topological_order
+from sysmlc.ir.algorithms import in_topological_order
 from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, declared, graphs
 from sysmlc.recipe.derive import Tables
@@ -29,7 +29,6 @@ from sysmlc.recipe.model import (
     Task,
     ValueType,
 )
-from sysmlc.recipe.remembered import remembered
 
 _EARLY = ("s g", "g d", "d a ok", "d b else", "a m", "b m", "m l", "l e")
 
@@ -82,7 +81,6 @@ def guards(model: Model, tables: Tables) -> Iterator[Finding]:
             yield Finding(GUARDS, node.element, {"decision": node.id, "problem": problem})
 
 
-@remembered
 def _decision_problems(graph: FlowGraph) -> Iterator[tuple[Node, str]]:
     types = {name: one.type for name, one in declared(graph).items()}
     for node in graph.nodes:
@@ -147,7 +145,6 @@ def names(model: Model, tables: Tables) -> Iterator[Finding]:
             yield Finding(UNDECLARED, element, {"graph": graph.id, "problem": problem})
 
 
-@remembered
 def _name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     yield from _undeclared(graph)
     yield from _unset(graph)
@@ -259,7 +256,6 @@ def readable(model: Model, tables: Tables) -> Iterator[Finding]:
         yield from _mere_texts(element, id, expression)
 
 
-@remembered
 def _unreadable_in(graph: FlowGraph) -> Iterator[Finding]:
     for edge in graph.edges:
         yield from _mere_texts(edge.element, edge.source, edge.guard)

@@ -8,7 +8,6 @@ from sysmlc.recipe.checks import Finding, graphs
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.flow import STEPS, cycles, forward_edges, reachable
 from sysmlc.recipe.model import FlowGraph, Model, Node
-from sysmlc.recipe.remembered import remembered
 
 _FORK = samples.NODES.replace('"good?" subkind="decision"', '"both" subkind="fork"')
 _FORKED = ("s g", "g l", "l d", "d a", "d b", "a m", "b m", "m e")
@@ -48,7 +47,6 @@ def ways(model: Model, tables: Tables) -> Iterator[Finding]:
             yield Finding(NO_WAY, element or graph.element, {"graph": graph.id, "problem": problem})
 
 
-@remembered
 def _way_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     starts = [node.id for node in graph.nodes if node.kind == "initial"]
     ends = [node.id for node in graph.nodes if node.kind in ("final", "flowFinal")]
@@ -80,7 +78,6 @@ def nesting(model: Model, tables: Tables) -> Iterator[Finding]:
             yield Finding(BAD_NESTING, element or graph.element, facts)
 
 
-@remembered
 def _nesting_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     yield from _endless(graph)
     yield from _forks(graph)

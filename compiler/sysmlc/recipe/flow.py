@@ -1,21 +1,16 @@
 """Paths, cycles and times of a flow graph."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import lru_cache
 
 from msgspec import Struct
 
-from sysmlc.ir.components import strong_components
-from sysmlc.ir.ordering import in_topological_order
+from sysmlc.ir.algorithms import in_topological_order, strong_components
 from sysmlc.recipe.model import FlowGraph, Node, Range
-from sysmlc.recipe.remembered import remembered
 
 Cost = Callable[[Node], Range | None]
 
 STEPS = frozenset({"service", "function", "call", "action", "assign", "wait", "delay"})
 """Kinds of nodes that do something."""
-_REMEMBERED = 1024
-"""Graphs whose cycles are kept: each check of a recipe asks for them again."""
 
 
 def reachable(starts: Iterable[str], edges: Iterable[tuple[str, str]]) -> set[str]:
@@ -42,27 +37,19 @@ def entries(graph: FlowGraph, component: Iterable[str]) -> list[str]:
 
 def cycles(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> list[list[str]]:
     """Strongly connected parts that hold a cycle, each in the order of ``nodes``."""
-    return [list(part) for part in _cycles(tuple(nodes), tuple(edges))]
-
-
-@lru_cache(_REMEMBERED)
-def _cycles(
-    nodes: tuple[str, ...], edges: tuple[tuple[str, str], ...]
-) -> tuple[tuple[str, ...], ...]:
     following: dict[str, dict[str, None]] = {id: {} for id in nodes}
     for source, target in edges:
         following.setdefault(source, {})[target] = None
         following.setdefault(target, {})
     rank = {id: number for number, id in enumerate(following)}
     found = [
-        tuple(sorted(component, key=rank.__getitem__))
+        sorted(component, key=rank.__getitem__)
         for component in strong_components(following)
         if len(component) > 1 or component[0] in following[component[0]]
     ]
-    return tuple(sorted(found, key=lambda component: rank[component[0]]))
+    return sorted(found, key=lambda component: rank[component[0]])
 
 
-@remembered
 def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
     """The edges without those that close a cycle: what is left is acyclic."""
     ordered = [node.id for node in graph.nodes]

@@ -15,7 +15,7 @@ from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI_FRONTEND
 from sysmlc.ir import Edge, Graph, parse_text
-from sysmlc.ir.kept import PREFIX
+from sysmlc.ir.round_trip import PREFIX
 from sysmlc.passes import pipeline
 from sysmlc.passes.kept import UNREADABLE
 from sysmlc.sources import Source

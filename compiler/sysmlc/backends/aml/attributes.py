@@ -9,7 +9,7 @@ from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import APPROXIMATED, UNSAID_EDGE
 from sysmlc.backends.aml.values import text_of
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.measures import unit_of
+from sysmlc.ir.query.units import unit_of
 
 _LISTS = ("ListType", "OrderedListType")
 

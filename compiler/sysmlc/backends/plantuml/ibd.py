@@ -20,7 +20,6 @@ from sysmlc.backends.plantuml.guides import guides
 from sysmlc.backends.plantuml.sides import sides
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import generals, opposite
 from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterable
 
-from sysmlc.ir import Edge, Element, Graph, Kind, templates
-from sysmlc.ir.query import applications, lineage, redefined
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import applications, lineage, redefined, templates
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.ir.measures import is_quantity_kind, is_unit, quantity_kind_of, unit_of
+from sysmlc.ir.query.units import is_quantity_kind, is_unit, quantity_kind_of, unit_of
 from sysmlc.support.plantuml_text import lines
 
 

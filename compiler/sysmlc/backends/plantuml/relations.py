@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.ir import Edge, Element, Graph, Kind, templates
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import templates
 
 _SHAPES = {"composite": "*", "shared": "o"}
 _DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}

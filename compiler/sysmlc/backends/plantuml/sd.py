@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView
-from sysmlc.ir import Element, Graph, Kind, sequence
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.query import interactions as sequence
 from sysmlc.support.plantuml_text import label, plain, small, stack
 
 _WIDTH = 24

@@ -1,7 +1,8 @@
 """What sequence diagrams in PlantUML cannot say: messages that are on their way for a while."""
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind, sequence
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import interactions as sequence
 
 OVERTAKEN = rule(
     "SM710",

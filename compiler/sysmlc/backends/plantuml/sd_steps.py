@@ -9,8 +9,9 @@ from sysmlc.backends.plantuml.sd_messages import message_steps
 from sysmlc.backends.plantuml.sd_texts import arguments, operand_text
 from sysmlc.backends.plantuml.sd_walk import Walk
 from sysmlc.backends.plantuml.views import Step
-from sysmlc.ir import Edge, Element, Kind, sequence
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.graph import Graph
+from sysmlc.ir.query import interactions as sequence
 from sysmlc.support.plantuml_text import label, lines, plain, stack
 
 _FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])

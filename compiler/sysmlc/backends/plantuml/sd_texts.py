@@ -4,7 +4,8 @@ import re
 from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.ir import Edge, Element, Graph, Kind, sequence
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import interactions as sequence
 
 _TIMES = ("duration", "time")
 _TOOL_NAME = re.compile(r"(interaction ?)?operand[ _]?\d*", re.IGNORECASE)

@@ -7,7 +7,8 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.sd_texts import notes, time_text, times
 from sysmlc.backends.plantuml.views import Step
-from sysmlc.ir import Element, Graph, sequence
+from sysmlc.ir import Element, Graph
+from sysmlc.ir.query import interactions as sequence
 from sysmlc.support.plantuml_text import label, lines, stack
 
 _WIDTH = 44

@@ -9,7 +9,6 @@ from sysmlc.backends.sysml.references import chain, is_around
 from sysmlc.backends.sysml.structure import contents
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.flow_paths import flow_path
 from sysmlc.ir.query import (
     conforms,
     flow_directions,
@@ -17,6 +16,7 @@ from sysmlc.ir.query import (
     runs_both_ways,
     type_of,
 )
+from sysmlc.ir.query.relations import flow_path
 
 
 def connector(book: Book, entry: Entry) -> list[Line]:

@@ -9,8 +9,7 @@ from sysmlc.backends.sysml.relating import unsaid_edges
 from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.values import literal
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.branches import is_joined
-from sysmlc.ir.pins import pin_subkind
+from sysmlc.ir.query.activities import is_joined, pin_subkind
 from sysmlc.logic.expressions.expression import (
     ExpressionError,
     parse_expression,

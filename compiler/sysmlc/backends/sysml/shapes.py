@@ -6,8 +6,8 @@ from msgspec import Struct
 
 from sysmlc.backends.sysml.inherited import inherited
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.branches import is_joined
 from sysmlc.ir.query import type_of
+from sysmlc.ir.query.activities import is_joined
 
 
 class Shape(Struct, frozen=True):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from sysmlc.backends.uml.hrefs import href_of
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.kept import PREFIX
+from sysmlc.ir.round_trip import PREFIX
 
 _ADDED = frozenset({Edge.OWNS, Edge.FEATURE})
 """Edges that ownership says, or that passes add again."""

@@ -12,7 +12,7 @@ from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.frontends.sysml.verdicts import Verdicts
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
-from sysmlc.ir.branches import is_joined
+from sysmlc.ir.query.activities import is_joined
 from sysmlc.language.tree import Document, Node, Reference, Relation
 
 if TYPE_CHECKING:

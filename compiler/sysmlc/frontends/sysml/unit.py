@@ -15,7 +15,7 @@ from sysmlc.frontends.sysml.places import Home
 from sysmlc.frontends.sysml.strays import tell
 from sysmlc.frontends.sysml.usage import ByKind, accepted, by_kind, flowing, together
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.ir.pins import pin_subkind
+from sysmlc.ir.query.activities import pin_subkind
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document, Node
 from sysmlc.support.recursion import allow_recursion

@@ -4,26 +4,25 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from functools import partial
 
-from sysmlc.ir.compare.alike import by_likeness, by_move
-from sysmlc.ir.compare.change import Change, What
-from sysmlc.ir.compare.colours import Palette
+from sysmlc.ir.compare.change import Change, Ref, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import BETWEEN, Fact
-from sysmlc.ir.compare.only import only, owner_of, ref_of
+from sysmlc.ir.compare.likeness import by_likeness, by_move
 from sysmlc.ir.compare.pairs import Pairs, Token, by_id, by_name
 from sysmlc.ir.compare.plants import (
     holders,
     is_own_class,
     is_part_instance,
+    is_told_of_another,
+    own_classes,
     represented,
 )
+from sysmlc.ir.compare.refinement import Palette, by_choice, by_surroundings
 from sysmlc.ir.compare.side import Side
-from sysmlc.ir.compare.surroundings import by_choice, by_surroundings
-from sysmlc.ir.compare.titles import ends_in_full, exactly, title, word
-from sysmlc.ir.compare.units import MEASURES, UNIT, is_same_but_for_unit
+from sysmlc.ir.compare.titles import ends_in_full, exactly, title, whole, word
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.kinds import Edge
+from sysmlc.ir.kinds import Edge, Kind
 
 _Said = list[tuple[tuple[Token, Token], Fact]]
 
@@ -227,3 +226,81 @@ def _change(
         old=ref_of(pairs.old, old),
         new=ref_of(pairs.new, new),
     )
+
+
+def only(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
+    """Additions or removals: the topmost elements that are in no pair."""
+    known = pairs.new_of if side is pairs.old else pairs.old_of
+    for owner, children in side.things.items():
+        if owner is None or owner in known or _is_transparent(side, side.graph[owner], known):
+            for child in children:
+                if not (child.id in known or is_external(child) or _follows(side, child, known)):
+                    yield _alone(side, child, what, known)
+
+
+def _is_transparent(side: Side, owner: Element, known: Collection[str]) -> bool:
+    """Whether what it owns is told by itself: a new class of an InternalElement that is not new."""
+    is_new = owner.id not in known and is_own_class(owner)
+    return is_new and any(one.id in known for one in holders(side, owner))
+
+
+def _follows(side: Side, element: Element, known: Collection[str]) -> bool:
+    """Whether it is there only because of something else that is told.
+
+    What a message does at its ends comes and goes with the message.
+    """
+    if element.kind is Kind.OCCURRENCE:
+        into = side.into.get(element.id, ())
+        return any(one.kind is Kind.MESSAGE and one.id not in known for _, one in into)
+    return is_told_of_another(side, element, known)
+
+
+def _alone(side: Side, element: Element, what: What, known: Collection[str]) -> Change:
+    tops = [element, *own_classes(side, element)]
+    contents = sum(one.id not in known for top in tops for one in side.below(top)) - len(tops)
+    ref = ref_of(side, element)
+    is_old = what is What.REMOVED
+    return Change(
+        what=what,
+        owner=owner_of(side, element),
+        name=title(side, element),
+        kind=word(side, element),
+        contents=contents,
+        old=ref if is_old else None,
+        new=None if is_old else ref,
+    )
+
+
+def ref_of(side: Side, element: Element) -> Ref:
+    """The element for who wants to find it again."""
+    return Ref(element.id, whole(side, element), element.source, element.ordinal)
+
+
+def owner_of(side: Side, element: Element) -> str:
+    """Qualified name of the owner; empty when there is none."""
+    owner = side.graph.owner(element)
+    return "" if owner is None else whole(side, owner)
+
+
+UNIT = frozenset({"unit"})
+"""Names of the attribute that tells the unit."""
+MEASURES = frozenset({Kind.UNIT.value, Kind.QUANTITY_KIND.value})
+"""Names of what a type says of its unit in details."""
+
+
+def is_same_but_for_unit(pairs: Pairs, old: Element, new: Element) -> bool:
+    """Whether the types of two values differ in nothing but the unit."""
+    return _types(pairs.old, old, pairs.old_token) == _types(pairs.new, new, pairs.new_token)
+
+
+def _types(side: Side, element: Element, to_token: Callable[[Element], Token]) -> list[Token]:
+    found = side.out.get(element.id, {}).get(Edge.TYPED_BY, ())
+    return [to_token(_without_unit(side, one)) for one in found]
+
+
+def _without_unit(side: Side, type_: Element) -> Element:
+    """The type behind one that only ties it to a unit (docs/automationml.md)."""
+    is_made = type_.kind is Kind.DATA_TYPE and type_.attrs.get("library") and not type_.source
+    if not (is_made and type_.name.endswith("]")):
+        return type_
+    return next(iter(side.out.get(type_.id, {}).get(Edge.SPECIALIZES, ())), type_)

@@ -1,6 +1,9 @@
 """What of a graph is content of the model, and what only tells of files, tools and passes."""
 
+from collections.abc import Iterable
+
 from sysmlc.ir.element import Element
+from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS
 
@@ -130,3 +133,16 @@ def is_detail(element: Element, owner: Element | None) -> bool:
         return element.kind in _OF_PACKAGES
     is_guard = element.kind is Kind.CONSTRAINT and (not element.name or owner.kind in _GUARDED)
     return is_guard or element.kind in DETAILS
+
+
+_WORDS = frozenset({"id", "name", "value", "default", "default_value", "stereotype", "tag", "xml"})
+"""``id``, and keys of facts that are no attributes in every model."""
+_NEVER = frozenset({"source", "trace"})
+"""Where elements are and what was made of them is never compared; ``id,source,trace`` says so."""
+
+
+def words(graphs: Iterable[Graph]) -> frozenset[str]:
+    """All words that may make a difference in these models, and the common ones."""
+    found = {name for graph in graphs for element in graph for name in element.attrs}
+    found |= {edge.value for edge in Edge} | {kind.value for kind in DETAILS}
+    return frozenset(found | _WORDS | WORDS | IMPLIED | _NEVER)

@@ -124,3 +124,13 @@ def _allocated(
 def opposite(direction: str | None) -> str | None:
     """The direction seen from the other side; ``inout`` and None stay."""
     return None if direction is None else _OPPOSITE.get(direction, direction)
+
+
+def flow_path(graph: Graph, flow: Element, edge: Edge) -> list[Element]:
+    """Parts of the owner of an item flow that lead to the feature at one of its ends.
+
+    Empty where the feature alone says it. ``edge`` is FLOW_SOURCE or FLOW_TARGET.
+    """
+    found = flow.attrs.get("source_path" if edge is Edge.FLOW_SOURCE else "target_path")
+    ids = found if isinstance(found, tuple) else ()
+    return [one for id_ in ids if (one := graph.get(str(id_))) is not None]

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 
 from msgspec import Struct
 
-from sysmlc.ir.components import strong_components
+from sysmlc.ir.algorithms import strong_components
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,

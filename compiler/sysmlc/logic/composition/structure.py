@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.flow_paths import flow_path
+from sysmlc.ir.query.relations import flow_path
 
 ITSELF = ""
 """Path of the block whose parts are looked at."""

@@ -2,8 +2,8 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.measures import unit_of
 from sysmlc.ir.query import features, type_of
+from sysmlc.ir.query.units import unit_of
 from sysmlc.passes.classify.constraint_rules import (
     NO_CONSTRAINT_BLOCK,
     UNBOUND_PARAMETER,

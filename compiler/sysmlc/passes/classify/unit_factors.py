@@ -7,7 +7,7 @@ or an instance of Rational.
 from collections.abc import Iterator
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.measures import is_unit
+from sysmlc.ir.query.units import is_unit
 
 
 def give_symbols(graph: Graph) -> None:

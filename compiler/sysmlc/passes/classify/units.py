@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
-from sysmlc.ir.measures import is_quantity_kind, is_unit
 from sysmlc.ir.query import generals
+from sysmlc.ir.query.units import is_quantity_kind, is_unit
 from sysmlc.passes.classify.tags import elements, value
 from sysmlc.passes.classify.unit_factors import give_symbols
 

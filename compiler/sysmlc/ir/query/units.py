@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.query import STRUCTURAL_FEATURES, generals, type_of
+from sysmlc.ir.query.classifiers import STRUCTURAL_FEATURES, generals, type_of
 
 
 def is_unit(element: Element) -> bool:

@@ -4,6 +4,8 @@ networkx has them, too, but takes longer to import than most models take to be c
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from graphlib import TopologicalSorter
+from heapq import heappop, heappush
 
 Successors = Mapping[str, Iterable[str]]
 
@@ -58,3 +60,23 @@ class _Search:
         while not component or component[-1] != head:
             component.append(self._waiting.popitem()[0])
         return component
+
+
+def in_topological_order(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> Iterator[str]:
+    """Iterate over nodes so that sources precede targets; the least id first where several can be.
+
+    Raise graphlib.CycleError, a ValueError, for a graph with a cycle.
+    """
+    sorter: TopologicalSorter[str] = TopologicalSorter(dict.fromkeys(nodes, ()))
+    for source, target in edges:
+        sorter.add(target, source)
+    sorter.prepare()
+    # get_ready() returns a batch in the order of addition: a heap makes the order depend on the
+    # ids alone, so that it is the same when a model lists its elements in another order.
+    ready: list[str] = []
+    while sorter.is_active():
+        for node in sorter.get_ready():
+            heappush(ready, node)
+        node = heappop(ready)
+        yield node
+        sorter.done(node)
