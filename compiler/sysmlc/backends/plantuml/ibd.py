@@ -21,6 +21,7 @@ from sysmlc.backends.plantuml.sides import sides
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
+from sysmlc.ir.query.units import unit_of
 from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 
 FORMS = {"in": "portin", "out": "portout"}
