@@ -24,10 +24,10 @@ def _texts(folder: Path) -> Iterator[tuple[str, str, str]]:
 
 def scan(folder: Path, *_arguments: str) -> tuple[Measured, int]:
     """The scanner alone: the least that any parser in Python needs."""
-    from sysmlc.language.text import tables
-    from sysmlc.language.text.scan import scan as tokens
+    from sysmlc.language.text import lalr
+    from sysmlc.language.text.lexer import tokenize as tokens
 
-    types = {name: tables.load(name).types for name in ("kerml", "sysml")}
+    types = {name: lalr.load_tables(name).types for name in ("kerml", "sysml")}
     texts = list(_texts(folder))
     measured = Measured()
     for text, _, language in texts:

@@ -13,8 +13,8 @@ class ParserTablesHook(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         root = Path(self.root)
         sys.path.insert(0, str(root / "compiler"))
-        from sysmlc.language.text import tables
+        from sysmlc.language.text import lalr
 
         for language in ("kerml", "sysml"):
-            path = tables.write(language, tables.SHIPPED)
+            path = lalr.write_tables(language, lalr.SHIPPED)
             build_data["artifacts"].append(path.relative_to(root).as_posix())

@@ -11,7 +11,7 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
-from sysmlc.language.exchange import link, read
+from sysmlc.language.interchange import link, read
 from sysmlc.sources import Source
 from sysmlc.support.output import Output
 

@@ -53,7 +53,7 @@ class Answer:
         return found
 
 
-class Asked:
+class GeneralizationQueries:
     """A folder with a hostile file, and the process that is asked about it."""
 
     def __init__(self, guard: Guard, folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fuzz.answers import Asked
+from fuzz.answers import GeneralizationQueries
 from fuzz.guard import Guard
 
 
@@ -15,4 +15,4 @@ def guard():
 @pytest.fixture
 def asked(guard, tmp_path):
     """An empty folder and the process that answers."""
-    return Asked(guard, tmp_path)
+    return GeneralizationQueries(guard, tmp_path)

@@ -6,7 +6,7 @@ from textwrap import dedent
 from sysmlc.diagnostics import Sink
 from sysmlc.language.library import Library, core
 from sysmlc.language.names import Model, resolve
-from sysmlc.language.names.adding import implied_relations
+from sysmlc.language.names.implied_relations import implied_relations
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
 

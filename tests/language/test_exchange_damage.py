@@ -8,8 +8,8 @@ from test_exchange_projects import archive
 from v2_trees import interchange, owning, relating
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import link, open_archive, read, write
-from sysmlc.language.layout import layout
+from sysmlc.language.formatter import layout
+from sysmlc.language.interchange import link, open_archive, read, write
 from sysmlc.language.text import parse
 from sysmlc.sources import Source, SourceError
 

@@ -7,10 +7,10 @@ import pytest
 
 from long_runs import quick_first
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import Files, interchange_path, link, read, write
+from sysmlc.language.interchange import Files, interchange_path, link, read, write
 from sysmlc.language.library import find
 from sysmlc.language.names import resolve
-from sysmlc.language.names.adding import implied_redefinitions
+from sysmlc.language.names.implied_relations import implied_redefinitions
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
 
@@ -54,10 +54,10 @@ def shape(documents):
 
 
 def _node(node, roots):
-    facts = {name: fact for name, fact in node.facts.items() if name != "isPrefix"}
+    facts = {name: fact for name, fact in node.attributes.items() if name != "isPrefix"}
     role = "default" if node.role == "default =" else node.role
     relations = [(one.kind, _targets(one.reference, roots)) for one in node.relations]
-    said = (node.kind, node.name, node.short, node.membership, role, node.visibility)
+    said = (node.kind, node.name, node.short_name, node.membership, role, node.visibility)
     return (*said, len(node.members), facts, relations)
 
 

@@ -8,8 +8,8 @@ import zipfile
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import open_archive, project, used
-from sysmlc.language.exchange.usages import fits
+from sysmlc.language.interchange import open_archive, project, used
+from sysmlc.language.interchange.projects import fits
 from sysmlc.sources import Source
 
 TEXT = b"package Robots;"

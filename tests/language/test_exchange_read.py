@@ -4,7 +4,7 @@ import pytest
 from v2_trees import interchange, outline, owning, reading, reading_file, relating
 
 from sysmlc.diagnostics import Place, Sink
-from sysmlc.language.exchange import link, read
+from sysmlc.language.interchange import link, read
 from sysmlc.sources import Fault, Source, SourceError
 
 

@@ -7,7 +7,7 @@ from lxml import etree
 from v2_trees import outline, reading_file
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import interchange_path, link, read, write
+from sysmlc.language.interchange import interchange_path, link, read, write
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, Reference, Relation
 from sysmlc.sources import Source
@@ -19,21 +19,21 @@ ID = "{http://www.omg.org/XMI}id"
 def document(*members, path="m.sysml", language="sysml"):
     root = Node("Namespace")
     for member in members:
-        root.own(member)
+        root.add_member(member)
     return Document(path, language, root)
 
 
 def made(kind, name=None, *members, membership="OwningMembership", **facts):
     node = Node(kind, name, membership=membership)
-    node.facts.update(facts)
+    node.attributes.update(facts)
     for member in members:
-        node.own(member)
+        node.add_member(member)
     return node
 
 
 def relate(node, kind, *targets):
     reference = Reference(tuple((target.name or "?",) for target in targets))
-    reference.lead(list(targets))
+    reference.set_targets(list(targets))
     node.relations.append(Relation(kind, reference))
     return node
 
@@ -228,7 +228,7 @@ def test_line_ends_and_markup_of_texts_come_back():
     text, messages = written(document(made("Comment", None, body=body)))
     again, told = reading_file(text)
     assert (messages, told) == ([], [])
-    assert again.root.members[0].facts["body"] == body
+    assert again.root.members[0].attributes["body"] == body
 
 
 def test_ids_are_the_same_in_every_run_and_follow_names():

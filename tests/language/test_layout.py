@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.layout import layout
+from sysmlc.language.formatter import layout
 from sysmlc.language.text import parse
 
 CASES = {
@@ -234,13 +234,13 @@ def shape(document):
     while stack:
         node, depth = stack.pop()
         relations = [(one.kind, one.reference.chain) for one in node.relations]
-        facts = {name: plain(fact) for name, fact in node.facts.items()}
+        facts = {name: plain(fact) for name, fact in node.attributes.items()}
         found.append(
             (
                 depth,
                 node.kind,
                 node.name,
-                node.short,
+                node.short_name,
                 node.membership,
                 node.role,
                 node.visibility,

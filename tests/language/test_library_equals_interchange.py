@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import link, read
+from sysmlc.language.interchange import link, read
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
 
@@ -43,10 +43,10 @@ def written(name):
 
 
 def described(node):
-    facts = {key: value for key, value in node.facts.items() if key not in _OURS}
+    facts = {key: value for key, value in node.attributes.items() if key not in _OURS}
     return (
         node.kind,
-        node.short,
+        node.short_name,
         node.name,
         node.membership,
         node.role,

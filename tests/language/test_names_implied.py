@@ -2,7 +2,7 @@
 
 from resolving import element, implied, leads, resolved
 
-from sysmlc.language.names.adding import implied_relations
+from sysmlc.language.names.implied_relations import implied_relations
 
 
 def test_definitions_and_usages_have_the_bases_of_their_metaclass():

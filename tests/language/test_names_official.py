@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from sysmlc.diagnostics import Severity, Sink
-from sysmlc.language.exchange import link
-from sysmlc.language.exchange import read as read_interchange
+from sysmlc.language.interchange import link
+from sysmlc.language.interchange import read as read_interchange
 from sysmlc.language.library import Library, find
 from sysmlc.language.names import Model, resolve
 from sysmlc.language.text import parse

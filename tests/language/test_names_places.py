@@ -4,9 +4,8 @@ from resolving import library
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.language.names import resolve
-from sysmlc.language.places import place
 from sysmlc.language.text import parse
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, Node, locate
 from sysmlc.sources import Source
 
 
@@ -30,6 +29,6 @@ def test_a_name_is_found_behind_names_with_quotes_in_them():
 
 
 def test_what_stands_in_an_interchange_file_is_found_by_its_element():
-    assert place(Document("plant.sysmlx", "sysml", Node("Namespace")), 7) == Place(
+    assert locate(Document("plant.sysmlx", "sysml", Node("Namespace")), 7) == Place(
         "plant.sysmlx", ordinal=7
     )

@@ -136,5 +136,5 @@ def _within(made, relation):
     """The model as it is while a redefinition is looked up: it hides nothing yet."""
     model = Model(made, library())
     if relation.kind == "Redefinition":
-        relation.reference.lead([])
+        relation.reference.set_targets([])
     return model

@@ -43,7 +43,7 @@ def value(text):
 
 def shape(node):
     relations = [(one.kind, one.reference.chain) for one in node.relations]
-    return (node.kind, node.facts, relations, node.role, [shape(one) for one in node.members])
+    return (node.kind, node.attributes, relations, node.role, [shape(one) for one in node.members])
 
 
 @pytest.mark.parametrize("text", SAME)

@@ -1,7 +1,7 @@
 """Trees of KerML and SysML v2 as lines, and small interchange files to make them from."""
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.exchange import read
+from sysmlc.language.interchange import read
 from sysmlc.language.tree import Node
 from sysmlc.sources import Source
 
@@ -54,7 +54,7 @@ def outline(node: Node, depth: int = 0) -> list[str]:
 
 def line(node: Node) -> str:
     parts = [node.membership or "-", node.role and f"({node.role})", node.visibility, node.kind]
-    parts += [node.short and f"<{node.short}>", node.name]
-    parts += [f"{name}={value}" for name, value in sorted(node.facts.items())]
+    parts += [node.short_name and f"<{node.short_name}>", node.name]
+    parts += [f"{name}={value}" for name, value in sorted(node.attributes.items())]
     parts += [f"{one.kind}->{one.reference}" for one in node.relations]
     return " ".join(part for part in parts if part)

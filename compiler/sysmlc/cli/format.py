@@ -144,7 +144,7 @@ def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Tex
     """The text laid out, or the findings of the parser."""
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
-    from sysmlc.language.layout import layout
+    from sysmlc.language.formatter import layout
     from sysmlc.language.text import parse
     from sysmlc.sources import Source
 

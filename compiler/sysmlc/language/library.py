@@ -55,7 +55,7 @@ class Library:
         """Return the names of the root members of all files, sorted."""
         documents = map(self._parse, self.paths())
         members = (member for document in documents for member in document.root.members)
-        names = {name for member in members for name in (member.name, member.short)}
+        names = {name for member in members for name in (member.name, member.short_name)}
         return sorted(name for name in names if name is not None)
 
     def packages(self, name: str) -> list[Node]:
@@ -80,7 +80,7 @@ class Library:
         """
         return [self._parsed[path] for path in sorted(self._loaded)]
 
-    def forget_targets(self) -> None:
+    def clear_targets(self) -> None:
         """Remove what references were resolved to, so that another model can use the library.
 
         A model may have a package of the same name as one of the library, and names in the library
@@ -90,7 +90,7 @@ class Library:
         for document in self._parsed.values():
             for node in document.root.walk():
                 for relation in node.relations:
-                    relation.reference.forget_targets()
+                    relation.reference.clear_targets()
 
     def _parse(self, path: str) -> Document:
         document = self._parsed.get(path)
@@ -105,7 +105,7 @@ class Library:
         roots: list[Node] = []
         for path in paths:
             members = self._parse(path).root.members
-            named = [member for member in members if name in (member.name, member.short)]
+            named = [member for member in members if name in (member.name, member.short_name)]
             if named:
                 self._loaded.add(path)
                 roots += named
@@ -167,7 +167,7 @@ def core() -> Library:
 def _reuse_library(sources: tuple[Source, ...], label: str, *, is_core: bool = False) -> Library:
     """Return the library of these files with what this process has parsed of it before."""
     library = _make_library(sources, label, is_core)
-    library.forget_targets()
+    library.clear_targets()
     return library
 
 

@@ -1,4 +1,8 @@
-"""The metaclasses of KerML and SysML: which specialises which (KerML 1.0 8.3, SysML 2.0 8.3)."""
+"""The metaclasses of KerML and SysML v2: which specialises which, and what follows for elements.
+
+KerML 1.0, 8.3; SysML 2.0, 8.3 and 8.2.2.6.2, note 1."""
+
+from sysmlc.language.tree import Node
 
 _GENERALS = """\
 Element: AnnotatingElement Namespace Relationship
@@ -137,3 +141,40 @@ def is_a(kind: str, general: str) -> bool:
 def kinds_of(general: str) -> frozenset[str]:
     """All metaclasses that are ``general`` or specialise it."""
     return frozenset(kind for kind, all_of in ALL_GENERALS.items() if general in all_of)
+
+
+USAGES = kinds_of("Usage")
+_REFERENTIAL = (
+    kinds_of("ReferenceUsage")
+    | kinds_of("AttributeUsage")
+    | kinds_of("EventOccurrenceUsage")
+    | kinds_of("BindingConnectorAsUsage")
+    | kinds_of("SuccessionAsUsage")
+)
+_FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
+_PARAMETERS = kinds_of("ParameterMembership")
+_PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
+_ATTRIBUTES = kinds_of("AttributeDefinition") | kinds_of("AttributeUsage")
+
+
+def is_composite(node: Node) -> bool:
+    """Whether a usage is a composite feature: not ``ref``, and nothing makes it referential.
+
+    Referential are attributes, events and performances, binding and succession connectors,
+    parameters, ends, what no type owns as a feature, and ports except within ports.
+    """
+    if node.kind in _REFERENTIAL or node.attributes.get("isReference") or is_end(node):
+        return False
+    if node.membership not in _FEATURE_MEMBERSHIPS or node.membership in _PARAMETERS:
+        return False
+    if "direction" in node.attributes:
+        return False
+    owner = node.owner.kind if node.owner else ""
+    if is_a(node.kind, "PortUsage"):
+        return owner in _PORT_OWNERS
+    return owner not in _ATTRIBUTES
+
+
+def is_end(node: Node) -> bool:
+    """Whether a feature is an end: it says so, or its membership does."""
+    return node.membership == "EndFeatureMembership" or node.attributes.get("isEnd") is True

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from sysmlc.language.operators import LEVEL, LEVELS
+from sysmlc.language.text.builders.operators import PRECEDENCE, PRECEDENCE_LEVELS
 from sysmlc.language.tree import Node, Reference
 
 _CONDITIONAL = -1
 """How tightly ``if`` binds: less than all binary operators."""
-_UNARY = len(LEVELS)
+_UNARY = len(PRECEDENCE_LEVELS)
 _PRIMARY = _UNARY + 1
 _TYPED = {"istype", "hastype", "@", "@@", "as", "meta"}
 _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"})
@@ -52,7 +52,7 @@ def _name(node: Node) -> str:
 
 
 def _reference(reference: Reference) -> str:
-    from sysmlc.language.exchange.identity import escaped
+    from sysmlc.language.interchange.element_ids import escaped
 
     links = ("::".join(n if n == "$" else escaped(n) for n in names) for names in reference.chain)
     return ".".join(links)
@@ -68,11 +68,11 @@ def _type(node: Node) -> str:
 
 
 def _operator(node: Node) -> tuple[str, int]:
-    operator, args = str(node.facts.get("operator", "")), _arguments(node)
+    operator, args = str(node.attributes.get("operator", "")), _arguments(node)
     if operator in _TYPED:
         left = [one for one in args if one.kind != "Feature"]
-        before = f"{_within(left[0], LEVEL[operator])} " if left else ""
-        return f"{before}{operator} {_type(node)}", LEVEL[operator]
+        before = f"{_within(left[0], PRECEDENCE[operator])} " if left else ""
+        return f"{before}{operator} {_type(node)}", PRECEDENCE[operator]
     if operator == "all":
         return f"all {_type(node)}", _UNARY
     if operator == "if" and len(args) == 3:
@@ -89,11 +89,11 @@ def _operator(node: Node) -> tuple[str, int]:
 def _binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
     if operator == ",":
         rest = _written(right)[0]
-        is_list = right.facts.get("operator") == ","
+        is_list = right.attributes.get("operator") == ","
         return f"({_within(left, _CONDITIONAL)}, {rest[1:-1] if is_list else rest})", _PRIMARY
     if operator == "[":
         return f"{_within(left, _PRIMARY)} [{_bare(right)}]", _PRIMARY
-    level = LEVEL.get(operator)
+    level = PRECEDENCE.get(operator)
     if level is None:
         raise _UnsaidError(operator)
     first, second = (level + 1, level) if operator in ("^", "**") else (level, level + 1)
@@ -104,7 +104,7 @@ def _binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
 def _bare(node: Node) -> str:
     """A sequence without its parentheses, where others stand around it."""
     text, _ = _written(node)
-    return text[1:-1] if node.facts.get("operator") == "," else text
+    return text[1:-1] if node.attributes.get("operator") == "," else text
 
 
 def _index(node: Node) -> tuple[str, int]:
@@ -141,7 +141,7 @@ def _construct(node: Node) -> tuple[str, int]:
 
 
 def _literal(node: Node) -> tuple[str, int]:
-    value = node.facts.get("value")
+    value = node.attributes.get("value")
     if isinstance(value, bool):
         return ("true" if value else "false"), _PRIMARY
     if isinstance(value, str):

@@ -1,29 +1,32 @@
-"""The tree of a model in KerML or SysML v2: elements by metaclass, whatever notation they came in.
+"""Syntax trees of KerML and SysML v2: elements by metaclass, whatever notation they came in.
 
-It is the abstract syntax of the specifications (KerML 1.0, 8.3; SysML 2.0, 8.3), folded where a
-relationship only says how its owner owns one element: such a membership is two texts of the
-member, ``membership`` and ``role``. What refers to other elements by name is a ``Relation``.
+A tree is the abstract syntax of the specifications (KerML 1.0, 8.3; SysML 2.0, 8.3). A relationship
+that only states how an owner owns one element is folded into two strings of that member,
+``membership`` and ``role``. A reference to another element by name is a ``Relation``.
 """
 
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from sysmlc.diagnostics import Place, Subject
+
 if TYPE_CHECKING:
     from sysmlc.sources import Source
 
-Fact = str | bool | int | float
-"""What an attribute of a metaclass may hold."""
+AttributeValue = str | bool | int | float
+"""Values that an attribute of a metaclass may have."""
 
 
 class Reference:
-    """The name of another element: ``A::B`` or a feature chain ``A::b.c.d``, as the text says it.
+    """The name of another element as it is written: ``A::B`` or a feature chain ``A::b.c.d``.
 
-    ``chain`` has a tuple of names for each link of the chain, quotes and escapes undone; a first
-    name ``$`` is the global scope. ``targets`` has the element of each link once names are
-    resolved, and is None before; what leads nowhere ends the list early. ``target`` is the element
-    that the whole chain leads to, if it was found.
+    ``chain`` has a tuple of names for each link of the chain, without quotes and escapes; a first
+    name ``$`` stands for the global scope. ``targets`` has the element of each link. It is None
+    until the reference is resolved, and shorter than the chain if a link was not found. ``target``
+    is the element that the whole chain leads to, or None.
     """
 
     __slots__ = ("chain", "end", "start", "target", "targets")
@@ -35,12 +38,12 @@ class Reference:
         self.target: Node | None = None
         self.targets: list[Node] | None = None
 
-    def lead(self, targets: "list[Node]") -> None:
-        """Say the elements that the links of the chain lead to, as far as they were found."""
+    def set_targets(self, targets: "list[Node]") -> None:
+        """Resolve the links of the chain to ``targets``, which ends before the first lost link."""
         self.targets = targets
         self.target = targets[-1] if targets and len(targets) == len(self.chain) else None
 
-    def forget_targets(self) -> None:
+    def clear_targets(self) -> None:
         """Make the reference unresolved again."""
         self.target = self.targets = None
 
@@ -54,12 +57,16 @@ class Reference:
 class Relation:
     """A relationship of a node to an element that it does not own.
 
-    ``kind`` is the metaclass (``FeatureTyping``, ``Redefinition``, ``ConjugatedPortTyping``,
-    ``Annotation`` ...), ``Membership`` for a member that is only named (the referent of an
-    expression, the element of an alias, the source of a transition), or, where the node is the
-    relationship itself, the name of the end: ``client`` and ``supplier`` of a dependency,
-    ``importedNamespace``, ``importedMembership``, ``subclassifier`` ... Those that the
-    specification adds to what a text says, ``names.adding`` gives.
+    ``kind`` is one of these:
+
+    - the metaclass of the relationship (``FeatureTyping``, ``Redefinition``, ``Annotation`` ...)
+    - ``Membership`` for an element that is only named: the referent of an expression, the element
+      of an alias, the source of a transition
+    - the name of an end, where the node is the relationship itself: ``client`` and ``supplier`` of
+      a dependency, ``importedNamespace``, ``importedMembership``, ``subclassifier`` ...
+
+    A tree has the relations that the text states. ``names.implied_relations`` computes those that
+    the specification adds.
     """
 
     __slots__ = ("kind", "reference")
@@ -73,23 +80,24 @@ class Relation:
 
 
 class Node:
-    """An element: its metaclass, its names, what it is related to, what it owns.
+    """An element: its metaclass (``kind``), names, attributes, relations and owned members.
 
-    ``membership`` is the metaclass of the membership by which its owner owns it
-    (``OwningMembership``, ``FeatureMembership``, ``FeatureValue``, ``SubjectMembership`` ...),
-    ``role`` what that membership says beside: ``=``, ``:=``, ``default``, ``default =`` or
-    ``default :=`` of a feature value, ``entry``, ``do``, ``exit`` of a subaction, ``trigger``,
-    ``guard``, ``effect`` of a transition, ``assumption``, ``requirement`` of a constraint.
-    ``visibility`` is empty when the text does not say it. ``facts`` are the attributes of the
+    ``membership`` is the metaclass of the membership by which the owner owns the node
+    (``OwningMembership``, ``FeatureMembership``, ``FeatureValue``, ``SubjectMembership`` ...).
+    ``role`` is the attribute of that membership: ``=``, ``:=``, ``default``, ``default =`` or
+    ``default :=`` of a feature value; ``entry``, ``do`` or ``exit`` of a subaction; ``trigger``,
+    ``guard`` or ``effect`` of a transition; ``assumption`` or ``requirement`` of a constraint.
+    ``visibility`` is empty unless the text states it. ``attributes`` has the attributes of the
     metaclass that the text states, by their names there (``isAbstract``, ``direction``,
-    ``operator``, ``value``, ``body`` ...); what it leaves at the default is not in it.
-    ``start`` and ``end`` are offsets of characters in the text of the document, -1 without one;
-    ``name_start`` is that of the name, else of the first token that belongs to nothing else.
+    ``operator``, ``value``, ``body`` ...), and none that has its default value.
+    ``start`` and ``end`` are character offsets in the text of the document, -1 without a text.
+    ``name_start`` is the offset of the name, or of the first token after prefixes and visibility
+    for an element without a name.
     """
 
     __slots__ = (
+        "attributes",
         "end",
-        "facts",
         "kind",
         "members",
         "membership",
@@ -98,7 +106,7 @@ class Node:
         "owner",
         "relations",
         "role",
-        "short",
+        "short_name",
         "start",
         "visibility",
     )
@@ -108,7 +116,7 @@ class Node:
         kind: str,
         name: str | None = None,
         *,
-        short: str | None = None,
+        short_name: str | None = None,
         membership: str = "",
         role: str = "",
         visibility: str = "",
@@ -117,26 +125,26 @@ class Node:
     ) -> None:
         self.kind = kind
         self.name = name
-        self.short = short
+        self.short_name = short_name
         self.owner: Node | None = None
         self.membership = membership
         self.role = role
         self.visibility = visibility
-        self.facts: dict[str, Fact] = {}
+        self.attributes: dict[str, AttributeValue] = {}
         self.relations: list[Relation] = []
         self.members: list[Node] = []
         self.start = start
         self.end = end
         self.name_start = start
 
-    def own(self, member: "Node") -> "Node":
-        """Take ``member`` as the last of the members; it is returned."""
+    def add_member(self, member: "Node") -> "Node":
+        """Append ``member`` to the owned members, and return it."""
         member.owner = self
         self.members.append(member)
         return member
 
     def walk(self) -> Iterator["Node"]:
-        """The node and all below it, owners first, in the order of the text."""
+        """Yield the node and all below it, owners first, in the order of the text."""
         stack = [self]
         while stack:
             node = stack.pop()
@@ -144,13 +152,13 @@ class Node:
             stack.extend(reversed(node.members))
 
     def __repr__(self) -> str:
-        return f"<{self.kind} {self.name or self.short or '?'}>"
+        return f"<{self.kind} {self.name or self.short_name or '?'}>"
 
 
 class Document(Struct, frozen=True, eq=False):
-    """One file: its path relative to the unit's root, its language, its text, its tree.
+    """One file: its path relative to the unit's root, its language, its text and its tree.
 
-    ``language`` is ``sysml`` or ``kerml``; ``text`` is empty for interchange files, whose places
+    ``language`` is ``sysml`` or ``kerml``. ``text`` is empty for interchange files, whose locations
     are ordinals of XML elements. ``root`` is the root namespace (KerML 8.2.3.4.1).
     """
 
@@ -159,3 +167,37 @@ class Document(Struct, frozen=True, eq=False):
     root: Node
     text: str = ""
     source: "Source | None" = None
+
+
+def find_root(node: Node) -> Node:
+    """Return the root namespace of the document that contains ``node``."""
+    while node.owner is not None:
+        node = node.owner
+    return node
+
+
+def make_subject(document: Document, node: Node, start: int) -> Subject:
+    """Return ``node`` as the subject of a diagnostic at character ``start``, if that is known."""
+    return Subject(node.name or "", place=locate(document, start if start >= 0 else node.start))
+
+
+def locate(document: Document, start: int) -> Place:
+    """Return the location of a character of a text, or of an XML element of an interchange file."""
+    if not document.text:
+        return Place(document.path, ordinal=start)
+    return Place(document.path, offset=byte_offset(document, start))
+
+
+def byte_offset(document: Document, start: int) -> int:
+    """Return the offset in the file, in bytes, of a character of the text; -1 stays -1."""
+    if start < 0:
+        return start
+    text = document.text
+    offset = start if text.isascii() else len(text[:start].encode("utf-8", "replace"))
+    return byte_order_mark_length(document) + offset
+
+
+def byte_order_mark_length(document: Document) -> int:
+    """Return the number of bytes of the byte order mark before the text."""
+    is_marked = document.source is not None and document.source.data.startswith(BOM_UTF8)
+    return len(BOM_UTF8) if is_marked else 0

@@ -29,7 +29,7 @@ def _names(model: Model, base: str) -> set[str]:
     if found is None:
         raise KeyError(base)
     seen = [one for one in model.members(found) if one.visibility != "private"]
-    return {name for one in seen for name in (one.name, one.short) if name}
+    return {name for one in seen for name in (one.name, one.short_name) if name}
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
-from sysmlc.language.exchange import Files, interchange_path, write
+from sysmlc.language.interchange import Files, interchange_path, write
 from sysmlc.language.library import SHIPPED, VARIABLE, Library, core, find
 from sysmlc.language.names import Model
-from sysmlc.language.names.adding import implied_redefinitions
-from sysmlc.language.text.nesting import LIMIT
+from sysmlc.language.names.implied_relations import implied_redefinitions
+from sysmlc.language.text.nesting import MAX_DEPTH
 from sysmlc.language.tree import Document
 from sysmlc.sources import SourceError
 from sysmlc.support.output import Output
@@ -81,7 +81,7 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
         first = next(iter(unseen))
         if first.rule is DEEP:
             deepest = _deepest(graph)
-            sink.report(TOO_DEEP, graph.subject(deepest), name=deepest.name, limit=LIMIT)
+            sink.report(TOO_DEEP, graph.subject(deepest), name=deepest.name, limit=MAX_DEPTH)
         else:
             _report(graph, documents, first, sink)
         return None

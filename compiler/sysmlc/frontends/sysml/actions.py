@@ -41,7 +41,7 @@ def action(low: "Lowering", node: Node, owner: Element) -> Element:
 
 def _is_step(node: Node) -> bool:
     is_reference = node.kind == "ReferenceUsage" and not node.name
-    return not (nodes.is_text(node) or "direction" in node.facts or is_reference)
+    return not (nodes.is_text(node) or "direction" in node.attributes or is_reference)
 
 
 def _start(
@@ -81,7 +81,7 @@ def _action(low: "Lowering", node: Node, owner: Element, subkind: str, body: lis
     called = _called(node)
     made = _start(low, node, owner, subkind or ("opaque" if called is None else "call-behavior"))
     for one in body:
-        if one.kind == "ReferenceUsage" and not one.name and "direction" not in one.facts:
+        if one.kind == "ReferenceUsage" and not one.name and "direction" not in one.attributes:
             for found in nodes.references(one, "FeatureTyping", "Subsetting"):
                 low.refer(Edge.CALLS, made, found)
         else:

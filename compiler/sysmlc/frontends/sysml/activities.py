@@ -123,7 +123,7 @@ def _has_steps(node: Node) -> bool:
 
 def _is_step(node: Node) -> bool:
     is_constraint = node.kind in ("AssertConstraintUsage", "ConstraintUsage")
-    return not (nodes.is_text(node) or "direction" in node.facts or is_constraint)
+    return not (nodes.is_text(node) or "direction" in node.attributes or is_constraint)
 
 
 def _operation(low: "Lowering", node: Node, owner: Element) -> None:
@@ -139,7 +139,7 @@ def _operation(low: "Lowering", node: Node, owner: Element) -> None:
         definition = methods[0].target
         low.last(lambda: _inherit_parameters(low, made, definition))
     if _has_steps(node):
-        low.lower_all((one for one in nodes.body_of(node) if "direction" in one.facts), made)
+        low.lower_all((one for one in nodes.body_of(node) if "direction" in one.attributes), made)
         method = low.make(node, Kind.ACTIVITY, made.name, owner)
         low.graph.connect(Edge.METHOD, made, method)
         fill(low, node, method)

@@ -39,7 +39,7 @@ def arguments(low: "Lowering", node: Node, owner: Element) -> None:
     """
     for one in nodes.body_of(node):
         parameter, value = nodes.target(one, "Redefinition"), nodes.value_of(one)
-        if parameter is None or value is None or "direction" not in one.facts:
+        if parameter is None or value is None or "direction" not in one.attributes:
             continue
         found = steps_of_value(value)
         steps = [step for step in found if step is not None]

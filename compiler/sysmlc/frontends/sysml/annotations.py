@@ -53,7 +53,7 @@ def comment(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _comment(low: "Lowering", node: Node, owner: Element | None) -> Element:
-    body = str(node.facts.get("body", "")).strip()
+    body = str(node.attributes.get("body", "")).strip()
     return low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
 
 
@@ -62,7 +62,10 @@ def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
     if owner is None:
         low.unsupported(node)
         return
-    body, language = str(node.facts.get("body", "")).strip(), str(node.facts.get("language", ""))
+    body, language = (
+        str(node.attributes.get("body", "")).strip(),
+        str(node.attributes.get("language", "")),
+    )
     bodies = owner.attrs.get("bodies", owner.attrs.get("body"))
     known = bodies if isinstance(bodies, tuple) else () if bodies is None else (bodies,)
     spoken = owner.attrs.get("languages", owner.attrs.get("language", ""))
@@ -146,7 +149,7 @@ _RENAMED = {"MaterialUse": "Material"}
 
 def _definition_name(node: Node, definition: Node | None) -> str:
     if definition is not None:
-        return _RENAMED.get(definition.name or "", definition.name or definition.short or "")
+        return _RENAMED.get(definition.name or "", definition.name or definition.short_name or "")
     found = nodes.reference(node, "FeatureTyping")
     return "" if found is None else nodes.last_name(found)
 
@@ -221,7 +224,7 @@ def our_name(node: Node) -> str:
     target = found.target
     if target is None or target.owner is None or target.owner.name != OUR_LIBRARY:
         return ""
-    return target.name or target.short or ""
+    return target.name or target.short_name or ""
 
 
 def ours(node: Node) -> dict[str, Node]:

@@ -55,7 +55,7 @@ def _targets(found: list[Node] | None, number: int) -> list[Node | None]:
 
 def linking(node: Node) -> list[Node]:
     """The ends of a connection: those behind `connect`, else those of its body that name one."""
-    inside = [one for one in nodes.body_of(node) if one.facts.get("isEnd")]
+    inside = [one for one in nodes.body_of(node) if one.attributes.get("isEnd")]
     named = [one for one in inside if nodes.reference(one, "ReferenceSubsetting", "Subsetting")]
     return nodes.ends_of(node) or (named if len(named) > 1 else [])
 
@@ -230,7 +230,7 @@ def association(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _is_end(node: Node) -> bool:
-    return node.membership == "EndFeatureMembership" or bool(node.facts.get("isEnd"))
+    return node.membership == "EndFeatureMembership" or bool(node.attributes.get("isEnd"))
 
 
 def _ends(low: "Lowering", ends: list[Node], made: Element) -> None:

@@ -50,7 +50,7 @@ def _is_open(low: "Lowering", node: Node) -> bool:
 
 
 def _body(low: "Lowering", node: Node, made: Element, result: Node) -> None:
-    if node.facts.get("isNegated"):
+    if node.attributes.get("isNegated"):
         low.set(made, body=f"not ({values.texts(result, low)})")
     else:
         values.say(low, made, "body", result)

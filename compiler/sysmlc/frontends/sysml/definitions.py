@@ -93,21 +93,21 @@ def _of_aml(node: Node) -> dict[str, AttrValue]:
 
 def variant(node: Node) -> dict[str, AttrValue]:
     """Whether there is a choice, whether it is a choice, and which portion of a life it is."""
-    if not node.facts and node.membership != "VariantMembership":
+    if not node.attributes and node.membership != "VariantMembership":
         return {}
     return {
-        "variation": bool(node.facts.get("isVariation")),
+        "variation": bool(node.attributes.get("isVariation")),
         "variant": node.membership == "VariantMembership",
-        "portion": str(node.facts.get("portionKind") or ""),
+        "portion": str(node.attributes.get("portionKind") or ""),
     }
 
 
 def flags(node: Node) -> dict[str, AttrValue]:
     """What the prefixes of a declaration say."""
     return {
-        "abstract": bool(node.facts.get("isAbstract")),
+        "abstract": bool(node.attributes.get("isAbstract")),
         **variant(node),
-        "individual": bool(node.facts.get("isIndividual")),
+        "individual": bool(node.attributes.get("isIndividual")),
         **visibility(node),
         **told(node),
     }

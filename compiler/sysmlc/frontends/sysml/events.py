@@ -39,7 +39,7 @@ def _parts(accepting: Node) -> tuple[Node | None, Node | None]:
 
 
 def _timed(low: "Lowering", made: Element, value: Node) -> None:
-    kind = str(value.facts.get("kind", ""))
+    kind = str(value.attributes.get("kind", ""))
     given = next(iter(nodes.arguments(value)), None)
     if kind in _TIMES:
         when = "" if given is None else duration(low, given)

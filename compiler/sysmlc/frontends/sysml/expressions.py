@@ -78,14 +78,14 @@ def _read(node: Node) -> Expression:
 
 
 def _literal(node: Node) -> Expression:
-    value = node.facts.get("value")
+    value = node.attributes.get("value")
     if value is None:
         raise UnsaidError(node.kind)
     return Literal(value)
 
 
 def _operator(node: Node) -> Expression:
-    operator = str(node.facts.get("operator", ""))
+    operator = str(node.attributes.get("operator", ""))
     args = arguments(node)
     if len(args) == 1 and operator in _UNARY:
         return Unary(_UNARY[operator], _read(args[0]))
@@ -185,7 +185,7 @@ def _declared(owner: Node, is_new: bool) -> list[Node]:
     """What the arguments of a call, or of a new instance of a type, are given to, in order."""
     found = [one for one in owner.members if one.membership.endswith("FeatureMembership")]
     found += [one for one in owner.members if one.membership == "ParameterMembership"]
-    return [one for one in found if is_new or one.facts.get("direction") in ("in", "inout")]
+    return [one for one in found if is_new or one.attributes.get("direction") in ("in", "inout")]
 
 
 _READERS = {

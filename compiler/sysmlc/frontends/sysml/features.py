@@ -27,7 +27,7 @@ def property_(low: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
-    direction = node.facts.get("direction")
+    direction = node.attributes.get("direction")
     found: dict[str, AttrValue] = visibility(node) | told(node) | variant(node)
     if direction is not None and owner.role != "constraint block":
         found["direction"] = direction
@@ -36,10 +36,10 @@ def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
 
 
 def _aggregate(node: Node, made: Element) -> None:
-    is_own = not node.facts.get("isReference") and "direction" not in node.facts
+    is_own = not node.attributes.get("isReference") and "direction" not in node.attributes
     if not {"shared", "SharedAggregation"}.isdisjoint(annotations.ours(node)):
         made.attrs["aggregation"] = "shared"
-    elif node.kind in _COMPOSITE and is_own and not node.facts.get("isEnd"):
+    elif node.kind in _COMPOSITE and is_own and not node.attributes.get("isEnd"):
         made.attrs["aggregation"] = "composite"
 
 
@@ -48,7 +48,7 @@ def describe(low: "Lowering", node: Node, made: Element) -> None:
     flags, bounds = _flags(node), values.multiplicity(low, node)
     if flags or bounds:
         low.set(made, **flags, multiplicity=bounds)
-    if node.facts.get("isUnique") is False:
+    if node.attributes.get("isUnique") is False:
         low.graph.set(made, unique=False)
     relate(low, node, made)
     value = nodes.value_of(node)
@@ -69,9 +69,9 @@ _FLAGS = {
 
 def _flags(node: Node) -> dict[str, AttrValue]:
     """What the facts of a feature are as attributes, in this order."""
-    if _FLAGS.keys().isdisjoint(node.facts):
+    if _FLAGS.keys().isdisjoint(node.attributes):
         return {}
-    return {flag: bool(node.facts.get(fact)) for fact, flag in _FLAGS.items()}
+    return {flag: bool(node.attributes.get(fact)) for fact, flag in _FLAGS.items()}
 
 
 def relate(low: "Lowering", node: Node, made: Element) -> None:
@@ -188,7 +188,7 @@ def _interface_id(low: "Lowering", made: Element, target: Node | None, given: At
 
 def port(low: "Lowering", node: Node, owner: Element) -> Element:
     """A port; one that only holds what flows through it is a flow port of SysML 1.2."""
-    direction = node.facts.get("direction")
+    direction = node.attributes.get("direction")
     given = _attrs(node, owner) | {"role": "proxy port", "direction": direction}
     said = annotations.said(node, "Kind", "name")
     if said == "port" or "AutomationML" in annotations.ours(node):
@@ -215,7 +215,7 @@ def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> Non
     low.set(
         made,
         role="port" if is_plain else "flow port",
-        direction=flowing.facts.get("direction"),
+        direction=flowing.attributes.get("direction"),
         multiplicity=values.multiplicity(low, node),
     )
     for one in nodes.references(flowing, "FeatureTyping"):

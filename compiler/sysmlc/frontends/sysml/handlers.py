@@ -59,7 +59,7 @@ _INTERACTING = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
 def _action(low: Lowering, node: Node, owner: Element | None) -> None:
     if owner is None or owner.kind in _PACKAGES:
         activities.activity(low, node, owner)
-    elif owner.kind in _STEPPED and "direction" in node.facts:
+    elif owner.kind in _STEPPED and "direction" in node.attributes:
         in_behaviour(low, node, owner)
     elif owner.kind in _STEPPED:
         actions.action(low, node, owner)

@@ -20,7 +20,7 @@ def member(low: "Lowering", node: Node, owner: Element) -> None:
     """
     if node.kind == "OccurrenceUsage":
         fragment(low, node, owner)
-    elif node.facts.get("isReference") or not _is_written(node.owner):
+    elif node.attributes.get("isReference") or not _is_written(node.owner):
         lifeline(low, node, owner)
     else:
         property_(low, node, owner)

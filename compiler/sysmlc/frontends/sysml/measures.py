@@ -97,4 +97,4 @@ def unit_name(unit: Reference) -> tuple[str, str]:
     target, symbol = unit.target, nodes.last_name(unit)
     if target is None:
         return symbol, symbol
-    return target.name or symbol, target.short or symbol
+    return target.name or symbol, target.short_name or symbol

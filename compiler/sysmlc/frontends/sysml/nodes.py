@@ -54,7 +54,7 @@ def held(node: Node, *memberships: str) -> Iterator[Node]:
 
 def quoted(node: Node, text: str) -> str:
     """Return the source text of a node in one line, without notes."""
-    from sysmlc.language.text.scan import join_tokens
+    from sysmlc.language.text.lexer import join_tokens
 
     return join_tokens(text, node.start, node.end) if 0 <= node.start < node.end else ""
 
@@ -86,7 +86,9 @@ def ends_of(node: Node) -> list[Node]:
 
 def is_message(node: Node) -> bool:
     """Whether a flow is a message: it has events instead of ends."""
-    return node.kind == "FlowUsage" and not ends_of(node) and bool(node.facts.get("isAbstract"))
+    return (
+        node.kind == "FlowUsage" and not ends_of(node) and bool(node.attributes.get("isAbstract"))
+    )
 
 
 def events_of(node: Node) -> list[Node]:
@@ -104,7 +106,7 @@ def name_of(node: Node) -> str:
 
     A usage that only refers to another one has the name of that.
     """
-    own = node.name or node.short
+    own = node.name or node.short_name
     if own:
         return own
     redefined = reference(node, "Redefinition") or reference(node, "ReferenceSubsetting")
@@ -128,7 +130,7 @@ def crossed(node: Node) -> Node | None:
 
     Its multiplicity is that of an end of a UML association (KerML 1.0, 8.3.4.5.3).
     """
-    if not node.facts.get("isEnd") and node.membership != "EndFeatureMembership":
+    if not node.attributes.get("isEnd") and node.membership != "EndFeatureMembership":
         return None
     found = held(node, "OwningMembership")
     return next((one for one in found if one.kind in ("Feature", "ReferenceUsage")), None)

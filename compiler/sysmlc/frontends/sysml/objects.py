@@ -19,7 +19,7 @@ _STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED})
 def in_behaviour(low: "Lowering", node: Node, owner: Element) -> Element:
     """A feature of an activity, a step, a state machine or an operation."""
     is_result = node.membership == "ReturnParameterMembership"
-    if "direction" in node.facts or is_result:
+    if "direction" in node.attributes or is_result:
         return (pin if owner.kind in _STEPS else parameter)(low, node, owner)
     kind, subkind = marked(node, _kind(low, node, owner))
     if kind in _BUFFERS or subkind == "expansion":
@@ -33,6 +33,6 @@ def in_behaviour(low: "Lowering", node: Node, owner: Element) -> Element:
 def _kind(low: "Lowering", node: Node, owner: Element) -> Kind:
     """Items are objects that the activity holds; other features are, when objects flow there."""
     is_flowing = id(node) in low.flowing
-    is_item = node.kind == "ItemUsage" and not node.facts.get("isReference")
+    is_item = node.kind == "ItemUsage" and not node.attributes.get("isReference")
     is_node = owner.kind in (Kind.ACTIVITY, Kind.STRUCTURED) and (is_item or is_flowing)
     return Kind.OBJECT_NODE if is_node else Kind.PROPERTY

@@ -38,7 +38,7 @@ def direction_of(node: Node) -> str:
     """The direction of a parameter; a result is returned."""
     if node.membership == "ReturnParameterMembership":
         return "return"
-    return str(node.facts.get("direction", "in"))
+    return str(node.attributes.get("direction", "in"))
 
 
 def pin(low: "Lowering", node: Node, action: Element) -> Element:
@@ -49,10 +49,10 @@ def pin(low: "Lowering", node: Node, action: Element) -> Element:
         "direction": direction,
         "subkind": _subkind(action, direction),
         "multiplicity": values.multiplicity(low, node),
-        "ordered": bool(node.facts.get("isOrdered")),
+        "ordered": bool(node.attributes.get("isOrdered")),
     }
     made = low.add(node, Kind.PIN, nodes.name_of(node), action, **given)
-    if node.facts.get("isUnique") is False:
+    if node.attributes.get("isUnique") is False:
         low.graph.set(made, unique=False)
     low.later(lambda: give_types(low, node, made))
     value = nodes.value_of(node)

@@ -3,8 +3,7 @@
 import re
 from bisect import bisect_left, bisect_right
 
-from sysmlc.language.places import mark
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, Node, byte_order_mark_length
 
 _WIDE = re.compile(r"[^\x00-\x7f]")
 _PIECE = 256
@@ -16,7 +15,9 @@ class Home:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.path = document.path
-        self._wide, self._behind = _wide(document.text, mark(document) if document.text else 0)
+        self._wide, self._behind = _wide(
+            document.text, byte_order_mark_length(document) if document.text else 0
+        )
 
     def ordinal(self, node: Node) -> int:
         """The byte at which the name of a node starts; the element's ordinal in an XMI file."""

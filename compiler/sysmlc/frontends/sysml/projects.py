@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.sysml.detect import is_description
-from sysmlc.language.exchange import open_archive, project, used
+from sysmlc.language.interchange import open_archive, project, used
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.whole import read_whole
 

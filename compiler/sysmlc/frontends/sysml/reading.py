@@ -31,7 +31,7 @@ def read(
     documents = [parse_document(source, sink) for source in models]
     standard = _library(library, sink)
     if any(is_xml(one.source) for one in documents if one.source is not None):
-        from sysmlc.language.exchange import link
+        from sysmlc.language.interchange import link
 
         link(documents, sink, standard)
     if any("!" in source.name for source in sources):
@@ -76,7 +76,7 @@ def _mark(graph: Graph, libraries: Sequence[Document]) -> None:
 def parse_document(source: Source, sink: Sink) -> Document:
     """Parse one text or interchange file and report its faults."""
     if is_xml(source):
-        from sysmlc.language.exchange import read as read_exchange
+        from sysmlc.language.interchange import read as read_exchange
 
         return read_exchange(source, sink)
     return _parse(source, language(source), sink)

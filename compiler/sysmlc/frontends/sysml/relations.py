@@ -73,9 +73,9 @@ def keywords(node: Node) -> list[str]:
     for one in nodes.members(node, "MetadataUsage"):
         target = nodes.target(one, "FeatureTyping")
         named = nodes.reference(one, "FeatureTyping")
-        if target is not None and target.name and one.facts.get("isPrefix"):
+        if target is not None and target.name and one.attributes.get("isPrefix"):
             found.append(target.name)
-        elif named is not None and one.facts.get("isPrefix"):
+        elif named is not None and one.attributes.get("isPrefix"):
             found.append(nodes.last_name(named).capitalize())
     return found
 
@@ -121,7 +121,7 @@ def derivation(low: "Lowering", node: Node, owner: Element | None) -> None:
     """A derivation connection of the standard library: derived requirements and their original."""
     attrs: dict[str, AttrValue] = {"role": "derive", "subkind": "abstraction"}
     made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **attrs)
-    for end in nodes.ends_of(node) + [one for one in node.members if one.facts.get("isEnd")]:
+    for end in nodes.ends_of(node) + [one for one in node.members if one.attributes.get("isEnd")]:
         is_original = any(one.startswith("Original") for one in keywords(end))
         edge = Edge.SUPPLIER if is_original else Edge.CLIENT
         for found in nodes.references(end, "ReferenceSubsetting"):
@@ -130,7 +130,7 @@ def derivation(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _is_prefix(node: Node) -> bool:
-    return bool(node.facts.get("isPrefix"))
+    return bool(node.attributes.get("isPrefix"))
 
 
 def is_derivation(node: Node) -> bool:
@@ -182,10 +182,10 @@ def _imported(low: "Lowering", made: Element, target: Node) -> None:
 
 def membership(low: "Lowering", node: Node, owner: Element | None) -> None:
     """An alias: a second name for an element."""
-    if not node.name and not node.short:
+    if not node.name and not node.short_name:
         low.ignored(node)
         return
-    name = node.name or node.short or ""
+    name = node.name or node.short_name or ""
     made = low.add(node, Kind.ALIAS, name, owner, **visibility(node))
     low.lower_texts(node, made)
     low.refer(Edge.REFERENCES, made, nodes.reference(node, "Membership"))

@@ -25,9 +25,9 @@ def requirement(low: "Lowering", node: Node, owner: Element | None) -> None:
         objective(low, node, owner)
         return
     texts = list(nodes.members(node, "Documentation"))
-    text = str(texts[0].facts.get("body", "")).strip() if texts else ""
+    text = str(texts[0].attributes.get("body", "")).strip() if texts else ""
     given = annotations.said(node, "Requirement", "id")
-    attrs: dict[str, AttrValue] = {"req_id": str(given or node.short or ""), "text": text}
+    attrs: dict[str, AttrValue] = {"req_id": str(given or node.short_name or ""), "text": text}
     name = node.name or nodes.name_of(node)
     made = low.add(node, Kind.CLASS, name, owner, role="requirement", **(attrs | flags(node)))
     generalize(low, node, made)
@@ -67,7 +67,7 @@ def satisfy(low: "Lowering", node: Node, owner: Element | None) -> None:
     by = next(nodes.held(node, "SubjectMembership"), None)
     value = None if by is None else nodes.value_of(by)
     low.later(lambda: _client(low, made, owner, value))
-    if node.facts.get("isNegated"):
+    if node.attributes.get("isNegated"):
         low.approximated(node, "'not satisfy'", "'satisfy'")
 
 

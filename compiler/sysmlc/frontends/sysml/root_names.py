@@ -33,7 +33,7 @@ def read_names(source: Source) -> FileNames:
 
 
 def _list_names(nodes: Iterable[Node]) -> frozenset[str]:
-    return frozenset(name for node in nodes for name in (node.name, node.short) if name)
+    return frozenset(name for node in nodes for name in (node.name, node.short_name) if name)
 
 
 def _head(reference: Reference) -> str:

@@ -107,7 +107,7 @@ def sequence(body: Sequence[Node]) -> list[Node] | None:
             found.append(one)
         elif one.kind == "SuccessionAsUsage" and len(_named_ends(one)) == 0:
             continue
-        elif not nodes.is_text(one) and "direction" not in one.facts:
+        elif not nodes.is_text(one) and "direction" not in one.attributes:
             return None
     return found or None
 

@@ -57,7 +57,7 @@ def exhibit(low: "Lowering", node: Node, owner: Element) -> None:
 def _content(low: "Lowering", node: Node, made: Element) -> None:
     """Parameters and texts belong to the state itself, vertices to its regions."""
     inside = nodes.body_of(node)
-    if node.facts.get("isParallel"):
+    if node.attributes.get("isParallel"):
         for one in inside:
             if one.kind in _STATES:
                 _parallel(low, one, made)
@@ -86,7 +86,7 @@ def _is_of_region(node: Node) -> bool:
 
 
 def _is_alias(node: Node) -> bool:
-    return node.kind == "Membership" and bool(node.name or node.short)
+    return node.kind == "Membership" and bool(node.name or node.short_name)
 
 
 def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
@@ -94,7 +94,7 @@ def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
     region = low.make(node, Kind.REGION, nodes.name_of(node), owner)
     inside = [one for one in nodes.body_of(node) if _is_of_region(one)]
     own = [one for one in nodes.body_of(node) if _is_sub(one) and not _is_empty(one)]
-    if own or not inside or node.facts.get("isParallel"):
+    if own or not inside or node.attributes.get("isParallel"):
         made = state(low, node, region)
         start = low.vertex(region, "start", node)
         _transition(low, node, region, start, made)

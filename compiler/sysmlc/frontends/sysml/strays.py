@@ -77,13 +77,13 @@ def _find(low: "Lowering") -> None:
 
 def _more(low: "Lowering", node: Node) -> str:
     """What a usage is beyond its kind, and what it became does not say; empty for most."""
-    is_plain = _MORE.isdisjoint(node.facts) and node.membership != _VARIANT
+    is_plain = _MORE.isdisjoint(node.attributes) and node.membership != _VARIANT
     if is_plain or node.kind == "EnumerationUsage":
         return ""
     made = (low.elements.get(id(node)), low.made_for.get(id(node)))
     said = [key for key, value in variant(node).items() if value]
     lost = [key for key in said if not any(one and key in one.attrs for one in made)]
-    return str(node.facts["portionKind"]) if lost == ["portion"] else lost[0] if lost else ""
+    return str(node.attributes["portionKind"]) if lost == ["portion"] else lost[0] if lost else ""
 
 
 def _a(noun: str) -> str:
@@ -102,7 +102,7 @@ def _unread(low: "Lowering", root: Node, known: set[int], dead: set[int]) -> Ite
             elif id(one) not in dead:
                 if one.members:
                     found.append(one)
-                if (one.facts or one.membership == _VARIANT) and (more := _more(low, one)):
+                if (one.attributes or one.membership == _VARIANT) and (more := _more(low, one)):
                     low.approximated(one, _a(more), "a plain usage")
 
 
@@ -119,7 +119,7 @@ def _is_read(low: "Lowering", node: Node, owner: Node) -> bool:
 def _is_counted(low: "Lowering", owner: Node) -> bool:
     """Whether the multiplicity of a feature is an attribute of what it became."""
     made = low.elements.get(id(owner))
-    is_end = owner.membership in _ENDS or bool(owner.facts.get("isEnd"))
+    is_end = owner.membership in _ENDS or bool(owner.attributes.get("isEnd"))
     return is_end or owner.kind == "Feature" or (made is not None and made.kind in _COUNTED)
 
 
@@ -135,13 +135,13 @@ def _is_written(low: "Lowering", node: Node, owner: Node) -> bool:
 def _is_sign(node: Node, owner: Node) -> bool:
     """Keywords, ends in bodies, empty actions of states, features that cross: facts of an owner."""
     if node.kind == "MetadataUsage":
-        return bool(node.facts.get("isPrefix")) and owner.kind != "MetadataUsage"
+        return bool(node.attributes.get("isPrefix")) and owner.kind != "MetadataUsage"
     if node.kind == "Membership":
         return not node.name
     is_cross = node is nodes.crossed(owner) or (
         node.kind == "Feature" and node.membership == "OwningMembership"
     )
-    is_end = bool(node.facts.get("isEnd")) and owner.kind == "ConnectionUsage"
+    is_end = bool(node.attributes.get("isEnd")) and owner.kind == "ConnectionUsage"
     return (
         is_cross or is_end or (node.membership == "StateSubactionMembership" and not node.members)
     )

@@ -50,12 +50,12 @@ def steps(
             _succession(low, node, run)
         elif node.kind == "TransitionUsage":
             _guarded(low, node, run)
-        elif node.kind == "Membership" and not node.name and not node.short:
+        elif node.kind == "Membership" and not node.name and not node.short_name:
             run.previous = nodes.reference(node, "Membership")
             _mention(low, run, run.previous, node)
         else:
             low.lower(node, owner)
-            if node.kind in _STEPS and "direction" not in node.facts:
+            if node.kind in _STEPS and "direction" not in node.attributes:
                 _arrive(low, node, run)
             elif run.waiting:
                 # A `then` stands before its target, which is no step of the graph.

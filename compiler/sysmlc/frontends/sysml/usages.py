@@ -30,7 +30,7 @@ def in_package(low: "Lowering", node: Node, owner: Element | None) -> None:
 
 
 def _unit(low: "Lowering", node: Node, owner: Element | None, role: str) -> None:
-    made = low.add(node, Kind.INSTANCE, node.name or "", owner, role=role, symbol=node.short)
+    made = low.add(node, Kind.INSTANCE, node.name or "", owner, role=role, symbol=node.short_name)
     low.lower_texts(node, made)
 
 

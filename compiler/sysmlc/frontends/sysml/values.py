@@ -64,14 +64,14 @@ def constant(node: Node) -> AttrValue:
     The number of a quantity is its value: the unit is that of the type (``measure``).
     """
     if node.kind in _LITERALS:
-        return node.facts.get("value")
+        return node.attributes.get("value")
     if node.kind == "OperatorExpression":
         return _operation(node)
     return () if node.kind == "NullExpression" else None
 
 
 def _operation(node: Node) -> AttrValue:
-    operator, args = node.facts.get("operator"), nodes.arguments(node)
+    operator, args = node.attributes.get("operator"), nodes.arguments(node)
     if operator == "-" and len(args) == 1:
         found = constant(args[0])
         is_number = isinstance(found, int | float) and not isinstance(found, bool)
@@ -90,7 +90,7 @@ def _sequence(args: list[Node]) -> AttrValue:
         left, right = args
         if not _add(constant(left), found):
             return None
-        args = nodes.arguments(right) if right.facts.get("operator") == "," else [right]
+        args = nodes.arguments(right) if right.attributes.get("operator") == "," else [right]
     return tuple(found) if all(_add(constant(one), found) for one in args) else None
 
 
@@ -107,7 +107,7 @@ _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "Lit
 
 def measure(node: Node) -> str:
     """Name of the unit of a quantity (``5 [SI::mm]`` gives ``mm``), or the empty string."""
-    if node.kind == "OperatorExpression" and node.facts.get("operator") == "[":
+    if node.kind == "OperatorExpression" and node.attributes.get("operator") == "[":
         args = nodes.arguments(node)
         found = nodes.reference(args[1], "Membership") if len(args) == 2 else None
         return "" if found is None else nodes.last_name(found)

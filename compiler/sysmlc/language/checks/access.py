@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import NOT_ACCESSIBLE
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.names.unresolved import subject
 from sysmlc.language.tree import Document, Node, Relation
 

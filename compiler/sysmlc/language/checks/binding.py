@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import own
+from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.tree import Node
 
 UNLIKE = rule(

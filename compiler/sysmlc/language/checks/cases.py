@@ -6,7 +6,7 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.rules import ONLY_ONE, SUBJECT_FIRST
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import role
+from sysmlc.language.names.positional_redefinition import role
 from sysmlc.language.tree import Node
 
 _CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.language.checks.found import DECLARED_FEATURES, Found, error, name_of, written
 from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
-from sysmlc.language.composition import USAGES, is_end
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import USAGES, is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.implied import owning_type
@@ -76,8 +75,8 @@ def check(model: Model, node: Node) -> Iterator[Found]:
     """Report a feature that breaks what a feature promises that it subsets or redefines."""
     for relation, target in written(node, _SUBSETTINGS):
         rules = (
-            (NONUNIQUE, node.facts.get("isUnique") is False and _is_unique(target)),
-            (NOT_CONSTANT, _may_change(node) and target.facts.get("isConstant") is True),
+            (NONUNIQUE, node.attributes.get("isUnique") is False and _is_unique(target)),
+            (NOT_CONSTANT, _may_change(node) and target.attributes.get("isConstant") is True),
             (OF_PACKAGE, relation.kind == "Redefinition" and _are_free(model, node, target)),
             (OF_SAME_OWNER, relation.kind == "Redefinition" and _are_of_one(node, target)),
             (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
@@ -89,7 +88,7 @@ def check(model: Model, node: Node) -> Iterator[Found]:
 
 
 def _is_unique(feature: Node) -> bool:
-    return feature.facts.get("isUnique") is not False
+    return feature.attributes.get("isUnique") is not False
 
 
 def _are_free(model: Model, feature: Node, general: Node) -> bool:
@@ -117,7 +116,7 @@ def _are_of_one(feature: Node, general: Node) -> bool:
 
 
 def _may_change(feature: Node) -> bool:
-    return feature.facts.get("isVariable") is True and not feature.facts.get("isConstant")
+    return feature.attributes.get("isVariable") is True and not feature.attributes.get("isConstant")
 
 
 def check_direction(model: Model, node: Node) -> Iterator[Found]:
@@ -175,7 +174,7 @@ def _generals(model: Model, node: Node) -> Iterator[tuple[Node, bool]]:
 
 def _said(feature: Node) -> str | None:
     """The direction that the text says; a result goes out."""
-    said = feature.facts.get("direction")
+    said = feature.attributes.get("direction")
     is_result = feature.membership == "ReturnParameterMembership"
     return str(said) if said is not None else "out" if is_result else None
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.language.checks.found import Found, error, name_of, written
-from sysmlc.language.composition import is_end
+from sysmlc.language.metaclasses import is_end
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node, Reference

@@ -7,7 +7,7 @@ from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.members import is_of_library
-from sysmlc.language.names.positions import role
+from sysmlc.language.names.positional_redefinition import role
 from sysmlc.language.tree import Node
 
 DUPLICATE = rule(
@@ -38,7 +38,7 @@ def check(model: Model, node: Node) -> Iterator[Found]:
     """Report members that another member has the name or the short name of."""
     named: dict[str, list[Node]] = {}
     for member in node.members:
-        for name in {member.name, member.short} - {None}:
+        for name in {member.name, member.short_name} - {None}:
             named.setdefault(str(name), []).append(member)
     for name, members in named.items():
         for member in members if len(members) > 1 else ():

@@ -4,10 +4,9 @@ from collections.abc import Iterator
 
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.member_rules import TOO_MANY_ENDS
-from sysmlc.language.composition import is_end
-from sysmlc.language.metaclasses import is_a, kinds_of
+from sysmlc.language.metaclasses import is_a, is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import own
+from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.tree import Node, Relation
 
 END_TYPE = error(
@@ -70,7 +69,7 @@ def check_types(model: Model, node: Node) -> Iterator[Found]:
 def check_related(model: Model, node: Node) -> Iterator[Found]:
     """Report a connector with ends of its own that names less than two related elements."""
     ends = own(node, "end")
-    if not ends or node.facts.get("isAbstract") or node.kind in _SUCCESSIONS:
+    if not ends or node.attributes.get("isAbstract") or node.kind in _SUCCESSIONS:
         return
     ends += model.lookup.at_positions(node, "end")
     count = len({end for end in ends if _is_related(end)})

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.results import named
+from sysmlc.language.names.expression_results import named
 from sysmlc.language.tree import Node
 
 NOT_EVALUABLE = error(
@@ -53,7 +53,7 @@ def _check(model: Model, expression: Node, what: str) -> Iterator[Found]:
 def _called(model: Model, node: Node) -> str:
     """The operator or function of an expression that cannot be evaluated; else empty."""
     if node.kind == "OperatorExpression":
-        operator = str(node.facts.get("operator", ""))
+        operator = str(node.attributes.get("operator", ""))
         return operator if operator in _OPERATORS else ""
     if node.kind != "InvocationExpression":
         return ""

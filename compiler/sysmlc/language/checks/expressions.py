@@ -6,10 +6,10 @@ from sysmlc.language.checks.found import Found, error, name_of, written
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.advice import kind_of
-from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.names.expression_results import result
 from sysmlc.language.names.implied import owning_type
-from sysmlc.language.names.results import result
+from sysmlc.language.names.symbols import FEATURES, TYPES
+from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
 NO_FEATURE = error(

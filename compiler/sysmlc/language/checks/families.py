@@ -30,7 +30,7 @@ from sysmlc.language.checks import (
     typing,
 )
 from sysmlc.language.checks.found import DECLARED_TYPES, Check
-from sysmlc.language.composition import USAGES
+from sysmlc.language.metaclasses import USAGES
 from sysmlc.language.names import Model
 from sysmlc.language.names.unresolved import subject
 from sysmlc.language.tree import Document, Node
@@ -135,7 +135,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
         frozenset([one.membership for one in members]) if members else _NOTHING,
         tuple([one.kind for one in relations]) if relations else (),
         len(members) > 1,
-        "isVariable" in node.facts,
+        "isVariable" in node.attributes,
     )
     for reporter in reporters:
         reporter(model, document, node, sink)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Rule, Severity, rule
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.tree import Node, Relation
 
 

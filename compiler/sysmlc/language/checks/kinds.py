@@ -7,7 +7,7 @@ from sysmlc.language.checks.found import Found, error, name_of, written
 from sysmlc.language.checks.member_rules import VARIATION_OF_VARIATION
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.advice import kind_of
+from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
 OTHER_KIND = error(
@@ -65,8 +65,8 @@ def check(model: Model, node: Node) -> Iterator[Found]:
 def check_variation(model: Model, node: Node) -> Iterator[Found]:
     """Report a variation that a variation specialises; usages are checked with their references."""
     for relation, target in written(node, _SUBCLASSIFICATION):
-        is_closed = target.facts.get("isVariation") or target.kind == "EnumerationDefinition"
-        if node.facts.get("isVariation") and is_closed:
+        is_closed = target.attributes.get("isVariation") or target.kind == "EnumerationDefinition"
+        if node.attributes.get("isVariation") and is_closed:
             facts = {"name": name_of(model, node), "owner": ""}
             yield Found(VARIATION_OF_VARIATION, relation.reference.start, facts)
 

@@ -2,10 +2,9 @@
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules as rules
-from sysmlc.language.composition import is_end
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import own
+from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.names.unresolved import subject
 from sysmlc.language.tree import Document, Node
 
@@ -42,15 +41,15 @@ def _as_member(node: Node, owner: Node) -> Rule | None:
         return None if _is_objective(owner) else rules.VERIFY_ELSEWHERE
     if membership in _FEATURE_MEMBERSHIPS:
         return _as_feature(node, owner)
-    return rules.PORTION_ELSEWHERE if "portionKind" in node.facts else None
+    return rules.PORTION_ELSEWHERE if "portionKind" in node.attributes else None
 
 
 def _as_feature(node: Node, owner: Node) -> Rule | None:
     if _is_variation(owner):
         return rules.NO_VARIANT
-    if node.kind in _SUCCESSIONS and owner.facts.get("isParallel"):
+    if node.kind in _SUCCESSIONS and owner.attributes.get("isParallel"):
         return rules.PARALLEL
-    if "portionKind" in node.facts and owner.kind not in _OCCURRENCES:
+    if "portionKind" in node.attributes and owner.kind not in _OCCURRENCES:
         return rules.PORTION_ELSEWHERE
     if owner.kind not in _WITH_ENDS or not is_end(node):
         return None
@@ -63,7 +62,9 @@ def _as_feature(node: Node, owner: Node) -> Rule | None:
 def _by_itself(model: Model, node: Node) -> Rule | None:
     if node.kind == "MetadataUsage":
         types = model.lookup.generals(node)
-        return rules.ABSTRACT_METADATA if any(t.facts.get("isAbstract") for t in types) else None
+        return (
+            rules.ABSTRACT_METADATA if any(t.attributes.get("isAbstract") for t in types) else None
+        )
     if node.kind == "AttributeUsage" and len(model.lookup.generals(node)) > 1:
         types = model.types(node)
         several = len(types) > 1 and any(one.kind in _ENUMERATIONS for one in types)
@@ -72,7 +73,7 @@ def _by_itself(model: Model, node: Node) -> Rule | None:
 
 
 def _is_variation(node: Node) -> bool:
-    return bool(node.facts.get("isVariation")) or node.kind in _ENUMERATIONS
+    return bool(node.attributes.get("isVariation")) or node.kind in _ENUMERATIONS
 
 
 def _is_objective(owner: Node) -> bool:

@@ -6,7 +6,7 @@ from sysmlc.language.checks.found import Found, error, name_of
 from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
 from sysmlc.language.metaclasses import ALL_GENERALS, is_a, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.advice import kind_of
+from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
 OTHER_ELEMENT = error(
@@ -37,7 +37,7 @@ _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 def check_type(model: Model, node: Node) -> Iterator[Found]:
     """Report metadata of a type that is abstract; usages have a check of their own."""
     types = model.lookup.generals(node)
-    if any(one.facts.get("isAbstract") for one in types) and node.kind == "MetadataFeature":
+    if any(one.attributes.get("isAbstract") for one in types) and node.kind == "MetadataFeature":
         facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
         yield Found(ABSTRACT_METADATA, node.start, facts)
 

@@ -73,11 +73,11 @@ def _results(node: Node) -> list[Node]:
 
 def check_variable(model: Model, node: Node) -> Iterator[Found]:
     """Report a feature that is said to change and cannot."""
-    if node.facts.get("isVariable") is not True:
+    if node.attributes.get("isVariable") is not True:
         return
     owner = owning_type(node)
     facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
-    if node.facts.get("isPortion"):
+    if node.attributes.get("isPortion"):
         yield Found(VARIABLE_PORTION, node.start, facts)
     elif owner is None or not model.specializes(owner, "Occurrences::Occurrence"):
         yield Found(VARIABLE_ELSEWHERE, node.start, facts)

@@ -7,8 +7,8 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positions import own
-from sysmlc.language.names.results import named
+from sysmlc.language.names.expression_results import named
+from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.tree import Node
 
 
@@ -94,7 +94,7 @@ def _may_be(parameter: Node, other: Node) -> bool:
 
 
 def _direction(parameter: Node) -> str:
-    return str(parameter.facts.get("direction", "in"))
+    return str(parameter.attributes.get("direction", "in"))
 
 
 CHECKS = (

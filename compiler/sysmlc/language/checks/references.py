@@ -5,11 +5,9 @@ from collections.abc import Iterator, Mapping
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules, reference_rules
 from sysmlc.language.checks.found import written
-from sysmlc.language.composition import is_composite
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import is_composite, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.advice import kind_of
-from sysmlc.language.names.unresolved import subject
+from sysmlc.language.names.unresolved import kind_of, subject
 from sysmlc.language.tree import Document, Node, Relation
 
 _REFERENCED = {
@@ -29,7 +27,7 @@ _Broken = tuple[Rule, Mapping[str, str | None]]
 
 def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report references to what has another kind, direction or place than they need."""
-    is_variation = bool(node.facts.get("isVariation"))
+    is_variation = bool(node.attributes.get("isVariation"))
     for relation, target in written(node, RELATIONS):
         broken: list[_Broken] = []
         if relation.kind == "ReferenceSubsetting":
@@ -38,7 +36,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
             owner = model.name(target.owner) if target.owner else ""
             name = str(relation.reference)
             broken.append((reference_rules.OTHER_DIRECTION, {"name": name, "owner": owner}))
-        if is_variation and target.facts.get("isVariation"):
+        if is_variation and target.attributes.get("isVariation"):
             itself = {"name": model.name(node) or node.kind, "owner": ""}
             broken.append((member_rules.VARIATION_OF_VARIATION, itself))
         for rule, facts in broken:
@@ -55,7 +53,7 @@ def _of_other_kind(node: Node, relation: Relation, target: Node) -> Iterator[_Br
 
 def _turns(model: Model, node: Node, target: Node) -> bool:
     """Whether a redefining feature has another direction than the one that it redefines."""
-    theirs, ours = target.facts.get("direction"), node.facts.get("direction")
+    theirs, ours = target.attributes.get("direction"), node.attributes.get("direction")
     return theirs in _DIRECTED and ours not in (None, theirs) and not _is_conjugated(model, node)
 
 
@@ -72,8 +70,10 @@ def check_itself(model: Model, document: Document, node: Node, sink: Sink) -> No
     if is_in_port and node.kind != "PortUsage" and is_composite(node):
         place = subject(document, node, node.start)
         sink.report(reference_rules.PART_OF_PORT, place, name=name, owner=_name(model, owner))
-    if node.facts.get("isIndividual") and any(r.kind == "FeatureTyping" for r in node.relations):
-        types = [one for one in model.types(node) if one.facts.get("isIndividual")]
+    if node.attributes.get("isIndividual") and any(
+        r.kind == "FeatureTyping" for r in node.relations
+    ):
+        types = [one for one in model.types(node) if one.attributes.get("isIndividual")]
         if len(types) != 1:
             place = subject(document, node, node.start)
             sink.report(reference_rules.INDIVIDUAL, place, name=name, count=len(types))

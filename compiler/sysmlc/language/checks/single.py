@@ -30,7 +30,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
             sink.report(SUBJECT_FIRST, place, owner=model.name(node) or node.kind)
         if role:
             seen.add(role)
-        parameters += role in ("", "subject") and "direction" in member.facts
+        parameters += role in ("", "subject") and "direction" in member.attributes
 
 
 def _role(member: Node) -> str:

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.language.checks.found import Found, error, name_of, written
-from sysmlc.language.composition import is_composite
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import is_composite, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node
 

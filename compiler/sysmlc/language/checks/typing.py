@@ -6,9 +6,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import ONE_TYPE, TYPED_BY
 from sysmlc.language.metaclasses import ALL_GENERALS, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.advice import kind_of
-from sysmlc.language.names.contents import FEATURES
-from sysmlc.language.names.unresolved import subject
+from sysmlc.language.names.symbols import FEATURES
+from sysmlc.language.names.unresolved import kind_of, subject
 from sysmlc.language.tree import Document, Node
 
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.contents import FEATURES
-from sysmlc.language.names.results import named, returned
+from sysmlc.language.names.expression_results import named, returned
+from sysmlc.language.names.symbols import FEATURES
 from sysmlc.language.tree import Node
 
 Value = bool | int | float | str
@@ -59,8 +59,8 @@ def given(feature: Node) -> Node | None:
 
 def value(model: Model, expression: Node, depth: int = 0) -> Value | None:
     """The constant that an expression comes to, through features that are bound; else None."""
-    if "value" in expression.facts:
-        return expression.facts["value"]
+    if "value" in expression.attributes:
+        return expression.attributes["value"]
     if depth > _DEEP:
         return None
     if expression.kind == "FeatureReferenceExpression":
@@ -71,7 +71,7 @@ def value(model: Model, expression: Node, depth: int = 0) -> Value | None:
     if expression.kind != "OperatorExpression" or not 1 <= len(operands) <= 2:
         return None
     found = [value(model, one, depth + 1) for one in operands]
-    return _operated(str(expression.facts.get("operator")), found)
+    return _operated(str(expression.attributes.get("operator")), found)
 
 
 def _operated(operator: str, operands: list[Value | None]) -> Value | None:
@@ -86,7 +86,10 @@ def _operated(operator: str, operands: list[Value | None]) -> Value | None:
 def types(model: Model, expression: Node, depth: int = 0) -> list[Node]:
     """The types of what an expression gives; empty where they are not known."""
     name = _LITERALS.get(expression.kind)
-    if expression.kind == "OperatorExpression" and expression.facts.get("operator") in _CONDITIONS:
+    if (
+        expression.kind == "OperatorExpression"
+        and expression.attributes.get("operator") in _CONDITIONS
+    ):
         name = "ScalarValues::Boolean"
     if name is not None:
         found = model.find(name)

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.contents import NAMESPACES
+from sysmlc.language.names.symbols import NAMESPACES
 from sysmlc.language.tree import Node, Reference, Relation
 
 _CONNECTORS = kinds_of("Connector")
@@ -107,7 +107,9 @@ def _start(node: Node, relation: Relation) -> Start:
         scope = node if kind == "TypeFeaturing" else beyond_expressions(node)
         return Start(scope, without=node, is_metadata=node.kind in _METADATA)
     if kind in _IMPORTED:
-        return _import(node, everything=kind in _MEMBER and bool(node.facts.get("isImportAll")))
+        return _import(
+            node, everything=kind in _MEMBER and bool(node.attributes.get("isImportAll"))
+        )
     before = _before(node, relation) if kind == "FeatureChaining" else None
     return Start(namespace(node), without=node, before=before)
 
@@ -158,7 +160,7 @@ def _is_connector_end(node: Node) -> bool:
     return (
         owner is not None
         and owner.kind in _CONNECTORS
-        and (node.membership == "EndFeatureMembership" or bool(node.facts.get("isEnd")))
+        and (node.membership == "EndFeatureMembership" or bool(node.attributes.get("isEnd")))
     )
 
 

@@ -4,7 +4,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names import contexts, positions, results
+from sysmlc.language.names import contexts
+from sysmlc.language.names import expression_results as results
+from sysmlc.language.names import positional_redefinition as positions
 from sysmlc.language.tree import Node, Reference, Relation
 
 GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
@@ -44,7 +46,7 @@ class Generals(ABC):
     def abandon(self) -> None:
         """Give up what is being looked for, after an error in the midst of it."""
         for reference in self._active:
-            reference.lead([])
+            reference.set_targets([])
         self.abandoned |= self._active
         self._active.clear()
         self._placing.clear()

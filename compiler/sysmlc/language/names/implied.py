@@ -5,9 +5,8 @@ The tables are in ``bases``; which candidates are needed beside the written ones
 
 from functools import cache
 
-from sysmlc.language.composition import USAGES, is_composite
-from sysmlc.language.metaclasses import GENERALS, kinds_of
-from sysmlc.language.names.bases import (
+from sysmlc.language.metaclasses import GENERALS, USAGES, is_composite, kinds_of
+from sysmlc.language.names.base_types import (
     BASES,
     BINARY,
     BY_MEMBERSHIP,
@@ -15,7 +14,7 @@ from sysmlc.language.names.bases import (
     PLACES,
     REDEFINED_BY_MEMBERSHIP,
 )
-from sysmlc.language.names.contents import FEATURES, TYPES
+from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.tree import Node
 
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
@@ -37,7 +36,7 @@ def owning_type(node: Node) -> Node | None:
 
 def is_part(node: Node) -> bool:
     """Whether the values of a feature are parts of what has it."""
-    return is_composite(node) if node.kind in USAGES else bool(node.facts.get("isComposite"))
+    return is_composite(node) if node.kind in USAGES else bool(node.attributes.get("isComposite"))
 
 
 def ends(node: Node) -> list[Node]:
@@ -45,7 +44,7 @@ def ends(node: Node) -> list[Node]:
     return [
         member
         for member in node.members
-        if member.membership == "EndFeatureMembership" or member.facts.get("isEnd")
+        if member.membership == "EndFeatureMembership" or member.attributes.get("isEnd")
     ]
 
 
@@ -55,7 +54,7 @@ _FACTS = ("isNegated", "portionKind", "isEnd", "isReference", "direction", "isCo
 
 def like(node: Node) -> _Like:
     """What the candidates of ``node`` follow from: equal for nodes that have the same ones."""
-    kind, owner, facts = node.kind, node.owner, node.facts
+    kind, owner, facts = node.kind, node.owner, node.attributes
     counted = 0
     if kind in _COUNTED:
         counted = _clauses(node) if kind == "IfActionUsage" else len(ends(node))
@@ -84,7 +83,7 @@ def by_role(node: Node) -> str | None:
 
 
 def _bases(node: Node) -> list[str]:
-    negated = NEGATED.get(node.kind) if node.facts.get("isNegated") else None
+    negated = NEGATED.get(node.kind) if node.attributes.get("isNegated") else None
     if negated:
         return [negated]
     if node.kind in _CONNECTORS:
@@ -124,7 +123,7 @@ def _places(kind: str, owner: str) -> tuple[tuple[str, bool], ...]:
 
 
 def _placed(node: Node) -> list[str]:
-    portion = _PORTIONS.get(str(node.facts.get("portionKind", "")))
+    portion = _PORTIONS.get(str(node.attributes.get("portionKind", "")))
     found = [portion] if portion else []
     owner = owning_type(node)
     if owner is None:

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.contents import NAMESPACES
-from sysmlc.language.names.filters import passes
 from sysmlc.language.names.members import NONE, Hits, Members
+from sysmlc.language.names.metadata import passes
+from sysmlc.language.names.symbols import NAMESPACES
 from sysmlc.language.tree import Node, Relation
 
 _IMPORTS = kinds_of("Import")
@@ -94,23 +94,25 @@ class Imports(Members):
         if hit is None:
             return NONE
         names = (
-            (hit.name, hit.short) if hit.name or hit.short else (relation.reference.chain[-1][-1],)
+            (hit.name, hit.short_name)
+            if hit.name or hit.short_name
+            else (relation.reference.chain[-1][-1],)
         )
         if name in names:
             return (hit,)
-        if node.facts.get("isRecursive"):
+        if node.attributes.get("isRecursive"):
             return self._many(node, self.element(hit), name)
         return NONE
 
     def _many(self, node: Node, scope: Node | None, name: str) -> Hits:
         if scope is None:
             return NONE
-        everything = node.kind in _EXPOSES or bool(node.facts.get("isImportAll"))
+        everything = node.kind in _EXPOSES or bool(node.attributes.get("isImportAll"))
         hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
-        if hits or not node.facts.get("isRecursive"):
+        if hits or not node.attributes.get("isRecursive"):
             return hits
         for nested in self._nested(scope, everything):
-            hits = self.own(nested, name) if everything else self.visible(nested, name)
+            hits = self.own_members(nested, name) if everything else self.visible(nested, name)
             if hits:
                 return hits
         return NONE

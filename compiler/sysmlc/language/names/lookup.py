@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterable
 
-from sysmlc.language.names import contexts, results
-from sysmlc.language.names.contents import NAMESPACES, TYPES
+from sysmlc.language.names import contexts
+from sysmlc.language.names import expression_results as results
 from sysmlc.language.names.imports import Imports
 from sysmlc.language.names.members import Hits
+from sysmlc.language.names.symbols import NAMESPACES, TYPES
 from sysmlc.language.tree import Node, Reference, Relation
 
 _MOST = 2_000
@@ -53,7 +54,7 @@ class Lookup(Imports):
         if not is_whole and cuts > _MOST:
             self.given_up.add(reference)
         if is_whole or not self._active or not 0 < cuts <= _MOST:
-            reference.lead(targets)
+            reference.set_targets(targets)
         return targets[-1] if is_whole else None
 
     def _follow(self, node: Node, relation: Relation) -> list[Node]:

@@ -3,8 +3,8 @@
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
 
-from sysmlc.language.names.contents import TYPES, Owned, naming, owned
 from sysmlc.language.names.generals import Generals
+from sysmlc.language.names.symbols import TYPES, Owned, naming, owned
 from sysmlc.language.tree import Node
 
 Hits = tuple[Node, ...]
@@ -46,12 +46,12 @@ class Members(Generals):
             index = self._owned[scope] = owned(scope)
         return index
 
-    def own(self, scope: Node, name: str) -> Hits:
+    def own_members(self, scope: Node, name: str) -> Hits:
         """The members by one name that ``scope`` owns; a nameless one needs what names it."""
         hits = self.owned(scope).get(name)
         if hits is None:
             return NONE
-        return tuple([hit for hit in hits if hit.name or hit.short or self._is_named(hit)])
+        return tuple([hit for hit in hits if hit.name or hit.short_name or self._is_named(hit)])
 
     def _is_named(self, feature: Node) -> bool:
         reference = naming(feature)
@@ -65,10 +65,10 @@ class Members(Generals):
             if (
                 without in hits
                 and without is not None
-                and name not in (without.name, without.short)
+                and name not in (without.name, without.short_name)
             ):
                 hits = [hit for hit in hits if hit is not without]
-            yield tuple([hit for hit in hits if hit.name or hit.short or self._is_named(hit)])
+            yield tuple([hit for hit in hits if hit.name or hit.short_name or self._is_named(hit)])
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
         if self.imports(scope):
@@ -76,13 +76,13 @@ class Members(Generals):
 
     def _without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
         """All own members by one name, and inherited ones."""
-        yield self.own(scope, name)
+        yield self.own_members(scope, name)
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
 
     def _without_implied(self, scope: Node, name: str) -> Iterator[Hits]:
         """Members by one name, inherited ones only of what the text says that a type is."""
-        yield self.own(scope, name)
+        yield self.own_members(scope, name)
         for general in self.generals(scope):
             yield self._heritable(general, name)
         yield self.imported(scope, name, inside=True)
@@ -94,7 +94,7 @@ class Members(Generals):
 
     def visible(self, scope: Node, name: str) -> Hits:
         """Members by one name as seen from outside: public own ones, inherited, imported."""
-        hits = [h for h in self.own(scope, name) if h.visibility in ("", "public")]
+        hits = [h for h in self.own_members(scope, name) if h.visibility in ("", "public")]
         if not hits and scope.kind in TYPES:
             hits += [h for h in self.inherited(scope, name) if h.visibility != "protected"]
         if not hits:
@@ -165,7 +165,7 @@ class Members(Generals):
     def _general_hits(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
         if scope in self._cyclic:
-            all_own = (h for g in self.reached(scope) for h in self.own(g, name))
+            all_own = (h for g in self.reached(scope) for h in self.own_members(g, name))
             return tuple(dict.fromkeys(h for h in all_own if h.visibility != "private"))
         for general in self.generals(scope):
             found = self._heritable(general, name)
@@ -191,7 +191,7 @@ class Members(Generals):
         if index is None:
             index = self.owned(general)
         if name in index:
-            hits = [h for h in self.own(general, name) if h.visibility != "private"]
+            hits = [h for h in self.own_members(general, name) if h.visibility != "private"]
             if hits:
                 return tuple(hits)
         memo = self._inherited.get(general)
@@ -214,7 +214,7 @@ class Members(Generals):
             for relation in member.relations:
                 if relation.kind == "Redefinition":
                     name = relation.reference.chain[-1][-1]
-                    if name in (hit.name, hit.short) or hit.name is None:
+                    if name in (hit.name, hit.short_name) or hit.name is None:
                         target = self.target(member, relation)
                         if target is hit or (target and hit in self.redefined(target)):
                             return None

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sysmlc.language.library import Library
-from sysmlc.language.names import implied, semantic
-from sysmlc.language.names.bases import REDEFINED_BY_MEMBERSHIP
-from sysmlc.language.names.classified import Types
-from sysmlc.language.names.contents import TYPES, naming, payload_of
-from sysmlc.language.names.listing import members
+from sysmlc.language.names import implied, metadata
+from sysmlc.language.names.base_types import REDEFINED_BY_MEMBERSHIP
+from sysmlc.language.names.feature_types import Types
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
+from sysmlc.language.names.symbols import TYPES, naming, payload_of
 from sysmlc.language.tree import Document, Node, Relation
 
 
@@ -33,7 +32,7 @@ class Model:
         self._named: dict[str, list[Node]] = {}
         for document in self.documents:
             for member in document.root.members:
-                for name in {member.name, member.short} - {None}:
+                for name in {member.name, member.short_name} - {None}:
                     self._named.setdefault(str(name), []).append(member)
         self._found: dict[str, Node | None] = {}
         self._implied: dict[Node, list[tuple[str, Node]]] = {}
@@ -123,8 +122,8 @@ class Model:
             reference = naming(node)
             if reference is None:
                 by_position = self.lookup.by_position(node)
-                if node.short or not by_position or by_position[0] in seen:
-                    return node.short
+                if node.short_name or not by_position or by_position[0] in seen:
+                    return node.short_name
                 node = by_position[0]
                 seen.add(node)
                 continue
@@ -168,7 +167,7 @@ class Model:
         is_parameter = node.membership == "ParameterMembership"
         if is_parameter and node.owner is not None and node.owner.kind == "TransitionUsage":
             return True
-        return not semantic.METADATA.isdisjoint([member.kind for member in node.members])
+        return not metadata.METADATA.isdisjoint([member.kind for member in node.members])
 
     def _by_role(self, node: Node) -> list[Node]:
         name = implied.by_role(node) if node.membership in REDEFINED_BY_MEMBERSHIP else None
@@ -184,7 +183,7 @@ class Model:
             return []
         before = self.lookup.cuts
         found = [pair for pair in self._alike(node).pairs if pair[1] is not node]
-        known = [*_accepted(node), *semantic.bases(node, self.lookup), *found]
+        known = [*_accepted(node), *metadata.bases(node, self.lookup), *found]
         if self.lookup.cuts == before:
             self._implied[node] = known
         return known
@@ -268,3 +267,35 @@ def root(node: Node) -> Node:
     while node.owner is not None:
         node = node.owner
     return node
+
+
+def members(lookup: Lookup, node: Node, generals: Sequence[Node], *, imported: bool) -> list[Node]:
+    """Members in the order of the text, then those of generals that nothing nearer redefines."""
+    found = dict.fromkeys(node.members)
+    if generals:
+        redefined = _redefined(lookup, node.members)
+        for general in generals:
+            for member in general.members:
+                if member.visibility != "private" and member not in redefined:
+                    found.setdefault(member)
+            redefined |= _redefined(lookup, general.members)
+    if imported:
+        for member in _imported(lookup, node):
+            found.setdefault(member)
+    return list(found)
+
+
+def _redefined(lookup: Lookup, owned: list[Node]) -> set[Node]:
+    return {general for member in owned for general in lookup.redefined(member)}
+
+
+def _imported(lookup: Lookup, node: Node) -> list[Node]:
+    found: list[Node] = []
+    for declaration in lookup.imports(node):
+        for relation in declaration.relations:
+            target = lookup.target(declaration, relation)
+            if target is not None and relation.kind == "importedMembership":
+                found.append(target)
+            elif target is not None:
+                found += [m for m in target.members if m.visibility in ("", "public")]
+    return found

@@ -1,158 +1,23 @@
-"""What is wrong with a text, said at its place."""
+"""Syntax errors, reported at their location with the expected tokens and advice."""
 
 from codecs import BOM_UTF8
+from collections.abc import Collection
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
-from sysmlc.language.text import rules
-from sysmlc.language.text.nesting import LIMIT
-from sysmlc.language.text.scan import Fault, Tokens
+from sysmlc.language.text import hints, rules
+from sysmlc.language.text.lexer import LexicalFault, Tokens
+from sysmlc.language.text.nesting import MAX_DEPTH
 from sysmlc.sources import Source
 
-_MOST = 100
-"""Errors of one file that are told."""
-_LAST = f"of one file no more than {_MOST} errors of syntax are told"
+_MAX_ERRORS = 100
+"""Errors that are reported for one file."""
+_LAST_NOTE = f"of one file no more than {_MAX_ERRORS} errors of syntax are told"
 _LANGUAGES = {"kerml": "KerML", "sysml": "SysML"}
-_WORDS = {"BODY": "the comment", "STRING": "the text"}
-_COMMENT = (
+_COMMENT_ADVICE = (
     "a comment /* */ is an element of the model and stands between members, or after `doc` or "
     "`comment`; a note anywhere is written //* ... */ or // ..."
 )
-
-
-class Errors:
-    """Reports about one text; after a hundred no more."""
-
-    def __init__(
-        self, tokens: Tokens, path: str, language: str, sink: Sink, source: Source | None
-    ) -> None:
-        self._tokens = tokens
-        self._path = path
-        self._language = language
-        self._sink = sink
-        marked = source is not None and source.data.startswith(BOM_UTF8)
-        self._mark = len(BOM_UTF8) if marked and not tokens.text.startswith("\ufeff") else 0
-        self._left = _MOST
-        self._unclosed_told = False
-        self.beginnings: list[str] = []
-
-    def report(self, rule: Rule, offset: int, **facts: object) -> None:
-        """Report at a character of the text."""
-        self._left -= 1
-        if self._left < 0:
-            return
-        place = Place(self._path, offset=self.byte(offset))
-        facts.setdefault("advice", "")
-        notes = () if self._left else (_LAST,)
-        self._sink.report(rule, Subject(place=place), help="", notes=notes, **facts)
-
-    def byte(self, offset: int) -> int:
-        """The byte of the file at which a character of the text starts."""
-        return self._mark + len(self._tokens.text[:offset].encode("utf-8", "replace"))
-
-    def deep(self, start: int) -> None:
-        """Something is nested too deep; what follows from that is not told."""
-        self.report(rules.DEEP, start, limit=LIMIT)
-        self._left = 0
-
-    def faults(self, deep: int) -> None:
-        """What the scanner could not read; the token, if not -1, where the text is too deep."""
-        if deep >= 0:
-            self.deep(self._tokens.starts[deep])
-        for fault in self._tokens.faults:
-            is_open = fault.what in ("comment", "quote", "string")
-            rule = rules.UNCLOSED if is_open else rules.CHARACTER
-            what, advice = _FAULTS[fault.what]
-            shown = _shown(fault)
-            self.report(rule, fault.start, what=what.format(shown), advice=advice)
-
-    def unexpected(self, at: int, expected: list[str]) -> None:
-        """A token does not fit."""
-        from sysmlc.language.text import hints
-        from sysmlc.language.text.grammar_words import expectation
-
-        said = expectation(expected, self.beginnings)
-        found = self._found(at)
-        advice = hints.slip(self._tokens, at, expected, self.beginnings)
-        start = self._tokens.starts[at]
-        self.report(rules.SYNTAX, start, found=found, expected=said, advice=advice)
-
-    def comment(self, at: int) -> None:
-        """A comment stands where none may."""
-        start = self._tokens.starts[at]
-        found, expected = "a comment /* */", "something else"
-        self.report(rules.SYNTAX, start, found=found, expected=expected, advice=_COMMENT)
-
-    def substituted(self, at: int, meant: str) -> None:
-        """A token is read as another one: a keyword as a name, `=` as `:=`."""
-        start, word = self._tokens.starts[at], self._tokens[at]
-        if meant == "NAME":
-            self.report(rules.KEYWORD, start, word=word, language=_LANGUAGES[self._language])
-            return
-        from sysmlc.language.text import hints
-
-        advice = f"{hints.INITIAL}: here only '{meant}' can stand"
-        if word == "==":
-            advice = f"'==' compares two values; {hints.INITIAL}"
-        expected = f"'{meant}'"
-        self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
-
-    def missing(self, at: int, words: str) -> None:
-        """Something is missing before a token; told where the one before ends."""
-        before = self._before(at)
-        end = self._tokens.ends[before]
-        said = self._found(before)
-        advice = f"put {words} there"
-        if words == "';'":
-            from sysmlc.language.text import hints
-
-            about = hints.missing(self._tokens, before, at, self.beginnings)
-            advice = about or "put ';' there, or a body in braces"
-        self.report(rules.MISSING, max(end - 1, 0), missing=words, before=said, advice=advice)
-
-    def _before(self, at: int) -> int:
-        """The last token before one that the text really has."""
-        before = at - 1
-        while before > 0 and not self._tokens[before]:
-            before -= 1
-        return max(before, 0)
-
-    def stray(self, at: int) -> None:
-        """A `;` or `}` too much."""
-        symbol = self._tokens[at]
-        expected = "a declaration or '}'" if symbol == ";" else "a declaration"
-        advice = "take it away" if symbol == ";" else "no '{' is open here: one of both is too much"
-        start = self._tokens.starts[at]
-        self.report(rules.SYNTAX, start, found=f"'{symbol}'", expected=expected, advice=advice)
-
-    def unclosed(self) -> None:
-        """The text ends in a body; told at the brace that opens it, once."""
-        if self._unclosed_told:
-            return
-        self._unclosed_told = True
-        open_ones: list[int] = []
-        for index in range(len(self._tokens.types)):
-            symbol = self._tokens[index]
-            if symbol == "{":
-                open_ones.append(index)
-            elif symbol == "}" and open_ones:
-                open_ones.pop()
-        if open_ones:
-            start = self._tokens.starts[open_ones[-1]]
-            advice = "put '}' after the last member of this body"
-            self.report(rules.UNCLOSED, start, what="this '{'", advice=advice)
-
-    def _found(self, at: int) -> str:
-        written = self._tokens[at]
-        if not written:
-            return "the end of the text"
-        if written.startswith("/*"):
-            return "the comment /* */"
-        if written.startswith('"'):
-            return "a text in quotes"
-        return written if written.startswith("'") else f"'{_short(written)}'"
-
-
-_FAULTS = {
+_LEXICAL_FAULTS = {
     "comment": ("this comment", "put */ where it ends"),
     "quote": ("this name in quotes", "put ' where it ends, in the same line"),
     "string": ("this text in quotes", 'put " where it ends'),
@@ -163,14 +28,215 @@ _FAULTS = {
         "take it away, or put the name that it belongs to in single quotes: 'Größe'",
     ),
 }
+"""What is wrong and the advice, for each kind of lexical fault."""
 
 
-def _shown(fault: Fault) -> str:
-    char = fault.text or " "
-    if char == "\ufffd":
+class Errors:
+    """Reports the syntax errors of one text, up to a maximum.
+
+    ``beginnings`` are the tokens with which a member may begin. ``recovery.Recovery`` sets them.
+    """
+
+    def __init__(
+        self, tokens: Tokens, path: str, language: str, sink: Sink, source: Source | None
+    ) -> None:
+        self._tokens = tokens
+        self._path = path
+        self._language = language
+        self._sink = sink
+        is_marked = source is not None and source.data.startswith(BOM_UTF8)
+        # A text that was decoded with its byte order mark counts the mark itself.
+        has_hidden_mark = is_marked and not tokens.text.startswith("\ufeff")
+        self._mark_length = len(BOM_UTF8) if has_hidden_mark else 0
+        self._remaining = _MAX_ERRORS
+        self._is_unclosed_reported = False
+        self.beginnings: list[str] = []
+
+    def report(self, rule: Rule, offset: int, **facts: object) -> None:
+        """Report an error at a character of the text, unless the maximum is reached."""
+        self._remaining -= 1
+        if self._remaining < 0:
+            return
+        place = Place(self._path, offset=self._byte_offset(offset))
+        facts.setdefault("advice", "")
+        notes = () if self._remaining else (_LAST_NOTE,)
+        self._sink.report(rule, Subject(place=place), help="", notes=notes, **facts)
+
+    def _byte_offset(self, offset: int) -> int:
+        return self._mark_length + len(self._tokens.text[:offset].encode("utf-8", "replace"))
+
+    def report_depth(self, start: int) -> None:
+        """Report that the text is nested too deep, and suppress the errors that follow from it."""
+        self.report(rules.DEEP, start, limit=MAX_DEPTH)
+        self._remaining = 0
+
+    def report_faults(self, too_deep: int) -> None:
+        """Report the faults of the lexer, and the token that is nested too deep unless it is -1."""
+        if too_deep >= 0:
+            self.report_depth(self._tokens.starts[too_deep])
+        for fault in self._tokens.faults:
+            is_unclosed = fault.what in ("comment", "quote", "string")
+            rule = rules.UNCLOSED if is_unclosed else rules.CHARACTER
+            what, advice = _LEXICAL_FAULTS[fault.what]
+            self.report(rule, fault.start, what=what.format(_quote_fault(fault)), advice=advice)
+
+    def report_unexpected(self, index: int, expected: list[str]) -> None:
+        """Report a token in a place where only ``expected`` tokens are valid."""
+        self.report(
+            rules.SYNTAX,
+            self._tokens.starts[index],
+            found=self._describe_token(index),
+            expected=describe_expected(expected, self.beginnings),
+            advice=hints.advise_unexpected(self._tokens, index, expected, self.beginnings),
+        )
+
+    def report_comment(self, index: int) -> None:
+        """Report a comment in a place where no comment is valid."""
+        start = self._tokens.starts[index]
+        found, expected = "a comment /* */", "something else"
+        self.report(rules.SYNTAX, start, found=found, expected=expected, advice=_COMMENT_ADVICE)
+
+    def report_substitution(self, index: int, substitute: str) -> None:
+        """Report a token that is parsed as another one: a keyword as a name, `=` as `:=`."""
+        start, word = self._tokens.starts[index], self._tokens[index]
+        if substitute == "NAME":
+            self.report(rules.KEYWORD, start, word=word, language=_LANGUAGES[self._language])
+            return
+        advice = f"{hints.INITIAL}: here only '{substitute}' can stand"
+        if word == "==":
+            advice = f"'==' compares two values; {hints.INITIAL}"
+        expected = f"'{substitute}'"
+        self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
+
+    def report_missing(self, index: int, words: str) -> None:
+        """Report a missing token before ``index``, where the token before it ends."""
+        before = self._find_written_before(index)
+        end = self._tokens.ends[before]
+        found = self._describe_token(before)
+        advice = f"put {words} there"
+        if words == "';'":
+            hint = hints.advise_missing(self._tokens, before, index, self.beginnings)
+            advice = hint or "put ';' there, or a body in braces"
+        self.report(rules.MISSING, max(end - 1, 0), missing=words, before=found, advice=advice)
+
+    def _find_written_before(self, index: int) -> int:
+        """Return the last token before ``index`` that recovery did not insert."""
+        before = index - 1
+        while before > 0 and not self._tokens[before]:
+            before -= 1
+        return max(before, 0)
+
+    def report_stray(self, index: int) -> None:
+        """Report a superfluous `;` or `}`."""
+        symbol = self._tokens[index]
+        expected = "a declaration or '}'" if symbol == ";" else "a declaration"
+        advice = "take it away" if symbol == ";" else "no '{' is open here: one of both is too much"
+        start = self._tokens.starts[index]
+        self.report(rules.SYNTAX, start, found=f"'{symbol}'", expected=expected, advice=advice)
+
+    def report_unclosed(self) -> None:
+        """Report, once, the innermost brace that is open at the end of the text."""
+        if self._is_unclosed_reported:
+            return
+        self._is_unclosed_reported = True
+        open_braces: list[int] = []
+        for index in range(len(self._tokens.types)):
+            symbol = self._tokens[index]
+            if symbol == "{":
+                open_braces.append(index)
+            elif symbol == "}" and open_braces:
+                open_braces.pop()
+        if open_braces:
+            start = self._tokens.starts[open_braces[-1]]
+            advice = "put '}' after the last member of this body"
+            self.report(rules.UNCLOSED, start, what="this '{'", advice=advice)
+
+    def _describe_token(self, index: int) -> str:
+        text = self._tokens[index]
+        if not text:
+            return "the end of the text"
+        if text.startswith("/*"):
+            return "the comment /* */"
+        if text.startswith('"'):
+            return "a text in quotes"
+        return text if text.startswith("'") else f"'{_shorten(text)}'"
+
+
+def _quote_fault(fault: LexicalFault) -> str:
+    text = fault.text or " "
+    if text == "\ufffd":
         return "what is not UTF-8 here"
-    return f"'{_short(char)}'" if char.isprintable() else f"the character U+{ord(char[0]):04X}"
+    return f"'{_shorten(text)}'" if text.isprintable() else f"the character U+{ord(text[0]):04X}"
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:40]}..."
+
+
+# -- expected tokens in words --------------------------------------------------------------------
+
+_TERMINALS = {
+    "NAME": "a name",
+    "STRING": "a text in double quotes",
+    "NUMBER": "a number",
+    "BODY": "a comment /* ... */",
+    "$END": "the end of the text",
+}
+_GROUPS = (
+    (
+        {"NUMBER", "null"},
+        "an expression",
+        "NAME STRING NUMBER null true false ( * + - ~ not new all if istype hastype @ as { $",
+    ),
+    (
+        {":>", ":>>"},
+        "what it specialises (':', ':>' or ':>>')",
+        ": defined typed :> subsets :>> "
+        "redefines ::> references => crosses [ ordered nonunique ~ conjugates disjoint unions "
+        "intersects differences chains inverse featured specializes",
+    ),
+    ({"=", ":=", "default"}, "a value ('=')", "= := default"),
+    (
+        {"+", "xor"},
+        "an operator",
+        "?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ "
+        "** istype hastype @ as @@ meta . .? -> # ( [ _INDEX",
+    ),
+)
+"""Tokens that stand for one phrase: those that show its presence, the phrase, all its tokens."""
+_SEPARATORS = ("';'", "'{'", "'}'")
+_MAX_ALTERNATIVES = 5
+
+
+def describe_expected(expected: Collection[str], beginnings: Collection[str]) -> str:
+    """Return the tokens that are valid in a place, in words.
+
+    ``expected`` has names of token types and the texts of keywords and symbols. ``beginnings``
+    has the tokens with which a member of a body may begin.
+    """
+    remaining = set(expected)
+    phrases = []
+    if {"package", "abstract"} <= remaining:
+        phrases.append("a declaration")
+        remaining -= set(beginnings)
+    for required, phrase, group in _GROUPS:
+        if required <= remaining:
+            phrases.append(phrase)
+            remaining -= set(group.split())
+    if "NAME" in remaining:
+        remaining -= {"$", "<", "~"}
+    remaining -= {"_INDEX"} if len(remaining) == 1 else {"_INDEX", "parallel"}
+    single = [_TERMINALS.get(name, f"'{name}'") for name in sorted(remaining)]
+    return _join_alternatives(sorted(single, key=_rank_phrase) + phrases)
+
+
+def _rank_phrase(phrase: str) -> tuple[bool, bool, str]:
+    return phrase not in _SEPARATORS, not phrase.startswith("a "), phrase
+
+
+def _join_alternatives(phrases: list[str]) -> str:
+    if len(phrases) > _MAX_ALTERNATIVES:
+        phrases = [*phrases[: _MAX_ALTERNATIVES - 1], "something else"]
+    if len(phrases) < 2:
+        return phrases[0] if phrases else "nothing"
+    return f"{', '.join(phrases[:-1])} or {phrases[-1]}"

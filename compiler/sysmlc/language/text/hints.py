@@ -1,9 +1,8 @@
-"""What may help where a token does not fit: common slips, words of drafts and other languages."""
+"""Advice about a token that does not fit: common slips, words of drafts and of other languages."""
 
 from collections.abc import Callable, Collection
 
-from sysmlc.language.text.foreign import direction, foreign
-from sysmlc.language.text.scan import Tokens
+from sysmlc.language.text.lexer import Tokens
 from sysmlc.support.suggestions import did_you_mean
 
 INITIAL = "':=' gives an initial value, '=' binds for good, 'default' may be overridden"
@@ -18,8 +17,8 @@ _TOKENS = {
     "then": "an expression asks with a question mark: if a ? b else c",
     "when": "what is waited for is 'accept when c', a condition is 'if c', both before 'then'",
 }
-"""What to say about a token, wherever it stands."""
-_FIRST = {
+"""Advice about a token, wherever it stands."""
+_FIRST_WORDS = {
     "activity": "'action' is meant",
     "assoc": "in SysML an association is a 'connection def'",
     "behavior": "in SysML a behaviour is an 'action def'",
@@ -46,120 +45,207 @@ _FIRST = {
     "var": "'attribute' is meant",
     "valuetype": "a type of values is an 'attribute def'",
 }
-"""What to say about a word that begins a member and is no keyword."""
-_ENDS = frozenset({"to", "then", "="})
+"""Advice about a word that begins a member and is no keyword."""
+_END_TOKENS = frozenset({"to", "then", "="})
 _DIRECTIONS = frozenset({"in", "out", "inout"})
-_BREAKS = ("", ";", "{", "}")
+_SEPARATORS = ("", ";", "{", "}")
+_MIN_KEYWORD_LENGTH = 5
+"""Length of the shortest word that is taken for a misspelt keyword; shorter ones are names."""
+_DOUBLED_OPERATORS = {"&": "'and'", "|": "'or'"}
+_ARROWS = ("-", "->", "=>", "~", ",")
+
+Hint = Callable[[Tokens, int, Collection[str]], str]
+"""Returns advice about a token in whose place only other tokens are valid, or an empty string."""
 
 
-def slip(tokens: Tokens, at: int, expected: Collection[str], beginnings: Collection[str]) -> str:
-    """What may help with token ``at``, in place of which ``expected`` may stand; or nothing.
+def advise_unexpected(
+    tokens: Tokens, index: int, expected: Collection[str], beginnings: Collection[str]
+) -> str:
+    """Return advice about token ``index``, in place of which ``expected`` are valid, or nothing.
 
     ``beginnings`` are the words with which members of a body begin.
     """
-    for about in _SLIPS:
-        said = about(tokens, at, expected)
-        if said:
-            return said
-    foreign_one = foreign(tokens, at, expected) if not tokens[at].isalpha() else ""
-    known = _TOKENS.get(tokens[at], "") or foreign_one
-    return known or first_word(tokens, at - 1, beginnings) or foreign(tokens, at, expected)
-
-
-def missing(tokens: Tokens, before: int, at: int, beginnings: Collection[str]) -> str:
-    """What may help where a member seems to end with token ``before``, and ``at`` follows."""
+    advice = _first_advice(_SLIPS, tokens, index, expected)
+    if advice:
+        return advice
+    # The words of another language are names, and the first word of a member explains more.
+    is_symbol = not tokens[index].isalpha()
     return (
-        _import(tokens, at, ())
-        or _ends(tokens, at, ())
-        or direction(tokens, before, at, beginnings)
-        or first_word(tokens, before, beginnings)
+        _TOKENS.get(tokens[index], "")
+        or (_first_advice(_FOREIGN, tokens, index, expected) if is_symbol else "")
+        or _advise_first_word(tokens, index - 1, beginnings)
+        or _first_advice(_FOREIGN, tokens, index, expected)
     )
 
 
-def first_word(tokens: Tokens, at: int, beginnings: Collection[str]) -> str:
-    """Where a member starts with a word that no keyword is: the keyword that may be meant."""
-    word = tokens[at] if at >= 0 else ""
-    is_first = at == 0 or tokens[at - 1] in _BREAKS
+def advise_missing(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
+    """Return advice where a member seems to end with token ``before``, and ``index`` follows."""
+    return (
+        _advise_import(tokens, index, ())
+        or _advise_ends(tokens, index, ())
+        or _advise_direction(tokens, before, index, beginnings)
+        or _advise_first_word(tokens, before, beginnings)
+    )
+
+
+def _first_advice(
+    hints: tuple[Hint, ...], tokens: Tokens, index: int, expected: Collection[str]
+) -> str:
+    texts = (hint(tokens, index, expected) for hint in hints)
+    return next((text for text in texts if text), "")
+
+
+def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) -> str:
+    """Return the keyword that may be meant where a member begins with a word that is none."""
+    word = tokens[index] if index >= 0 else ""
+    is_first = index == 0 or tokens[index - 1] in _SEPARATORS
     if not is_first or not word.isidentifier() or word in beginnings:
         return ""
-    if word in _FIRST:
-        return f"'{word}' is no keyword: {_FIRST[word]}"
-    said = did_you_mean(word, [known for known in beginnings if known.isalpha()])
-    return f"'{word}' is no keyword: {said}" if said.startswith("did") else ""
+    if word in _FIRST_WORDS:
+        return f"'{word}' is no keyword: {_FIRST_WORDS[word]}"
+    suggestion = did_you_mean(word, [keyword for keyword in beginnings if keyword.isalpha()])
+    return f"'{word}' is no keyword: {suggestion}" if suggestion.startswith("did") else ""
 
 
-def _member(tokens: Tokens, at: int) -> list[str]:
-    """The tokens before ``at`` of the member that it stands in."""
-    start = at
-    while start > 0 and tokens[start - 1] not in _BREAKS:
+def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
+    """Advise about a direction behind the kind of a feature: ``port in p``."""
+    word, kind = tokens[index], tokens[before]
+    if word not in _DIRECTIONS or kind not in beginnings or not kind.isalpha():
+        return ""
+    return f"the direction stands before the kind: {word} {kind} ..."
+
+
+def _member_before(tokens: Tokens, index: int) -> list[str]:
+    """Return the tokens before ``index`` that belong to the same member."""
+    start = index
+    while start > 0 and tokens[start - 1] not in _SEPARATORS:
         start -= 1
-    return [tokens[index] for index in range(start, at)]
+    return [tokens[position] for position in range(start, index)]
 
 
-def _unit(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
-    """A name behind a number is meant as its unit."""
-    unit, number = tokens[at], tokens[at - 1] if at else ""
+def _next_tokens(tokens: Tokens, index: int) -> list[str]:
+    """Return up to two tokens after ``index``."""
+    return [tokens[position] for position in range(index + 1, min(index + 3, len(tokens.types)))]
+
+
+# -- slips in SysML ------------------------------------------------------------------------------
+
+
+def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about a name behind a number, which is meant as its unit."""
+    unit, number = tokens[index], tokens[index - 1] if index else ""
     is_unit = number[:1].isdigit() and unit[:1].isalpha()
     return f"units stand in brackets: {number} [{unit}]" if is_unit else ""
 
 
-def _parameters(tokens: Tokens, at: int, expected: Collection[str]) -> str:
-    """A list in parentheses behind the name that is declared."""
-    before = _member(tokens, at)
-    if tokens[at] == "(" and {";", "{"} <= set(expected):
-        names = [word for word in _following(tokens, at) if word not in _DIRECTIONS]
+def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about a list in parentheses behind a declared name."""
+    before = _member_before(tokens, index)
+    if tokens[index] == "(" and {";", "{"} <= set(expected):
+        names = [word for word in _next_tokens(tokens, index) if word not in _DIRECTIONS]
         return _PARAMETERS.format(names[0] if names and names[0].isidentifier() else "x")
-    is_list = tokens[at] in (")", ",", ":") and before[2:3] == ["("] and "," in expected
+    is_list = tokens[index] in (")", ",", ":") and before[2:3] == ["("] and "," in expected
     return _PARAMETERS.format(before[3]) if is_list and len(before) > 3 else ""
 
 
-def _following(tokens: Tokens, at: int) -> list[str]:
-    """The two tokens after one, as far as there are so many."""
-    return [tokens[index] for index in range(at + 1, min(at + 3, len(tokens.types)))]
-
-
-def _multiplicity(tokens: Tokens, at: int, expected: Collection[str]) -> str:
-    is_end = tokens[at] == "[" and not _ENDS.isdisjoint(expected)
+def _advise_multiplicity(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    is_end = tokens[index] == "[" and not _END_TOKENS.isdisjoint(expected)
     return "the multiplicity of an end stands before it: [0..1] a" if is_end else ""
 
 
-def _import(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
-    if "import" not in _member(tokens, at):
+def _advise_import(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    if "import" not in _member_before(tokens, index):
         return ""
-    if tokens[at] == ".":
+    if tokens[index] == ".":
         return "names of packages are joined by '::'"
-    name = "".join(_following(tokens, at)[:1])
-    return f"another name is an alias: alias {name} for ...;" if tokens[at] == "as" else ""
+    name = "".join(_next_tokens(tokens, index)[:1])
+    return f"another name is an alias: alias {name} for ...;" if tokens[index] == "as" else ""
 
 
-def _ends(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
-    """A succession or transition whose ends are said with other words."""
-    before = _member(tokens, at)
+def _advise_ends(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about the ends of a succession or transition."""
+    before = _member_before(tokens, index)
     source = before[-1] if before else "a"
-    if tokens[at] == "then" and before[-2:-1] == ["succession"]:
+    if tokens[index] == "then" and before[-2:-1] == ["succession"]:
         return f"before the source stands 'first': succession first {source} then ..."
-    if tokens[at] == "to" and "transition" in before:
+    if tokens[index] == "to" and "transition" in before:
         return f"a transition says where it begins and ends: transition first {source} then ..."
     return ""
 
 
-def _condition(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
-    is_condition = _member(tokens, at)[:1] == ["assert"]
+def _advise_condition(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    is_condition = _member_before(tokens, index)[:1] == ["assert"]
     return "what is asserted stands in braces: assert constraint { x > 0 }" if is_condition else ""
 
 
-def _result(tokens: Tokens, at: int, _expected: Collection[str]) -> str:
-    """``return`` declares the result: an expression is its value."""
-    is_value = _member(tokens, at)[:1] == ["return"]
+def _advise_result(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about ``return`` with an expression: it declares the result."""
+    is_value = _member_before(tokens, index)[:1] == ["return"]
     return "'return' declares the result: return r = ...;" if is_value else ""
 
 
-_SLIPS: tuple[Callable[[Tokens, int, Collection[str]], str], ...] = (
-    _unit,
-    _parameters,
-    _multiplicity,
-    _import,
-    _ends,
-    _result,
-    _condition,
+_SLIPS: tuple[Hint, ...] = (
+    _advise_unit,
+    _advise_parameters,
+    _advise_multiplicity,
+    _advise_import,
+    _advise_ends,
+    _advise_result,
+    _advise_condition,
+)
+
+
+# -- symbols and words of other languages --------------------------------------------------------
+
+
+def _advise_doubled_operator(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about ``&&`` and ``||``, which are two tokens each."""
+    symbol = tokens[index]
+    is_doubled = index > 0 and tokens[index - 1] == symbol and symbol in _DOUBLED_OPERATORS
+    return f"conditions are joined by {_DOUBLED_OPERATORS[symbol]}" if is_doubled else ""
+
+
+def _advise_comparison(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    is_binding = tokens[index] == "=" and "==" in expected and "=" not in expected
+    return "'==' compares two values, '=' binds one" if is_binding else ""
+
+
+def _advise_conditional(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    is_question = tokens[index] == "?" and "?" not in expected
+    return "an expression that chooses begins with 'if': if a ? b else c" if is_question else ""
+
+
+def _advise_result_end(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about a `;` behind the expression that is the result of a body."""
+    is_result = tokens[index] == ";" and list(expected) == ["}"]
+    return "the result is an expression without ';' at the end of the body" if is_result else ""
+
+
+def _advise_comment(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    is_text = tokens[index].startswith('"') and "BODY" in expected
+    return "what is said stands between /* and */" if is_text else ""
+
+
+def _advise_connection(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    is_arrow = tokens[index] in _ARROWS and "to" in expected
+    return "ends are joined by 'to': a to b" if is_arrow else ""
+
+
+def _advise_spelling(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    word = tokens[index]
+    if len(word) < _MIN_KEYWORD_LENGTH or not word.isalpha():
+        return ""
+    keywords = [keyword for keyword in expected if len(keyword) >= _MIN_KEYWORD_LENGTH]
+    suggestion = did_you_mean(word, keywords)
+    return suggestion if suggestion.startswith("did") and word not in suggestion else ""
+
+
+_FOREIGN: tuple[Hint, ...] = (
+    _advise_doubled_operator,
+    _advise_comparison,
+    _advise_conditional,
+    _advise_result_end,
+    _advise_comment,
+    _advise_connection,
+    _advise_spelling,
 )

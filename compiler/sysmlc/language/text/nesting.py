@@ -1,90 +1,94 @@
-"""A text that is nested deeper than any model is read up to there, and told."""
+"""Limits on nesting: deeper parts of a text are not read, and the limit is reported.
+
+The limits keep parsing and name resolution of hostile texts within the stack and in linear time.
+"""
 
 import re
 from functools import cache
 from itertools import accumulate
 
-from sysmlc.language.text.build.operators import level
-from sysmlc.language.text.scan import Tokens
-from sysmlc.language.text.tables import Tables
+from sysmlc.language.text.builders.operators import find_precedence
+from sysmlc.language.text.lalr import Tables
+from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node
 
-LIMIT = 200
-"""Bodies, parentheses and brackets within one another; operators within one another too."""
-ROW = 2_000
-"""Operands of one row of operators (a + b + ...), which is flat in the text."""
+MAX_DEPTH = 200
+"""Depth of bodies, parentheses and brackets, and depth of operators."""
+MAX_OPERANDS = 2_000
+"""Operands of operators of one precedence (a + b + ...), which are a deep tree of a flat text."""
 _OPENING, _CLOSING = "{([", "})]"
 
 
-def too_deep(tables: Tables, tokens: Tokens) -> int:
-    """The token that opens one level too many, or -1."""
+def find_too_deep(tables: Tables, tokens: Tokens) -> int:
+    """Return the index of the token that opens one level too many, or -1."""
     words, types = tables.types.words, tokens.types
-    if sum(types.count(words[symbol]) for symbol in _OPENING) <= LIMIT:
+    if sum(types.count(words[symbol]) for symbol in _OPENING) <= MAX_DEPTH:
         return -1
     steps = [0] * 256
     for opening, closing in zip(_OPENING, _CLOSING, strict=True):
         steps[words[opening]], steps[words[closing]] = 1, -1
     depths = list(accumulate(map(steps.__getitem__, types)))
-    if max(depths) <= LIMIT and min(depths) >= 0:
+    if max(depths) <= MAX_DEPTH and min(depths) >= 0:
         return -1
-    return _first_too_deep(types, steps)
+    return _find_first_too_deep(types, steps)
 
 
-def _first_too_deep(types: bytearray, steps: list[int]) -> int:
-    """What closes more than is open counts for nothing."""
+def _find_first_too_deep(types: bytearray, steps: list[int]) -> int:
+    """Like ``find_too_deep``; a superfluous closing token does not lower the depth below 0."""
     depth = 0
-    for index, kind in enumerate(types):
-        depth = max(depth + steps[kind], 0)
-        if depth > LIMIT:
+    for index, token_type in enumerate(types):
+        depth = max(depth + steps[token_type], 0)
+        if depth > MAX_DEPTH:
             return index
     return -1
 
 
 def has_long_expression(tables: Tables, tokens: Tokens) -> bool:
-    """Whether so many tokens stand between the ends of members that operators may nest deep."""
-    return _long(tables).search(tokens.types) is not None
+    """Whether a member has so many tokens in a row that its operators may nest too deep."""
+    return _long_member_pattern(tables).search(tokens.types) is not None
 
 
 @cache
-def _long(tables: Tables) -> re.Pattern[bytes]:
+def _long_member_pattern(tables: Tables) -> re.Pattern[bytes]:
     ends = bytes(tables.types.words[symbol] for symbol in ";{}")
-    return re.compile(b"[^" + re.escape(ends) + b"]{%d}" % LIMIT)
+    return re.compile(b"[^" + re.escape(ends) + b"]{%d}" % MAX_DEPTH)
 
 
-def cut(root: Node) -> list[Node]:
-    """Take expressions away that are nested deeper than the limit; those taken.
+def remove_deep_expressions(root: Node) -> list[Node]:
+    """Remove expressions that are nested deeper than the limits, and return them.
 
-    Elements of a sequence and operands of one row of operators are beside one another, though
-    the tree has them within one another. The time for names in a row grows with its square.
+    Elements of a sequence and operands of operators of one precedence are siblings, although the
+    tree nests them. The number of such operands is limited because the time to resolve names in
+    them grows with its square.
     """
-    taken = []
-    waiting = [(root, 0, 0)]
-    while waiting:
-        node, depth, row = waiting.pop()
-        if (depth > LIMIT or row > ROW) and node.owner is not None:
-            taken.append(_uproot(node))
+    removed = []
+    stack = [(root, 0, 0)]
+    while stack:
+        node, depth, operands = stack.pop()
+        if (depth > MAX_DEPTH or operands > MAX_OPERANDS) and node.owner is not None:
+            removed.append(_remove_expression(node))
             continue
         for member in reversed(node.members):
-            if member.facts.get("operator") == "," == node.facts.get("operator"):
-                waiting.append((member, depth, 0))
-            elif _is_row(node, member):
-                waiting.append((member, depth, row + 1))
+            if member.attributes.get("operator") == "," == node.attributes.get("operator"):
+                stack.append((member, depth, 0))
+            elif _has_same_precedence(node, member):
+                stack.append((member, depth, operands + 1))
             else:
-                waiting.append((member, depth + 1, 0))
-    return taken
+                stack.append((member, depth + 1, 0))
+    return removed
 
 
-def _is_row(node: Node, member: Node) -> bool:
-    """Whether a left operand continues the row of operators that a binary operation ends."""
+def _has_same_precedence(node: Node, member: Node) -> bool:
+    """Whether ``member`` is the left operand of ``node`` and both operators bind equally."""
     if len(node.members) < 2 or member is not node.members[0] or len(member.members) < 2:
         return False
-    operators = node.facts.get("operator"), member.facts.get("operator")
-    levels = [level(one) for one in operators if isinstance(one, str)]
+    operators = node.attributes.get("operator"), member.attributes.get("operator")
+    levels = [find_precedence(operator) for operator in operators if isinstance(operator, str)]
     return len(levels) == 2 and levels[0] == levels[1] != -1
 
 
-def _uproot(node: Node) -> Node:
-    """Remove the whole expression that a node is in from the element that has it."""
+def _remove_expression(node: Node) -> Node:
+    """Remove the whole expression that contains ``node`` from its owner, and return it."""
     while node.owner is not None and node.owner.membership == "ParameterMembership":
         node = node.owner
     if node.owner is not None and node in node.owner.members:

@@ -1,0 +1,201 @@
+"""Features and relationships of the metaclasses in interchange (KerML 1.0, 8.3; SysML 2.0, 8.3)."""
+
+from functools import cache
+
+from sysmlc.language.metaclasses import ALL_GENERALS, kinds_of
+
+_STATED = {
+    "Element": "declaredName declaredShortName elementId aliasIds isImpliedIncluded"
+    " ownedRelationship owningRelationship",
+    "Relationship": "isImplied ownedRelatedElement owningRelatedElement source target",
+    "Annotation": "annotatedElement",
+    "Comment": "body locale",
+    "ConjugatedPortTyping": "conjugatedPortDefinition",
+    "Conjugation": "conjugatedType originalType",
+    "CrossSubsetting": "crossedFeature",
+    "Definition": "isVariation",
+    "Dependency": "client supplier",
+    "Differencing": "differencingType",
+    "Disjoining": "disjoiningType typeDisjoined",
+    "Feature": "direction isComposite isConstant isDerived isEnd isOrdered isPortion isUnique"
+    " isVariable",
+    "FeatureChaining": "chainingFeature",
+    "FeatureInverting": "featureInverted invertingFeature",
+    "FeatureTyping": "type typedFeature",
+    "FeatureValue": "isDefault isInitial",
+    "Import": "isImportAll isRecursive visibility",
+    "Intersecting": "intersectingType",
+    "Invariant": "isNegated",
+    "LibraryPackage": "isStandard",
+    "LiteralBoolean": "value",
+    "LiteralInteger": "value",
+    "LiteralRational": "value",
+    "LiteralString": "value",
+    "Membership": "memberElement memberName memberShortName visibility",
+    "MembershipImport": "importedMembership",
+    "NamespaceImport": "importedNamespace",
+    "OccurrenceDefinition": "isIndividual",
+    "OccurrenceUsage": "isIndividual portionKind",
+    "OperatorExpression": "operator",
+    "PortConjugation": "originalPortDefinition",
+    "Redefinition": "redefinedFeature redefiningFeature",
+    "ReferenceSubsetting": "referencedFeature",
+    "RequirementConstraintMembership": "kind",
+    "RequirementDefinition": "reqId",
+    "RequirementUsage": "reqId",
+    "Specialization": "general specific",
+    "StateDefinition": "isParallel",
+    "StateSubactionMembership": "kind",
+    "StateUsage": "isParallel",
+    "Subclassification": "subclassifier superclassifier",
+    "Subsetting": "subsettedFeature subsettingFeature",
+    "TextualRepresentation": "body language",
+    "TransitionFeatureMembership": "kind",
+    "TriggerInvocationExpression": "kind",
+    "Type": "isAbstract isSufficient",
+    "TypeFeaturing": "featureOfType featuringType",
+    "Unioning": "unioningType",
+    "Usage": "isVariation",
+}
+"""What each metaclass states; ids and ownership included, what is derived from others not."""
+
+_DERIVED = """
+action actionDefinition actorParameter allocation allocationDefinition analysisCaseDefinition
+annotatedElement annotatingElement annotation argument assertedConstraint association
+associationEnd assumedConstraint attributeDefinition behavior bodyAction bound calculation
+calculationDefinition caseDefinition chainingFeature concernDefinition condition
+conjugatedPortDefinition connectionDefinition connectionEnd connectorEnd constraintDefinition
+crossFeature crossingFeature defaultFeaturingType definition differencingType directedFeature
+directedUsage doAction documentation documentedElement effectAction elseAction endFeature
+endOwningType entryAction enumeratedValue enumerationDefinition eventOccurrence exhibitedState
+exitAction exposedElement expression feature featureChained featureMembership featureTarget
+featureWithValue featuringType filterCondition flowDefinition flowEnd framedConcern function
+guardExpression ifArgument importOwningNamespace importedElement importedMembership
+includedUseCase individualDefinition inheritedFeature inheritedMembership input instantiatedType
+interaction interfaceDefinition interfaceEnd intersectingType isConjugated isLibraryElement
+isModelLevelEvaluable isReference itemDefinition loopVariable lowerBound mayTimeVary member
+memberElementId membership membershipOwningNamespace metaclass metadataDefinition multiplicity
+name nestedAction nestedAllocation nestedAnalysisCase nestedAttribute nestedCalculation
+nestedCase nestedConcern nestedConnection nestedConstraint nestedEnumeration nestedFlow
+nestedInterface nestedItem nestedMetadata nestedOccurrence nestedPart nestedPort nestedReference
+nestedRendering nestedRequirement nestedState nestedTransition nestedUsage nestedUseCase
+nestedVerificationCase nestedView nestedViewpoint objectiveRequirement occurrenceDefinition
+operand originalPortDefinition output ownedAction ownedActorParameter ownedAllocation
+ownedAnalysisCase ownedAnnotatingElement ownedAnnotatingRelationship ownedAnnotation
+ownedAttribute ownedCalculation ownedCase ownedConcern ownedConjugator ownedConnection
+ownedConstraint ownedCrossSubsetting ownedDifferencing ownedDisjoining ownedElement
+ownedEndFeature ownedEnumeration ownedFeature ownedFeatureChaining ownedFeatureInverting
+ownedFeatureMembership ownedFlow ownedImport ownedInterface ownedIntersecting ownedItem
+ownedMember ownedMemberElement ownedMemberElementId ownedMemberFeature ownedMemberName
+ownedMemberParameter ownedMemberShortName ownedMembership ownedMetadata
+ownedObjectiveRequirement ownedOccurrence ownedPart ownedPort ownedPortConjugator
+ownedRedefinition ownedReference ownedReferenceSubsetting ownedRendering ownedRequirement
+ownedResultExpression ownedSpecialization ownedStakeholderParameter ownedState
+ownedSubclassification ownedSubjectParameter ownedSubsetting ownedTransition ownedTypeFeaturing
+ownedTyping ownedUnioning ownedUsage ownedUseCase ownedVariantUsage ownedVerificationCase
+ownedView ownedViewpoint owner owningAnnotatedElement owningAnnotatingElement
+owningAnnotatingRelationship owningClassifier owningDefinition owningFeature
+owningFeatureMembership owningFeatureOfType owningMembership owningNamespace owningType
+owningUsage parameter partDefinition payloadArgument payloadFeature payloadParameter payloadType
+performedAction portDefinition predicate qualifiedName receiverArgument referencedConcern
+referencedConstraint referencedElement referencedRendering referencingFeature referent
+relatedElement relatedFeature relatedType rendering renderingDefinition representedElement
+requiredConstraint requirementDefinition result resultExpression satisfiedRequirement
+satisfiedViewpoint satisfyingFeature senderArgument seqArgument shortName source sourceFeature
+sourceOutputFeature sourceType stakeholderParameter state stateDefinition step subjectParameter
+succession target targetArgument targetFeature targetInputFeature targetType
+terminatedOccurrenceArgument text textualRepresentation thenAction transitionFeature
+triggerAction type typeDifferenced typeIntersected typeUnioned unioningType untilArgument
+upperBound usage useCaseDefinition useCaseIncluded value valueExpression variant
+variantMembership verificationCaseDefinition verifiedRequirement view viewCondition
+viewDefinition viewRendering viewpointDefinition viewpointStakeholder whileArgument
+"""
+"""What files may say again although it is derived: nothing is read from it."""
+
+ABSTRACT = (
+    "ConnectorAsUsage ControlNode Element Expose Import InstantiationExpression"
+    " LoopActionUsage Relationship"
+)
+"""Metaclasses that no element is of."""
+
+
+@cache
+def _derived() -> frozenset[str]:
+    return frozenset(_DERIVED.split())
+
+
+@cache
+def stated(kind: str) -> frozenset[str]:
+    """The features that elements of the metaclass can state, inherited ones included."""
+    return frozenset(
+        feature for general in ALL_GENERALS[kind] for feature in _STATED.get(general, "").split()
+    )
+
+
+def is_known(kind: str, feature: str) -> bool:
+    """Whether the metaclass has the feature, or some metaclass has it derived."""
+    return feature in stated(kind) or feature in _derived()
+
+
+@cache
+def is_concrete(kind: str) -> bool:
+    """Whether elements can be of this metaclass: known and not abstract."""
+    return kind in ALL_GENERALS and kind not in ABSTRACT.split()
+
+
+RELATIONS = {
+    "Specialization": "general",
+    "Subclassification": "superclassifier",
+    "FeatureTyping": "type",
+    "ConjugatedPortTyping": "conjugatedPortDefinition",
+    "Subsetting": "subsettedFeature",
+    "Redefinition": "redefinedFeature",
+    "ReferenceSubsetting": "referencedFeature",
+    "CrossSubsetting": "crossedFeature",
+    "Conjugation": "originalType",
+    "Disjoining": "disjoiningType",
+    "Unioning": "unioningType",
+    "Intersecting": "intersectingType",
+    "Differencing": "differencingType",
+    "FeatureChaining": "chainingFeature",
+    "FeatureInverting": "invertingFeature",
+    "TypeFeaturing": "featuringType",
+    "Annotation": "annotatedElement",
+}
+"""Relationships that an element owns towards others, and the feature that says to which."""
+
+ENDS = {
+    "Dependency": ("client", "supplier"),
+    "Specialization": ("specific", "general"),
+    "Subclassification": ("subclassifier", "superclassifier"),
+    "FeatureTyping": ("typedFeature", "type"),
+    "Subsetting": ("subsettingFeature", "subsettedFeature"),
+    "Redefinition": ("redefiningFeature", "redefinedFeature"),
+    "Conjugation": ("conjugatedType", "originalType"),
+    "Disjoining": ("typeDisjoined", "disjoiningType"),
+    "FeatureInverting": ("featureInverted", "invertingFeature"),
+    "TypeFeaturing": ("featureOfType", "featuringType"),
+}
+"""Relationships that stand for themselves, and their ends in the order of the text."""
+
+NAMING = (
+    kinds_of("InstantiationExpression")
+    | kinds_of("FeatureReferenceExpression")
+    | kinds_of("MetadataAccessExpression")
+    | {"AssignmentActionUsage", "TransitionUsage"}
+)
+"""Elements whose memberships name what they refer to."""
+
+OWN_ENDS = {
+    "Specialization": "specific",
+    "Subclassification": "subclassifier",
+    "FeatureTyping": "typedFeature",
+    "ConjugatedPortTyping": "typedFeature",
+    "Subsetting": "subsettingFeature",
+    "Redefinition": "redefiningFeature",
+    "Conjugation": "conjugatedType",
+    "Disjoining": "typeDisjoined",
+    "FeatureInverting": "featureInverted",
+    "TypeFeaturing": "featureOfType",
+}
+"""The feature by which an owned relationship names its owner, where the owner does not say it."""

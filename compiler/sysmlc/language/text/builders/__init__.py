@@ -1,0 +1,35 @@
+"""The functions that build the tree, by the names that the grammars give them."""
+
+from collections.abc import Mapping
+from types import ModuleType
+
+from sysmlc.language.text.builders import (
+    actions,
+    connections,
+    definitions,
+    expressions,
+    features,
+    kerml,
+    names,
+    namespaces,
+    nodes,
+    operators,
+    referring_usages,
+    relationships,
+    transitions,
+    usages,
+)
+from sysmlc.language.text.lalr import Action
+
+_COMMON = (nodes, names, namespaces, features, operators, expressions, connections)
+_SYSML = (definitions, usages, actions, referring_usages, transitions)
+
+
+def _actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
+    return {name: action for module in modules for name, action in module.ACTIONS.items()}
+
+
+ACTIONS: Mapping[str, Mapping[str, Action]] = {
+    "kerml": _actions((*_COMMON, relationships, kerml)),
+    "sysml": _actions(_COMMON + _SYSML),
+}

@@ -1,0 +1,126 @@
+"""Specialisations, multiplicities and values of features (KerML 8.2.4.3, 8.2.5.10, 8.2.5.11)."""
+
+from sysmlc.language.text.builders.nodes import OWNING, make_node
+from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.tree import Node, Reference, Relation
+
+SpecializationPart = Relation | Node | int
+"""Of a specialisation: a relationship, a multiplicity, or the token `ordered` or `nonunique`."""
+
+
+def apply_specializations(
+    node: Node, parts: list[SpecializationPart] | None, tokens: Tokens
+) -> Node:
+    """Apply what stands between the name of a feature and its value."""
+    for part in parts or ():
+        if isinstance(part, Relation):
+            node.relations.append(part)
+        elif isinstance(part, Node):
+            node.add_member(part)
+        elif tokens[part] == "ordered":
+            node.attributes["isOrdered"] = True
+        else:
+            node.attributes["isUnique"] = False
+    return node
+
+
+def apply_value(node: Node, value: Node | None) -> Node:
+    """Give a feature its value."""
+    if value is not None:
+        node.add_member(value)
+    return node
+
+
+def _build_typing(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> Relation:
+    return Relation("FeatureTyping", name)
+
+
+def _build_conjugated_typing(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> Relation:
+    return Relation("ConjugatedPortTyping", name)
+
+
+def _build_typings(
+    _tokens: Tokens, _stop: int, _begin: int, *types: list[Relation]
+) -> list[Relation]:
+    return types[-1]
+
+
+def _build_subsettings(
+    _tokens: Tokens, _stop: int, _begin: int, names: list[Reference]
+) -> list[Relation]:
+    return [Relation("Subsetting", name) for name in names]
+
+
+def _build_redefinitions(
+    _tokens: Tokens, _stop: int, _begin: int, names: list[Reference]
+) -> list[Relation]:
+    return [Relation("Redefinition", name) for name in names]
+
+
+def _build_references(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> list[Relation]:
+    return [Relation("ReferenceSubsetting", name)]
+
+
+def _build_crosses(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> list[Relation]:
+    return [Relation("CrossSubsetting", name)]
+
+
+def make_multiplicity(bounds: Node, tokens: Tokens, begin: int, stop: int) -> Node:
+    """The multiplicity that an expression between brackets gives."""
+    node = make_node("MultiplicityRange", OWNING, tokens, begin, stop)
+    is_range = bounds.attributes.get("operator") == ".." and bounds.kind == "OperatorExpression"
+    for bound in bounds.members if is_range else [bounds]:
+        bound.membership = OWNING
+        node.add_member(bound)
+    return node
+
+
+def _build_multiplicity(tokens: Tokens, stop: int, begin: int, bounds: Node) -> list[Node]:
+    return [make_multiplicity(bounds, tokens, begin, stop)]
+
+
+def _build_ordering(_tokens: Tokens, _stop: int, _begin: int, token: int) -> list[int]:
+    return [token]
+
+
+def _mark_value(role: str, value: Node) -> Node:
+    value.membership, value.role = "FeatureValue", role
+    return value
+
+
+def _build_bound_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
+    return _mark_value("=", value)
+
+
+def _build_initial_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
+    return _mark_value(":=", value)
+
+
+def _build_default_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
+    return _mark_value("default", value)
+
+
+def _build_default_bound_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
+    return _mark_value("default =", value)
+
+
+def _build_default_initial_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
+    return _mark_value("default :=", value)
+
+
+ACTIONS = {
+    "typing": _build_typing,
+    "conjugated_typing": _build_conjugated_typing,
+    "typings": _build_typings,
+    "subsettings": _build_subsettings,
+    "redefinitions": _build_redefinitions,
+    "references": _build_references,
+    "crosses": _build_crosses,
+    "multiplicity": _build_multiplicity,
+    "ordering_part": _build_ordering,
+    "bound_value": _build_bound_value,
+    "initial_value": _build_initial_value,
+    "default_value": _build_default_value,
+    "default_bound_value": _build_default_bound_value,
+    "default_initial_value": _build_default_initial_value,
+}

@@ -1,0 +1,201 @@
+"""The lexer of KerML and SysML v2 (KerML 8.2.2): one regular expression, one pass."""
+
+import re
+from collections.abc import Mapping
+
+from msgspec import Struct
+
+from sysmlc.language.tree import Node
+
+_SKIPPED = r"(?:[ \t\r\n\f\v\ufeff]+|//\*(?s:.)*?\*/|//(?!\*)[^\r\n]*)*+"
+_COMMENT = r"/\*(?s:.)*?\*/"
+_WORD = r"[^\W\d]\w*"
+_SYMBOLS = (
+    r"===|!==|:>>|::>|\*\*|::|:>|:=|==|!=|<=|>=|=>|->|\.\.|\.\?|\?\?|@@"
+    r"|/(?!\*)|\.(?!\d)|[~}|{^\]\[@?>=<;:,+*)(&%$#-]"
+)
+_QUOTED = r"'(?:[^'\\\r\n]|\\.)*'"
+_STRING = r'"(?:[^"\\]|\\(?s:.))*"'
+_NUMBER = r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?"
+TOKEN = re.compile(
+    rf"{_SKIPPED}(?:({_WORD}|{_SYMBOLS})|({_NUMBER})|({_COMMENT})|({_QUOTED})|({_STRING})|(.)|\Z)"
+)
+"""Blanks and notes, then a token; the number of the matching group gives its type."""
+INVALID_GROUP = 6
+"""The group of a character that begins no token; at the end of the text no group matches."""
+MAX_INTEGER_DIGITS = 1_000
+"""Digits of the longest natural number that is read exactly."""
+_PROBE_LENGTH = 64
+"""A binary file, or one in UTF-16, has a zero among so many first characters."""
+_REST_OF_LITERAL = re.compile(r"[\w ]*")
+_COMMENT_START = re.compile(r"\A[ \t\f\v]*(?:(?:\r\n|\r|\n)[ \t\f\v]*\*? ?)?")
+_LINE_START = re.compile(r"(\r\n|\r|\n)[ \t\f\v]*\*? ?")
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
+
+
+class LexicalFault(Struct, frozen=True):
+    """A part of a text that is no token.
+
+    ``what`` is ``comment``, ``quote`` or ``string`` for one that is never closed, ``character`` for
+    a character outside of all tokens, ``number`` for one that is too large, ``encoding`` for a text
+    that is not UTF-8.
+    """
+
+    what: str
+    start: int
+    text: str
+
+
+class BuildFault(Struct, frozen=True):
+    """A fault that a builder found: a ``prefix`` or a ``combination``, with message and advice."""
+
+    what: str
+    start: int
+    text: str
+    advice: str
+
+
+class Tokens(Struct, frozen=True, eq=False):
+    """The tokens of ``text``: the number of their types, and where each starts and ends.
+
+    The last token is the end of the text. ``faults`` has the parts of the text that are no tokens.
+    Builders collect nodes and faults in the other lists: ``ref_usages`` has usages with the keyword
+    `ref`, which is redundant or not depending on their owners; ``restricted_nodes`` has members
+    that only some bodies may have; ``build_faults`` has other faults.
+    """
+
+    text: str
+    types: bytearray
+    starts: list[int]
+    ends: list[int]
+    faults: list[LexicalFault]
+    ref_usages: list[Node]
+    restricted_nodes: list[Node]
+    build_faults: list[BuildFault]
+
+    def __getitem__(self, index: int) -> str:
+        return self.text[self.starts[index] : self.ends[index]]
+
+    def insert(self, index: int, kind: int) -> None:
+        """Insert an empty token that the text lacks."""
+        place = self.ends[index - 1] if index else 0
+        self.types.insert(index, kind)
+        self.starts.insert(index, place)
+        self.ends.insert(index, place)
+
+    def truncate(self, index: int, end: int) -> None:
+        """Let the text end before token ``index``."""
+        self.types[index:] = bytes([end])
+        self.ends[index:] = [self.starts[index]]
+        del self.starts[index + 1 :]
+
+    def read_name(self, index: int) -> str:
+        """Return the name that a token writes, without quotes and escapes (KerML 8.2.2.3)."""
+        written = self.text[self.starts[index] : self.ends[index]]
+        return unquote(written) if written[0] == "'" else written
+
+
+class TokenTypes(Struct, frozen=True):
+    """Numbers of token types: of keywords and symbols by their text, and of the other tokens."""
+
+    words: Mapping[str, int]
+    name: int
+    string: int
+    number: int
+    body: int
+    end: int
+
+
+def tokenize(text: str, types: TokenTypes) -> Tokens:
+    """Return all tokens of ``text``; never fails. A text that is not UTF-8 has no tokens."""
+    tokens = Tokens(text, bytearray(), [], [], [], [], [], [])
+    position = 0
+    if "\0" in text[:_PROBE_LENGTH]:
+        tokens.faults.append(LexicalFault("encoding", 0, ""))
+        position = len(text)
+    while position >= 0:
+        position = _tokenize_valid(tokens, types, position)
+    if not text.isascii():
+        _check_name_characters(tokens, types)
+    return tokens
+
+
+def _tokenize_valid(tokens: Tokens, types: TokenTypes, position: int) -> int:
+    """Append tokens up to an invalid one; return where to go on, or -1 at the end of the text."""
+    token_types, starts, ends = tokens.types, tokens.starts, tokens.ends
+    words, name = types.words, types.name
+    by_group = (types.end, name, types.number, types.body, name, types.string)
+    for match in TOKEN.finditer(tokens.text, position):
+        group = match.lastindex or 0
+        if group == INVALID_GROUP:
+            return _skip_invalid(tokens, types, match.start(INVALID_GROUP))
+        start, end = match.span(group) if group else (match.end(), match.end())
+        token_types.append(words.get(match[1], name) if group == 1 else by_group[group])
+        starts.append(start)
+        ends.append(end)
+        if not group:
+            break
+    return -1
+
+
+def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
+    """Record a part of the text that is no token; return where to go on."""
+    text = tokens.text
+    char = text[start]
+    if text.startswith("/*", start) or text.startswith("//*", start):
+        tokens.faults.append(LexicalFault("comment", start, char))
+        return len(text)
+    if char in "'\"":
+        match = _REST_OF_LITERAL.match(text, start + 1)
+        end = match.end() if match else len(text)
+        tokens.faults.append(LexicalFault("quote" if char == "'" else "string", start, char))
+        tokens.types.append(types.name if char == "'" else types.string)
+        tokens.starts.append(start)
+        tokens.ends.append(end)
+        return end
+    if all(char != fault.text for fault in tokens.faults):
+        tokens.faults.append(LexicalFault("character", start, char))
+    return start + 1
+
+
+def _check_name_characters(tokens: Tokens, types: TokenTypes) -> None:
+    """Record a fault for names without quotes that have other letters than a to z."""
+    for index, token_type in enumerate(tokens.types):
+        if token_type == types.name and not (name := tokens[index]).isascii() and name[0] != "'":
+            char = next(char for char in name if not char.isascii())
+            if all(char != fault.text for fault in tokens.faults):
+                start = tokens.starts[index] + name.index(char)
+                tokens.faults.append(LexicalFault("character", start, char))
+
+
+def join_tokens(text: str, start: int, end: int) -> str:
+    """Return part of a text in one line, without notes, with one blank where tokens are apart."""
+    pieces: list[str] = []
+    last_end = -1
+    for match in TOKEN.finditer(text, start, end):
+        group = match.lastindex or 0
+        if not group:
+            break
+        if last_end >= 0 and match.start(group) > last_end:
+            pieces.append(" ")
+        pieces.append(match[group])
+        last_end = match.end(group)
+    return "".join(pieces)
+
+
+def strip_comment(written: str) -> str:
+    """Return the body of a comment as KerML 8.2.3.3.2, note 1, takes it from the text."""
+    inner = written[2:-2]
+    return _LINE_START.sub(r"\1", _COMMENT_START.sub("", inner, count=1))
+
+
+def unquote(written: str) -> str:
+    """Return the text between quotes, without escapes (KerML 8.2.2.3, Table 4)."""
+    is_closed = len(written) > 1 and written[-1] == written[0]
+    inner = written[1:-1] if is_closed else written[1:]
+    return _ESCAPE.sub(_unescape, inner) if "\\" in inner else inner
+
+
+def _unescape(match: re.Match[str]) -> str:
+    return _ESCAPES.get(match[1], match[1])

@@ -1,0 +1,214 @@
+"""Error recovery: report a token that does not fit, mend the text or the stack, and parse on.
+
+A mend that loses nothing is tried first (a substituted, inserted or ignored token). Otherwise
+panic mode drops the stack down to where the rest of the member can be parsed.
+"""
+
+from collections.abc import Iterator
+
+from sysmlc.language.text.errors import Errors
+from sysmlc.language.text.lalr import Rules, Stack, Tables
+from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.text.table_generator import ACCEPT
+
+_MAX_RECOVERIES = 500
+"""Recoveries after which the rest of a text is given up."""
+_PREFIX_WITH_BODY = "abstract"
+"""A prefix that a body may follow, inserted before a body whose head was not understood."""
+
+
+class Recovery:
+    """Recovers from the syntax errors of one text.
+
+    A mend takes the states of the stack, the index of the token that does not fit, and whether
+    the error is a consequence of the one before and must not be reported. It returns the index of
+    the token to parse on from, or -1 if it does not apply.
+    """
+
+    def __init__(self, tables: Tables, rules: Rules, tokens: Tokens, errors: Errors) -> None:
+        self._tables = tables
+        self._rules = rules
+        self._tokens = tokens
+        self._errors = errors
+        self._words = tables.types.words
+        self._last_error = -2
+        self._count = 0
+        errors.beginnings.extend(self._find_expected([tables.start]))
+
+    def recover(self, stack: Stack, index: int) -> int:
+        """Mend the stack or the tokens; return where to parse on, or -1 to give the text up."""
+        states = stack[2::3]
+        self._count += 1
+        if self._count > _MAX_RECOVERIES:
+            return -1
+        is_quiet = index <= self._last_error + 1
+        self._last_error = index
+        for mend in _MENDS:
+            next_index = mend(self, states, index, is_quiet)
+            if next_index >= 0:
+                return next_index
+        if not is_quiet:
+            self._errors.report_unexpected(index, self._find_expected(states))
+        return self._panic(stack, index)
+
+    def _find_expected(self, states: list[int]) -> list[str]:
+        """Return the texts and type names of the tokens that may come next."""
+        names = self._tables.names
+        return [names[token_type] for token_type in names if self._accepts(states, token_type)]
+
+    # -- mends that lose nothing -----------------------------------------------------------------
+
+    def _drop_comment(self, _states: list[int], index: int, is_quiet: bool) -> int:
+        if self._tokens.types[index] != self._tables.types.body:
+            return -1
+        if not is_quiet:
+            self._errors.report_comment(index)
+        del self._tokens.types[index], self._tokens.starts[index], self._tokens.ends[index]
+        # The next token has the same index now, and is a first error if it does not fit.
+        self._last_error = -2
+        return index
+
+    def _substitute(self, states: list[int], index: int, is_quiet: bool) -> int:
+        """Take a keyword for a name, or one kind of `=` for another."""
+        tokens, text = self._tokens, self._tokens[index]
+        if text[:1].isalpha() and text in self._words:
+            candidates = [self._tables.types.name]
+        elif text in ("=", ":=", "=="):
+            substitutes = ("=", ":=") if text == "==" else (":=", "=")
+            candidates = [self._words[word] for word in substitutes if word in self._words]
+        else:
+            return -1
+        for token_type in candidates:
+            if self._accepts_all(states, (token_type, *tokens.types[index + 1 : index + 2])):
+                tokens.types[index] = token_type
+                if not is_quiet:
+                    self._errors.report_substitution(index, self._tables.names[token_type])
+                return index
+        return -1
+
+    def _insert_semicolon(self, states: list[int], index: int, is_quiet: bool) -> int:
+        semicolon = self._words[";"]
+        if not self._may_begin_member(index):
+            return -1
+        if not self._accepts_all(states, (semicolon, self._tokens.types[index])):
+            return -1
+        return self._insert(semicolon, "';'", index, is_quiet)
+
+    def _may_begin_member(self, index: int) -> bool:
+        """Whether the token is a keyword or `}`, begins a line, or ends the text."""
+        tokens = self._tokens
+        if index == 0 or tokens[index] in ("}", ""):
+            return index > 0
+        if tokens[index] in self._words and tokens[index].isalpha():
+            return True
+        gap = tokens.text[tokens.ends[index - 1] : tokens.starts[index]]
+        return "\n" in gap or "\r" in gap
+
+    def _insert_closing_bracket(self, states: list[int], index: int, is_quiet: bool) -> int:
+        for symbol in ")]":
+            token_type = self._words[symbol]
+            if self._accepts_all(states, (token_type, self._tokens.types[index])):
+                return self._insert(token_type, f"'{symbol}'", index, is_quiet)
+        return -1
+
+    def _insert(self, token_type: int, words: str, index: int, is_quiet: bool) -> int:
+        if not is_quiet:
+            self._errors.report_missing(index, words)
+        self._tokens.insert(index, token_type)
+        return index
+
+    def _skip_stray(self, states: list[int], index: int, is_quiet: bool) -> int:
+        """Skip a `;` or `}` between members."""
+        if self._tokens[index] not in (";", "}") or self._find_body(states) < len(states) - 1:
+            return -1
+        if not is_quiet:
+            self._errors.report_stray(index)
+        return index + 1
+
+    def _close_body(self, states: list[int], index: int, _is_quiet: bool) -> int:
+        """Insert `}` where the text ends within a body."""
+        brace = self._words["}"]
+        if self._tokens[index] or not self._accepts(states, brace):
+            return -1
+        self._errors.report_unclosed()
+        self._tokens.insert(index, brace)
+        return index
+
+    # -- panic mode ------------------------------------------------------------------------------
+
+    def _panic(self, stack: Stack, index: int) -> int:
+        """Parse on at the end of the member or at its body, with as much of it as possible."""
+        tokens = self._tokens
+        body = self._find_body(stack[2::3])
+        for stop, symbol in self._find_stops(index):
+            required = ";" if symbol in ("}", "") else symbol
+            top = self._find_accepting(stack, body, self._words[required])
+            del stack[3 * max(top, body) + 3 :]
+            self._last_error = stop
+            if top >= 0:
+                if required != symbol:
+                    tokens.insert(stop, self._words[required])
+                return stop
+            if symbol == "{":
+                tokens.insert(stop, self._words[_PREFIX_WITH_BODY])
+                self._last_error = stop + 1
+            return stop + 1 if symbol == ";" else stop
+        return -1
+
+    def _find_accepting(self, stack: Stack, body: int, token_type: int) -> int:
+        """Return the highest stack position above ``body`` that accepts a token, or -1."""
+        states = stack[2::3]
+        for top in range(len(states) - 1, body, -1):
+            if self._accepts(states[: top + 1], token_type):
+                return top
+        return -1
+
+    def _find_stops(self, index: int) -> Iterator[tuple[int, str]]:
+        """Yield `;`, braces and the end of the text: where a member or its head may end."""
+        for position in range(index, len(self._tokens.types)):
+            text = self._tokens[position]
+            if text in ("{", "}", ";") or not text:
+                yield position, text
+
+    # -- simulation of the parser ----------------------------------------------------------------
+
+    def _find_body(self, states: list[int]) -> int:
+        """Return the stack position of the innermost body whose members are being parsed."""
+        for position in range(len(states) - 1, -1, -1):
+            if self._tables.item in self._tables.rows[states[position]]:
+                return position
+        return 0
+
+    def _accepts(self, states: list[int], token_type: int) -> bool:
+        return self._accepts_all(states, (token_type,))
+
+    def _accepts_all(self, states: list[int], token_types: tuple[int, ...]) -> bool:
+        """Whether tokens of these types can come next."""
+        simulated = list(states)
+        return all(self._shift(simulated, token_type) for token_type in token_types)
+
+    def _shift(self, states: list[int], token_type: int) -> bool:
+        """Reduce and shift on ``states`` only; return False where the token does not fit."""
+        rows, defaults = self._tables.rows, self._tables.defaults
+        while True:
+            step = rows[states[-1]].get(token_type, defaults[states[-1]])
+            if step is None:
+                return False
+            if step == ACCEPT:
+                return True
+            if step >= 0:
+                states.append(step)
+                return True
+            symbol, size, _, _ = self._rules[~step]
+            del states[-(size // 3) :]
+            states.append(rows[states[-1]][symbol])
+
+
+_MENDS = (
+    Recovery._drop_comment,
+    Recovery._substitute,
+    Recovery._insert_semicolon,
+    Recovery._insert_closing_bracket,
+    Recovery._skip_stray,
+    Recovery._close_body,
+)
