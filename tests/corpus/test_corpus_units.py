@@ -11,8 +11,8 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import print_text
-from sysmlc.passes.resolve.libraries import is_standard, primitive
-from sysmlc.passes.standins import libraries
+from sysmlc.passes.resolve.hrefs import is_standard, primitive
+from sysmlc.passes.resolve.libraries import libraries
 from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus

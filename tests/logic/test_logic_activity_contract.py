@@ -11,7 +11,7 @@ from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activity_sketch import sketch
+from sysmlc.passes.activities.sketch import sketch
 
 spot = pytest.importorskip("spot")
 

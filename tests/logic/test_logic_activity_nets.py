@@ -15,12 +15,13 @@ from sysmlc.logic.activities import net_safety as token_net
 from sysmlc.logic.activities import one_token
 from sysmlc.logic.activities.derivation import derive
 from sysmlc.logic.activities.net_reductions import reduce
-from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
-from sysmlc.passes import activity_drawing, activity_tokens
+from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activity_expressions import Scope
-from sysmlc.passes.activity_inputs import Inputs
-from sysmlc.passes.activity_raising import find_raising
+from sysmlc.passes.activities import construction as activity_tokens
+from sysmlc.passes.activities import drawing as activity_drawing
+from sysmlc.passes.activities.exception_analysis import find_raising
+from sysmlc.passes.activities.inputs import Inputs
+from sysmlc.passes.activities.scope import Scope
 
 KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
 

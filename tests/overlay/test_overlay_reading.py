@@ -10,7 +10,7 @@ from jsonschema import Draft202012Validator
 from sysmlc.diagnostics import Sink
 from sysmlc.overlay import files_of, read
 from sysmlc.overlay.paths import beside, join, split
-from sysmlc.overlay.tree import parse
+from sysmlc.overlay.yaml_tree import parse
 from sysmlc.sources import Source
 from sysmlc.support import resources
 

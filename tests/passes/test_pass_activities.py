@@ -8,7 +8,7 @@ from sysmlc.ir.verify import verify
 from sysmlc.logic.activities.interpreter import State, is_complete
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activity_sketch import sketch
+from sysmlc.passes.activities.sketch import sketch
 
 LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """What the models of rules about limits are over."""

@@ -7,8 +7,7 @@ from jsonschema import Draft202012Validator
 from passing import codes, refined
 
 from sysmlc.ir import Edge, Kind
-from sysmlc.passes.standins import Libraries, libraries, names_in
-from sysmlc.support import resources
+from sysmlc.passes.resolve.libraries import Libraries, libraries, names_in
 
 BLOCK = (
     "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Blocks"

@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.passes.recipe_expressions import read
+from sysmlc.passes.recipe.expressions import read
 from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Model, Node, Parameter, Recipe
 from sysmlc.recipe.validate import validate
 

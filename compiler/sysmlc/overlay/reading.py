@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.overlay import rules, shape
+from sysmlc.overlay import rules
+from sysmlc.overlay import schema as shape
 from sysmlc.overlay.model import (
     Allocation,
     BlockEntry,
@@ -20,7 +21,7 @@ from sysmlc.overlay.model import (
     ValueEntry,
     place_of,
 )
-from sysmlc.overlay.tree import TreeError, Value, parse
+from sysmlc.overlay.yaml_tree import TreeError, Value, parse
 from sysmlc.sources import Source
 
 _NOTHING = Value(Spot(), entries={})

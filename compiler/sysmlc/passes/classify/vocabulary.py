@@ -225,7 +225,7 @@ def parents(name: str) -> tuple[str, ...]:
 
     ``name`` and the result are names as XML tags show them.
     """
-    from sysmlc.passes.standins import libraries
+    from sysmlc.passes.resolve.libraries import libraries
 
     found = (up for library in _LIBRARIES for up in libraries().generals(library, name))
     return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)

@@ -11,8 +11,8 @@ from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
 from sysmlc.overlay.model import Key, Refinement, Spot, Term
 from sysmlc.overlay.paths import beside, join, split
 from sysmlc.passes.overlay import rules
-from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
-from sysmlc.support.suggestions import did_you_mean
+from sysmlc.passes.resolve.hrefs import PRIMITIVE_TYPES
+from sysmlc.suggest import did_you_mean
 
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})

@@ -6,12 +6,13 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Element, Graph
-from sysmlc.passes.resolve.answers import Answers
 from sysmlc.passes.resolve.ends import keep_first_ends
-from sysmlc.passes.resolve.lost import report_lost
 from sysmlc.passes.resolve.missing import report_libraries
+from sysmlc.passes.resolve.references import Need, Use, attributes, needs
+from sysmlc.passes.resolve.reports import report_lost
+from sysmlc.passes.resolve.resolver import Answers
 from sysmlc.passes.resolve.targets import Targets
-from sysmlc.passes.resolve.uses import Use, attributes, needs, use_of
+from sysmlc.values import dataclass
 
 
 class Resolve(Struct, frozen=True):

@@ -1,98 +1,180 @@
-"""Libraries that every tool brings along, and what a reference into a file says of its target."""
+"""Stand-ins for the libraries of UML, SysML and MagicDraw: names, kinds, generalizations.
 
+The data are ours (metamodels/libraries.json): what the standards and tools call their elements
+and how their references write them. They are read when a reference first needs them.
+"""
+
+import json
 import re
+from collections.abc import Iterable, Iterator
+from functools import cache
 from urllib.parse import unquote
 
+from sysmlc import resources
 from sysmlc.ir import Kind
+from sysmlc.patterns import pattern
+from sysmlc.values import dataclass
 
-PRIMITIVES = ("Boolean", "Integer", "Real", "String", "UnlimitedNatural")
-PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
-"""The UML primitives of all dialects share one stand-in each, under this href."""
-
-_STANDARD = re.compile(
-    r"""pathmap://(UML_|SysML|SYSMLC_)\w*(LIBRARIES|METAMODELS|PROFILES)/
-    | https?://(www|schema)\.omg\.org/spec/(UML|SysML|MOF|XMI)/
-    | https?://www\.eclipse\.org/(uml2|emf)/
-    | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/)
-    | https?://www\.sparxsystems\.com/profiles/SysML
-    | (.*/)?(UML_Standard_Profile|SysML\ Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)$
-    | (.*/)?UML_Standard_Profile\.[\w.]*profile\.uml$
-    """,
-    re.VERBOSE,
-)
-_PRIMITIVES_ONLY = re.compile(r"(.*/)?(UML)?PrimitiveTypes\.(library\.uml|xmi)")
-_ALIASES = {
-    "bool": "Boolean",
-    "boolean": "Boolean",
-    "eboolean": "Boolean",
-    "byte": "Integer",
-    "short": "Integer",
-    "int": "Integer",
-    "long": "Integer",
-    "eint": "Integer",
-    "elong": "Integer",
-    "eshort": "Integer",
-    "float": "Real",
-    "double": "Real",
-    "efloat": "Real",
-    "edouble": "Real",
-    "ebiginteger": "Integer",
-    "ebigdecimal": "Real",
-    "estring": "String",
-    **{name.lower(): name for name in PRIMITIVES},
-}
-_ROLE_NAME = re.compile(r"(?:.*[._])?[a-zA-Z]+_packagedElement_(?P<name>.+)")
-_PACKAGEABLE = re.compile(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
-_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
+_ROLE_NAME = pattern(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
+_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
+_METACLASS = pattern(r"[A-Z][A-Za-z]+")
 
 
-def split(href: str) -> tuple[str, str]:
-    """File and fragment of an href."""
-    library, _, fragment = href.partition("#")
-    return library, fragment
+@dataclass(frozen=True, slots=True)
+class StandIn:
+    """What is known of one element of a library.
 
-
-def is_href(target: str) -> bool:
-    """Whether a reference's target names a file, not only an id."""
-    return "://" in target or target.find("#") > 0
-
-
-def is_standard(library: str) -> bool:
-    """Whether the file is UML's, SysML's or our own, whose content is known without reading it."""
-    return _STANDARD.match(unquote(library)) is not None
-
-
-def has_primitives_only(library: str) -> bool:
-    """Whether the file is UML's library of primitive types, which are five for good."""
-    return _PRIMITIVES_ONLY.fullmatch(unquote(library)) is not None
-
-
-def primitive(href: str, path: str, kind: Kind) -> str:
-    """UML primitive that an href leads to, or the empty string.
-
-    ``path`` and ``kind`` are what the source says of the target. The primitive value types of
-    SysML count as UML's, those of Ecore and Java as the nearest one.
+    ``generals`` and ``metaclasses`` are qualified names; ``href`` is the same for all dialects.
     """
-    if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split(href)[0]):
+
+    qualified_name: str
+    kind: Kind
+    href: str
+    generals: tuple[str, ...] = ()
+    metaclasses: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its name: the last part of the qualified one."""
+        return self.qualified_name.rpartition("::")[2]
+
+    @property
+    def owner(self) -> str:
+        """Qualified name of its package, empty for the library itself."""
+        return self.qualified_name.rpartition("::")[0]
+
+
+@dataclass(frozen=True, slots=True)
+class _Library:
+    name: str
+    uri: str
+    files: str
+    """A regular expression, compiled when somebody asks for a file."""
+    others: str
+
+
+class Libraries:
+    """The stand-ins, by qualified name, by id and by the name that a reference shows."""
+
+    def __init__(self, content: str) -> None:
+        data = json.loads(content)
+        self._libraries = {one["name"]: _library(one) for one in data["libraries"]}
+        self._entries: dict[str, dict[str, object]] = data["elements"]
+        self._by_id: dict[str, str] = {}
+        self._by_name: dict[tuple[str, str], list[str]] = {}
+        self._stereotypes: dict[tuple[str, str], list[str]] = {}
+        for name, entry in self._entries.items():
+            self._by_id.update(dict.fromkeys(entry.get("ids", ()), name))
+            library, _, rest = name.partition("::")
+            for short in (rest.rpartition("::")[2], *entry.get("aliases", ())):
+                self._by_name.setdefault((library, short.lower()), []).append(name)
+                if entry["kind"] == "Stereotype":
+                    tag = re.sub(r"\W", "_", short)
+                    self._stereotypes.setdefault((library, tag), []).append(name)
+
+    def find(self, file: str, fragment: str, path: str, kinds: Iterable[Kind]) -> StandIn | None:
+        """The element that a reference into ``file`` means.
+
+        Told by its id, else by the name in the fragment, else by ``path``, the qualified name
+        that the reference shows; ``kinds`` is what it is used as.
+        """
+        known = self._by_id.get(fragment)
+        if known is None:
+            found = (self._named(one, fragment, path, kinds) for one in self._of_file(file))
+            known = next((name for name in found if name), None)
+        return None if known is None else self.get(known)
+
+    def get(self, qualified_name: str) -> StandIn | None:
+        """The element with this qualified name, or None."""
+        library, _, rest = qualified_name.partition("::")
+        home = self._libraries.get(library)
+        entry = self._entries.get(qualified_name)
+        if home is None:
+            return None
+        href = f"{home.uri}#{rest.replace('::', '.') or '_0'}"
+        if entry is None:
+            is_other = home.others and _METACLASS.fullmatch(rest)
+            return StandIn(qualified_name, Kind(home.others), href) if is_other else None
+        return StandIn(
+            qualified_name,
+            Kind(str(entry["kind"])),
+            href,
+            tuple(entry.get("specializes", ())),  # type: ignore[arg-type]
+            tuple(f"UML::{name}" for name in entry.get("extends", ())),  # type: ignore[attr-defined]
+        )
+
+    def generals(self, library: str, name: str) -> tuple[str, ...]:
+        """Names of what the stereotypes of this name in a library specialise.
+
+        The name is as XML tags show it: ``System_context`` is "System context".
+        """
+        found = self._stereotypes.get((library, name), ())
+        ups = (up for one in found for up in self._entries[one].get("specializes", ()))  # type: ignore[attr-defined]
+        return tuple(dict.fromkeys(up.rpartition("::")[2] for up in ups))
+
+    def _of_file(self, file: str) -> Iterator[_Library]:
+        plain = unquote(file)
+        return (one for one in self._libraries.values() if re.fullmatch(one.files, plain))
+
+    def _named(self, library: _Library, fragment: str, path: str, kinds: Iterable[Kind]) -> str:
+        for names in (names_in(fragment), [part for part in path.split("::") if part]):
+            if not names or names == [library.name]:
+                if names or _is_root(fragment):
+                    return library.name
+                continue
+            found = self._by_name.get((library.name, names[-1].lower()), [])
+            if found:
+                return min(found, key=lambda one: _distance(one, names, self._kind(one), kinds))
+            if library.others and _METACLASS.fullmatch(names[-1]):
+                return f"{library.name}::{names[-1]}"
         return ""
-    return _ALIASES.get(name_of(href, path).lower(), "")
+
+    def _kind(self, name: str) -> Kind:
+        return Kind(str(self._entries[name]["kind"]))
 
 
-def name_of(href: str, path: str) -> str:
-    """Name of the target: last part of its path, else what the fragment shows of it."""
-    if path:
-        return path.rpartition("::")[2]
-    fragment = unquote(split(href)[1])
-    for form in (_PACKAGEABLE, _ROLE_NAME):
-        match = form.fullmatch(fragment)
-        if match:
-            return _ESCAPE.sub(lambda code: chr(int(code[1], 16)), match["name"])
-    return re.split(r"[./]", fragment)[-1] or fragment
+def names_in(fragment: str) -> list[str]:
+    """Names from the root down that a fragment shows, as the tools write them.
+
+    Eclipse: ``SysML.package_packagedElement_Blocks.stereotype_packagedElement_Block`` or
+    ``//blocks/Block``; OMG: ``SysML.Block``, ``_SysML_Libraries_PackageableElement-...``.
+    """
+    plain = unquote(fragment)
+    if "_PackageableElement" in plain:
+        parts = plain.removeprefix("_SysML_").split("-")
+        return [part.removesuffix("_PackageableElement") for part in parts]
+    if _is_root(plain):
+        return []
+    names = [part for part in re.split(r"[./]", plain) if part and part != "@"]
+    found = ((_ROLE_NAME.fullmatch(name), name) for name in names)
+    return [_ESCAPE.sub(_character, match[1] if match else name) for match, name in found]
 
 
-def kind_of(href: str, kinds: set[Kind]) -> Kind:
-    """Kind of the target, from what its references say; the most telling one wins."""
-    if "stereotype_packagedElement_" in href:
-        return Kind.STEREOTYPE
-    told = sorted(kinds - {Kind.CLASS})
-    return told[0] if told else Kind.CLASS
+@cache
+def libraries() -> Libraries:
+    """The stand-ins; read once."""
+    return Libraries(resources.text("metamodels", "libraries.json"))
+
+
+def _library(entry: dict[str, object]) -> _Library:
+    files = "|".join(f"(?:{pattern})" for pattern in entry["files"])  # type: ignore[attr-defined]
+    return _Library(str(entry["name"]), str(entry["uri"]), files, str(entry.get("others", "")))
+
+
+def _is_root(fragment: str) -> bool:
+    return fragment.strip("/") == "" or fragment == "_0" or fragment.endswith("__0")
+
+
+def _distance(
+    name: str, names: list[str], kind: Kind, kinds: Iterable[Kind]
+) -> tuple[bool, int, int, str]:
+    """How far an element is from what a reference shows: kind, owners, depth."""
+    above = {part.lower() for part in name.split("::")}
+    missing = sum(part.lower() not in above for part in names)
+    is_package = kind in (Kind.PACKAGE, Kind.PROFILE)
+    wants_package = any(one in (Kind.PACKAGE, Kind.PROFILE) for one in kinds)
+    return is_package is not wants_package and kind not in kinds, missing, name.count("::"), name
+
+
+def _character(code: re.Match[str]) -> str:
+    return chr(int(code[1], 16))

@@ -3,10 +3,10 @@
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.identity import is_made_by_tools
-from sysmlc.passes.resolve.answers import stand_in_id
-from sysmlc.passes.resolve.libraries import PRIMITIVES, has_primitives_only, is_standard, split
+from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split
+from sysmlc.passes.resolve.references import Need, Use
+from sysmlc.passes.resolve.resolver import stand_in_id
 from sysmlc.passes.resolve.rules import MISSING_LIBRARY, UNKNOWN_IN_LIBRARY
-from sysmlc.passes.resolve.uses import Need, Use
 
 _LISTED = 10
 

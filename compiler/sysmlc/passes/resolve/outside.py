@@ -4,8 +4,8 @@ from collections.abc import Collection
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
-from sysmlc.passes.resolve.libraries import split
-from sysmlc.passes.standins import StandIn, libraries
+from sysmlc.passes.resolve.hrefs import split
+from sysmlc.passes.resolve.libraries import StandIn, libraries
 
 
 def known(target: str, paths: Collection[str], kinds: Collection[Kind]) -> StandIn | None:

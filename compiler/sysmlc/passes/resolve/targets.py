@@ -8,7 +8,7 @@ from urllib.parse import unquote
 
 from sysmlc.ir import Element, Graph
 from sysmlc.ir.identity import is_unmistakable
-from sysmlc.passes.resolve.libraries import is_href, split
+from sysmlc.passes.resolve.hrefs import is_href, split
 
 
 class Targets:

@@ -1,0 +1,118 @@
+"""What the recipe pass decided or left out, so that nothing happens in silence."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Element, Kind
+from sysmlc.passes.recipe.context import Context
+from sysmlc.passes.recipe.refined import refined
+from sysmlc.passes.recipe.tasks import steps
+from sysmlc.recipe import samples
+from sysmlc.recipe.model import Model
+
+_UNTYPED = (
+    samples.task()
+    .replace(' level="infrastructure service"', "")
+    .replace("InfrastructureService", "Comment")
+)
+_CALL = '    Action g "grip" subkind="call-behavior"\n      -> calls grip\n'
+_STRUCTURED = samples.NODES.replace(_CALL, '    Structured g "grip" subkind="sequence"\n')
+
+BY_POSITION = rule(
+    "SM614",
+    "recipe-level-by-position",
+    Severity.INFO,
+    "'{element}' is taken for a {level} because '{caller}' calls it",
+    "What a recipe calls is a task, what a task calls a service, what a service calls a machine "
+    "function, unless a stereotype says otherwise.",
+    "apply the stereotype, so that the model says what is meant",
+    _UNTYPED,
+    samples.task(),
+)
+STRUCTURED = rule(
+    "SM615",
+    "recipe-structured-node",
+    Severity.WARNING,
+    "the content of '{element}' does not go into the recipe",
+    "Structured nodes become one opaque step of the graph; the services inside would be lost to "
+    "the scheduler.",
+    "draw loops and choices with decision and merge nodes",
+    samples.task(nodes=_STRUCTURED),
+    samples.task(),
+)
+CHOICE_OF_TASKS = rule(
+    "SM617",
+    "recipe-chooses-tasks",
+    Severity.WARNING,
+    "'{decision}' chooses between tasks, but all tasks of recipe '{recipe}' are scheduled",
+    "The first level is a graph of tasks without control statements (thesis 3.5.1); a decision "
+    "only orders them.",
+    "move the choice into a task, or make two recipes",
+    samples.recipe("r.i r.a", "r.a r.d", "r.d r.b", "r.d r.f", "r.b r.f").replace(
+        '    Control r.f "end" subkind="final"\n',
+        '    Control r.f "end" subkind="final"\n    Control r.d "good?" subkind="decision"\n',
+    ),
+    samples.recipe(),
+)
+SAME_NAME = rule(
+    "SM619",
+    "recipe-same-name",
+    Severity.INFO,
+    "'{element}' is not refined, and the activity '{other}' has the same name",
+    "An equal name alone decides nothing.",
+    "call the activity from the node, or type the node by it, if it is what is meant",
+    samples.recipe()
+    .replace("      -> calls mill\n", "")
+    .replace('"mill" subkind="call-behavior"', '"Mill" subkind="call-behavior" level="task"'),
+    samples.recipe(),
+)
+
+
+def remark(context: Context, model: Model, sink: Sink) -> None:
+    """Report what was decided by position, left out, or looks alike."""
+    recipe = context.graph[model.recipe.element]
+    _tasks(context, recipe, sink)
+    graphs = [(one, "task") for one in model.service_graphs]
+    graphs += [(one, "service") for one in model.function_graphs]
+    for graph, inside in graphs:
+        activity = context.graph[graph.element]
+        for id, level in refined(context, activity, inside).remarks:
+            _step(context, activity, context.graph[id], level, sink)
+
+
+def _tasks(context: Context, recipe: Element, sink: Sink) -> None:
+    for step in steps(context, recipe):
+        if not context.level(step.node):
+            _by_position(context, step.definition or step.node, "task", recipe, sink)
+        for other in () if step.definition else _namesakes(context, step.node):
+            names = context.name(step.node), context.name(other)
+            subject = context.graph.subject(step.node)
+            sink.report(SAME_NAME, subject, element=names[0], other=names[1])
+    for node in context.nodes(recipe):
+        if node.kind is Kind.CONTROL and node.subkind == "decision":
+            names = context.name(node), context.name(recipe)
+            subject = context.graph.subject(node)
+            sink.report(CHOICE_OF_TASKS, subject, decision=names[0], recipe=names[1])
+
+
+def _namesakes(context: Context, node: Element) -> Iterator[Element]:
+    return (
+        one
+        for one in context.graph.of_kind(Kind.ACTIVITY)
+        if node.name and one.name == node.name and not one.attrs.get("external")
+    )
+
+
+def _step(context: Context, activity: Element, found: Element, level: str, sink: Sink) -> None:
+    if level:
+        _by_position(context, found, level, activity, sink)
+    else:
+        sink.report(STRUCTURED, context.graph.subject(found), element=context.name(found))
+
+
+def _by_position(
+    context: Context, element: Element, level: str, caller: Element, sink: Sink
+) -> None:
+    names = context.name(element), context.name(caller)
+    subject = context.graph.subject(element)
+    sink.report(BY_POSITION, subject, element=names[0], level=level, caller=names[1])

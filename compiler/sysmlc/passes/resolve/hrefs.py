@@ -1,0 +1,99 @@
+"""Libraries that every tool brings along, and what a reference into a file says of its target."""
+
+import re
+from urllib.parse import unquote
+
+from sysmlc.ir import Kind
+from sysmlc.patterns import pattern
+
+PRIMITIVES = ("Boolean", "Integer", "Real", "String", "UnlimitedNatural")
+PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+"""The UML primitives of all dialects share one stand-in each, under this href."""
+
+_STANDARD = pattern(
+    r"""pathmap://(UML_|SysML|SYSMLC_)\w*(LIBRARIES|METAMODELS|PROFILES)/
+    | https?://(www|schema)\.omg\.org/spec/(UML|SysML|MOF|XMI)/
+    | https?://www\.eclipse\.org/(uml2|emf)/
+    | https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/)
+    | https?://www\.sparxsystems\.com/profiles/SysML
+    | (.*/)?(UML_Standard_Profile|SysML\ Profile|MD_customization_for_\w+)\.(mdzip|mdxml|xml)$
+    | (.*/)?UML_Standard_Profile\.[\w.]*profile\.uml$
+    """,
+    re.VERBOSE,
+)
+_PRIMITIVES_ONLY = pattern(r"(.*/)?(UML)?PrimitiveTypes\.(library\.uml|xmi)")
+_ALIASES = {
+    "bool": "Boolean",
+    "boolean": "Boolean",
+    "eboolean": "Boolean",
+    "byte": "Integer",
+    "short": "Integer",
+    "int": "Integer",
+    "long": "Integer",
+    "eint": "Integer",
+    "elong": "Integer",
+    "eshort": "Integer",
+    "float": "Real",
+    "double": "Real",
+    "efloat": "Real",
+    "edouble": "Real",
+    "ebiginteger": "Integer",
+    "ebigdecimal": "Real",
+    "estring": "String",
+    **{name.lower(): name for name in PRIMITIVES},
+}
+_ROLE_NAME = pattern(r"(?:.*[._])?[a-zA-Z]+_packagedElement_(?P<name>.+)")
+_PACKAGEABLE = pattern(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
+_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
+
+
+def split(href: str) -> tuple[str, str]:
+    """File and fragment of an href."""
+    library, _, fragment = href.partition("#")
+    return library, fragment
+
+
+def is_href(target: str) -> bool:
+    """Whether a reference's target names a file, not only an id."""
+    return "://" in target or target.find("#") > 0
+
+
+def is_standard(library: str) -> bool:
+    """Whether the file is UML's, SysML's or our own, whose content is known without reading it."""
+    return _STANDARD.match(unquote(library)) is not None
+
+
+def has_primitives_only(library: str) -> bool:
+    """Whether the file is UML's library of primitive types, which are five for good."""
+    return _PRIMITIVES_ONLY.fullmatch(unquote(library)) is not None
+
+
+def primitive(href: str, path: str, kind: Kind) -> str:
+    """UML primitive that an href leads to, or the empty string.
+
+    ``path`` and ``kind`` are what the source says of the target. The primitive value types of
+    SysML count as UML's, those of Ecore and Java as the nearest one.
+    """
+    if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split(href)[0]):
+        return ""
+    return _ALIASES.get(name_of(href, path).lower(), "")
+
+
+def name_of(href: str, path: str) -> str:
+    """Name of the target: last part of its path, else what the fragment shows of it."""
+    if path:
+        return path.rpartition("::")[2]
+    fragment = unquote(split(href)[1])
+    for form in (_PACKAGEABLE, _ROLE_NAME):
+        match = form.fullmatch(fragment)
+        if match:
+            return _ESCAPE.sub(lambda code: chr(int(code[1], 16)), match["name"])
+    return re.split(r"[./]", fragment)[-1] or fragment
+
+
+def kind_of(href: str, kinds: set[Kind]) -> Kind:
+    """Kind of the target, from what its references say; the most telling one wins."""
+    if "stereotype_packagedElement_" in href:
+        return Kind.STEREOTYPE
+    told = sorted(kinds - {Kind.CLASS})
+    return told[0] if told else Kind.CLASS
