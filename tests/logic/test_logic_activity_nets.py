@@ -15,7 +15,7 @@ from sysmlc.logic.activities import net_safety as token_net
 from sysmlc.logic.activities import one_token
 from sysmlc.logic.activities.derivation import derive
 from sysmlc.logic.activities.net_reductions import reduce
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION, TokenGraph
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activities import construction as activity_tokens
 from sysmlc.passes.activities import drawing as activity_drawing

@@ -1,16 +1,14 @@
 """Overlays as text: what is said of bad ones, and what the good ones come to."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 from jsonschema import Draft202012Validator
 
 from sysmlc.diagnostics import Sink
 from sysmlc.overlay import files_of, read
-from sysmlc.overlay.paths import beside, join, split
 from sysmlc.overlay.yaml_tree import parse
+from sysmlc.passes.overlay.finder import beside, join, split
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
@@ -214,17 +212,3 @@ def test_paths_are_split_as_those_of_caex(path, names):
 def test_files_are_named_from_where_the_overlay_is():
     assert beside("a/p.overlay.yaml", "../b/gate.uml") == "b/gate.uml"
     assert beside("p.overlay.yaml", "./gate.uml") == "gate.uml"
-
-
-def test_what_reads_yaml_is_imported_by_who_asks_for_it():
-    code = """if True:
-        import sys
-        import sysmlc.driver.overlays, sysmlc.overlay
-        print("ruamel.yaml" in sys.modules, "sysmlc.overlay.reading" in sys.modules)
-        sysmlc.overlay.read
-        print("sysmlc.overlay.reading" in sys.modules)
-        sysmlc.overlay.writing
-    """
-    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert ran.stdout.split() == ["False", "False", "True"]
-    assert ran.stderr.endswith("module 'sysmlc.overlay' has no attribute 'writing'\n")

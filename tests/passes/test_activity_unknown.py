@@ -5,7 +5,7 @@ import pytest
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.passes import pipeline
-from sysmlc.passes.activities.unknown import UNKNOWN
+from sysmlc.passes.activities.assignments import UNKNOWN_TARGET as UNKNOWN
 
 MODEL = """\
 Package p "Plant"

@@ -8,6 +8,7 @@ from passing import codes, refined
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.passes.resolve.libraries import Libraries, libraries, names_in
+from sysmlc.support import resources
 
 BLOCK = (
     "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Blocks"

@@ -5,7 +5,7 @@ import pytest
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
-from sysmlc.passes.classify.undefined_tags import UNDEFINED_TAG, check_tags
+from sysmlc.passes.classify.tags import UNDEFINED_TAG, check_tags
 
 PROFILE = """\
 Profile q "Plant"

@@ -9,7 +9,8 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.overlay import rules
 from sysmlc.overlay.model import Spot, place_of
 from sysmlc.overlay.yaml_tree import Value
-from sysmlc.suggest import did_you_mean
+from sysmlc.support import resources
+from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator

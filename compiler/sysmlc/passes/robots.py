@@ -11,6 +11,9 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic.contract import Contract
+from sysmlc.robots.contracts import contracts_of
+from sysmlc.robots.reading import studies
+from sysmlc.robots.study import Study
 
 
 class Robots(Struct, frozen=True):
@@ -24,9 +27,6 @@ class Robots(Struct, frozen=True):
         # Hardly any model has one: the rest is not even imported.
         if not any(one.name == "Floors" for one in graph.of_kind(Kind.PACKAGE)):
             return
-        from sysmlc.robots.contracts import contracts_of
-        from sysmlc.robots.reading import studies
-        from sysmlc.robots.study import Study
 
         found = list(studies(graph, sink))
         made = [contract for study in found for contract in contracts_of(study)]

@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.logic.writers import Writers
@@ -21,17 +21,17 @@ from sysmlc.passes.activities import construction as activity_tokens
 from sysmlc.passes.activities import drawing as activity_drawing
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities import safety as activity_search
-from sysmlc.passes.activities.assignable import report_faults
-from sysmlc.passes.activities.assignments import written_by
-from sysmlc.passes.activities.bounds import report_stops
+from sysmlc.passes.activities.assignments import (
+    report_faults,
+    report_stops,
+    report_unknown,
+    written_by,
+)
 from sysmlc.passes.activities.exception_analysis import Raising, find_raising
 from sysmlc.passes.activities.inputs import Inputs
 from sysmlc.passes.activities.refusals import report_unfollowed
 from sysmlc.passes.activities.scope import Scope
 from sysmlc.passes.activities.stores import follow
-from sysmlc.passes.activities.unknown import report_unknown
-from sysmlc.passes.activities.usages import drawn_of, has_steps
-from sysmlc.values import dataclass, replace
 
 
 class _Others(Struct, frozen=True):
@@ -151,3 +151,22 @@ def _played(graph: Graph, activity: Element) -> list[Element]:
 def _is_drawn_elsewhere(activity: Element) -> bool:
     """An opaque behaviour has a body instead of a drawing; a stub stands for another file."""
     return activity.subkind in ("opaque", "function") or activity.attrs.get("external") is True
+
+
+_STEPS = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED)
+
+
+def has_steps(graph: Graph, activity: Element) -> bool:
+    """Whether something is drawn in the activity itself."""
+    return any(one.kind in _STEPS for one in graph.owned(activity))
+
+
+def drawn_of(graph: Graph, usage: Element) -> Element:
+    """The activity whose steps a usage performs: its method's, or those of the nearest that it
+    specialises when it draws none; the usage itself when there is no other.
+    """
+    method = graph.target(usage, Edge.METHOD) if usage.kind is Kind.OPERATION else usage
+    if method is None or has_steps(graph, method):
+        return method or usage
+    drawn = (one for one in query.generals(graph, method) if has_steps(graph, one))
+    return next(drawn, usage)

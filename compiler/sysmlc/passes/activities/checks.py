@@ -20,7 +20,6 @@ from sysmlc.logic.formula import Formula, variables
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities import safety as activity_search
 from sysmlc.passes.activities.drawing import CannotPlayError
-from sysmlc.values import replace
 
 _MOST_VALUATIONS = 20_000
 """Guards over more valuations than this are taken as neither exclusive nor exhaustive."""

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
 from sysmlc.ir.identity import derived_id
-from sysmlc.logic.activities.tokens import Interruptible, TokenGraph
+from sysmlc.logic.activities.token_graph import Interruptible, TokenGraph
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft
 from sysmlc.passes.activities.drawing import Drawing
@@ -28,7 +28,6 @@ from sysmlc.passes.activities.regions import (
     interruptible_regions,
     is_entered_later,
 )
-from sysmlc.values import replace
 
 
 def build(

@@ -11,17 +11,19 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.logic.activities.tokens import ACTIVITY_REGION
+from sysmlc.logic.activities.token_graph import ACTIVITY_REGION
 from sysmlc.passes.activities import rules
-from sysmlc.passes.activities.parts import NODES, Part, parts_of
 from sysmlc.passes.activities.regions import (
     FLOWS,
+    NODES,
     Handler,
+    Part,
     count_handlers,
     expansion_nodes,
     groups_of,
     handlers_of,
     is_entered_again,
+    parts_of,
 )
 
 _WORDS = {

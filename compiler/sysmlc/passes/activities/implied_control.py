@@ -7,7 +7,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import Firing, Guard, NodeKind, TokenNode
 from sysmlc.logic.names import identifier
 from sysmlc.passes.activities.draft import Draft
-from sysmlc.passes.activities.parts import Part
+from sysmlc.passes.activities.regions import Part
 
 ACCEPTS = ("accept", "accept-call")
 """Actions that wait for an event."""

@@ -9,7 +9,6 @@ from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft, least
 from sysmlc.passes.activities.implied_control import ACCEPTS, add_parts
 from sysmlc.passes.activities.inputs import events
-from sysmlc.values import replace
 
 _CONTROLS = {
     "initial": NodeKind.INITIAL,

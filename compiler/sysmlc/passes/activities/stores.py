@@ -28,7 +28,6 @@ from sysmlc.passes.activities.refusals import (
     shared,
 )
 from sysmlc.passes.activities.scope import Scope
-from sysmlc.values import replace
 
 _Cases = tuple[tuple[Formula, Formula], ...]
 _Way = tuple[Formula, Formula, bool]

@@ -23,8 +23,7 @@ from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, give_requirement
 from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
-from sysmlc.passes.classify.tags import HANDLERS, give_tags, optional_with_value
-from sysmlc.passes.classify.undefined_tags import check_tags
+from sysmlc.passes.classify.tags import HANDLERS, check_tags, give_tags, optional_with_value
 from sysmlc.passes.classify.units import give_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
 

@@ -1,9 +1,67 @@
 """Requirements: their id and text in every dialect, and what must hold between them."""
 
-from sysmlc.diagnostics import Sink
+from html.parser import HTMLParser
+
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
-from sysmlc.passes.classify.requirement_rules import COPY_DIFFERS, NO_ID, REPEATED_ID
+
+_SYSML = 'namespace="http://www.omg.org/spec/SysML/20150709/SysML"'
+
+
+def _requirement(id: str, name: str, tags: str) -> str:
+    return (
+        f'Class {id} "{name}"\n'
+        f'  Application {id}.a stereotype="Requirement" {_SYSML} {tags}\n'
+        f"    -> subject {id}\n"
+    )
+
+
+_COPY = f"""\
+Dependency d subkind="abstraction"
+  -> client b
+  -> supplier a
+  Application c stereotype="Copy" {_SYSML}
+    -> subject d
+"""
+
+REPEATED_ID = rule(
+    "SM213",
+    "repeated-requirement-id",
+    Severity.WARNING,
+    "requirement '{requirement}' has the id {id}, as '{first}' has",
+    why="The id of a requirement is unique (SysML 1.6 clause 16.3.2); tables, reports and other "
+    "tools find a requirement by it.",
+    help="give one of the two another id",
+    wrong=_requirement("a", "No jam", 'tag.id="R1"') + _requirement("b", "Quiet", 'tag.id="R1"'),
+    right=_requirement("a", "No jam", 'tag.id="R1"') + _requirement("b", "Quiet", 'tag.id="R2"'),
+)
+NO_ID = rule(
+    "SM214",
+    "requirement-without-id",
+    Severity.INFO,
+    "requirement '{requirement}' has no id",
+    why="Nothing but its name tells the requirement from others, and names change.",
+    help="fill in the tag id (Papyrus) or Id (MagicDraw, Cameo) of «Requirement»",
+    wrong=_requirement("a", "No jam", 'tag.id=" " tag.text="Pallets never jam."'),
+    right=_requirement("a", "No jam", 'tag.Id="R1" tag.text="Pallets never jam."'),
+)
+COPY_DIFFERS = rule(
+    "SM215",
+    "copy-with-other-text",
+    Severity.WARNING,
+    "requirement '{copy}' is a copy of '{master}' and has another text",
+    why="The text of a copy is a read-only copy of its master's text (SysML 1.6 clause 16.3.2), "
+    "so that one of the two is out of date.",
+    help="take over the text of '{master}', or replace «copy» by «deriveReqt»",
+    wrong=_requirement("a", "No jam", 'tag.id="R1" tag.text="Pallets never jam."')
+    + _requirement("b", "No jam here", 'tag.id="R2" tag.text="Pallets seldom jam."')
+    + _COPY,
+    right=_requirement("a", "No jam", 'tag.id="R1" tag.text="Pallets never jam."')
+    + _requirement("b", "No jam here", 'tag.id="R2" tag.text="Pallets  never jam."')
+    + _COPY,
+)
+
 
 _KINDS = (*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION)
 
@@ -21,7 +79,6 @@ def readable(text: str) -> str:
     """The text itself, or the words of an HTML document: MagicDraw keeps formatted text so."""
     if not text.lstrip()[:6].lower().startswith("<html"):
         return text
-    from sysmlc.passes.classify.formatted import words
 
     return words(text)
 
@@ -66,3 +123,37 @@ def _check_copy(graph: Graph, sink: Sink, dependency: Element) -> None:
 
 def _text(requirement: Element) -> str:
     return " ".join(str(requirement.attrs.get("text", "")).split())
+
+
+_BLOCKS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul", "ol", "table"])
+_SILENT = frozenset(["head", "style", "script"])
+
+
+def words(text: str) -> str:
+    """The words of an HTML document, a line for each block."""
+    reader = _Words()
+    reader.feed(text)
+    reader.close()
+    rows = (" ".join(row.split()) for row in "".join(reader.found).splitlines())
+    return "\n".join(row for row in rows if row)
+
+
+class _Words(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__(convert_charrefs=True)
+        self.found: list[str] = []
+        self._silent = 0
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._silent += tag in _SILENT
+        if tag in _BLOCKS:
+            self.found.append("\n")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._silent = max(0, self._silent - (tag in _SILENT))
+        if tag in _BLOCKS:
+            self.found.append("\n")
+
+    def handle_data(self, data: str) -> None:
+        if not self._silent:
+            self.found.append(data.replace("\n", " "))

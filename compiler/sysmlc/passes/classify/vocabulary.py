@@ -9,6 +9,7 @@ from enum import StrEnum
 from functools import cache
 
 from sysmlc.ir import Edge
+from sysmlc.passes.resolve.libraries import libraries
 
 
 class Family(StrEnum):
@@ -225,7 +226,6 @@ def parents(name: str) -> tuple[str, ...]:
 
     ``name`` and the result are names as XML tags show them.
     """
-    from sysmlc.passes.resolve.libraries import libraries
 
     found = (up for library in _LIBRARIES for up in libraries().generals(library, name))
     return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)

@@ -23,7 +23,6 @@ from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.writers import Writers
 from sysmlc.passes.contracts.formulas import add_formulas, report_general
-from sysmlc.values import dataclass, replace
 
 SAME_COMPONENT = rule(
     "SM500",

@@ -8,12 +8,16 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
+from sysmlc.logic.classification import classified
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula
+from sysmlc.logic.reduction.reduce import is_reducible, remembering
 from sysmlc.logic.requirements.derivation import with_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
+from sysmlc.logic.spelling import FormulaError
+from sysmlc.logic.texts.formal import is_formal, read_formal, told
 
 _ACTIONS = (Kind.ACTIVITY, Kind.OPERATION)
 _MACHINE = """\
@@ -89,7 +93,6 @@ def _is_formula(constraint: Element) -> bool:
     body = str(constraint.attrs.get("body", ""))
     if not body:
         return False
-    from sysmlc.logic.texts.formal import is_formal
 
     return is_formal(str(constraint.attrs.get("language", "")), body)
 
@@ -145,10 +148,6 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
-    from sysmlc.logic.classification import classified
-    from sysmlc.logic.reduction.reduce import is_reducible, remembering
-    from sysmlc.logic.spelling import FormulaError
-    from sysmlc.logic.texts.formal import read_formal, told
 
     name = constraint.name or "<Constraint>"
     scope = _scope(graph, contract)
@@ -176,7 +175,6 @@ def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: S
 
 def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
     """Report each constraint of requirements that no reduction brings into GR(1)."""
-    from sysmlc.logic.reduction.reduce import is_reducible
 
     general = [
         one.origin

@@ -9,7 +9,6 @@ from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.query import interactions as sequence
 from sysmlc.passes.interactions import rules
-from sysmlc.values import dataclass
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
 _Place = tuple[str, int]

@@ -3,16 +3,47 @@
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from posixpath import dirname, normpath
 from typing import NamedTuple
+from unicodedata import normalize
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
 from sysmlc.overlay.model import Key, Refinement, Spot, Term
-from sysmlc.overlay.paths import beside, join, split
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.hrefs import PRIMITIVE_TYPES
-from sysmlc.suggest import did_you_mean
+from sysmlc.support.suggestions import did_you_mean
+
+_SEPARATORS = frozenset("/[]@:")
+
+
+def split(path: str) -> tuple[str, ...]:
+    """The names of a path; brackets mean nothing but the name in them, as in CAEX paths."""
+    return tuple(_names(path)) if "[" in path else tuple(path.split("/"))
+
+
+def _names(path: str) -> Iterator[str]:
+    name, depth = "", 0
+    for sign in path:
+        depth += (sign == "[") - (sign == "]")
+        if sign == "/" and depth == 0:
+            yield name
+            name = ""
+        elif not (sign == "[" and depth == 1) and not (sign == "]" and depth == 0):
+            name += sign
+    yield name
+
+
+def join(names: Iterable[str]) -> str:
+    """The path of these names; AML.Engine brackets all when one needs it, we that one."""
+    return "/".join(f"[{n}]" if _SEPARATORS.intersection(n) else n for n in names)
+
+
+def beside(file: str, name: str) -> str:
+    """Name in the unit of the file that ``file`` calls ``name``."""
+    return normalize("NFC", normpath(f"{dirname(file) or '.'}/{name}"))
+
 
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Element
 from sysmlc.passes.platform import rules
-from sysmlc.passes.platform.context import Context
-from sysmlc.passes.platform.statements import allocations, of_machine
+from sysmlc.passes.platform.context import Context, allocations, of_machine
 from sysmlc.recipe.model import Machine
 from sysmlc.recipe.plant import PlantElement, is_of_plant
 from sysmlc.recipe.platform import Binding
@@ -13,7 +12,7 @@ from sysmlc.recipe.platform import Binding
 _SHOWN = 4
 
 
-def bind(context: Context) -> list[Binding]:
+def bind_machines(context: Context) -> list[Binding]:
     """The element of each machine. An equal name binds nothing: it is suggested (design, 5)."""
     found: list[Binding] = []
     for machine in context.machines.values():

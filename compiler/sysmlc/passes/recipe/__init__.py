@@ -8,11 +8,12 @@ from msgspec import Struct, field
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.passes.recipe.context import NODES, Context
+from sysmlc.passes.recipe.derived_levels import tell, with_derived
+from sysmlc.passes.recipe.model import recipe_model
 from sysmlc.passes.recipe.regions import is_inlined
-from sysmlc.values import dataclass
-
-_MODELS = "sysmlc.recipe.model"
-"""The module of the recipe models."""
+from sysmlc.passes.recipe.reports import check_tags, remark
+from sysmlc.recipe.model import Model
+from sysmlc.recipe.validate import validate
 
 
 class Recipe(Struct, frozen=True):
@@ -34,17 +35,10 @@ class Recipe(Struct, frozen=True):
         """Store the recipe models of the graph."""
         context = Context.of(graph, self.levels)
         found = list(recipes(context))
-        if found or graph.has_derived(_MODELS):
+        if found or graph.derived(Model):
             self._store(context, found, sink)
 
     def _store(self, context: Context, found: list[Element], sink: Sink) -> None:
-        # Most models have no recipes: what makes and checks them takes 0.03 s to import.
-        from sysmlc.passes.recipe.derived_levels import tell, with_derived
-        from sysmlc.passes.recipe.model import recipe_model
-        from sysmlc.passes.recipe.reports import remark
-        from sysmlc.passes.recipe.tags import check_tags
-        from sysmlc.recipe.model import Model
-        from sysmlc.recipe.validate import validate
 
         if found:
             context, derived = with_derived(context)

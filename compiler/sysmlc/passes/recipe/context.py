@@ -1,19 +1,14 @@
 """What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.passes.recipe.profile import followers, said, stereotypes, subjects
+from sysmlc.passes.recipe.profile import Tags, followers, said, stereotypes, subjects
 from sysmlc.passes.recipe.regions import contents
-from sysmlc.values import dataclass, replace
-
-if TYPE_CHECKING:
-    from sysmlc.passes.recipe.refined import Refined
-    from sysmlc.recipe.model import Parameter, Range, ValueType
+from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
 
 SERVICES = ("machine service", "infrastructure service")
 NODES = frozenset(
@@ -26,8 +21,26 @@ NODES = frozenset(
         Kind.ACTIVITY_PARAMETER,
     ]
 )
-CALL_KINDS = ("call", "read", "write", "subscribe")
-MATERIAL_USES = ("consumed", "produced", "carried")
+
+
+class Called(Struct, frozen=True):
+    """A service, machine function or helper that a node calls, both by their ids."""
+
+    kind: str
+    node: str
+    definition: str
+
+
+class Refined(Struct, frozen=True):
+    """An activity that refines a task or a service.
+
+    ``remarks`` are ids of nodes whose content is left out, with an empty text, and of what is
+    called by position, with the level that it is taken for.
+    """
+
+    graph: FlowGraph
+    calls: tuple[Called, ...]
+    remarks: tuple[tuple[str, str], ...]
 
 
 class Context(Struct, frozen=True):
@@ -50,15 +63,15 @@ class Context(Struct, frozen=True):
     _literals: list[dict[str, str]] = field(default_factory=list)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     _nodes: dict[str, list[Element]] = field(default_factory=dict)
-    types: dict[str, "ValueType"] = field(default_factory=dict)
+    types: dict[str, ValueType] = field(default_factory=dict)
     """Types of values by the id of what types them, as far as somebody asked."""
-    parameters: dict[str, "Parameter"] = field(default_factory=dict)
+    parameters: dict[str, Parameter] = field(default_factory=dict)
     """Parameters of recipes by the id of what they are made of, as far as somebody asked."""
     kinds: dict[tuple[str, str], str] = field(default_factory=dict)
     """Kinds of recipe nodes by id and level of the activity, as far as somebody asked."""
     refined: dict[str, Element | None] = field(default_factory=dict)
     """What refines a definition, by its id, as far as somebody asked."""
-    refinements: dict[tuple[str, str], "Refined"] = field(default_factory=dict)
+    refinements: dict[tuple[str, str], Refined] = field(default_factory=dict)
     """What activities say, by the level of what they refine and by id, as far as somebody asked."""
     members: dict[str, dict[str, Element]] = field(default_factory=dict)
     """Features by name, by the id of what has them, as far as somebody asked."""
@@ -167,7 +180,7 @@ class Context(Struct, frozen=True):
         """Whether a stereotype may be applied to the element: most have none."""
         return element.id in self.subjects
 
-    def tags(self, element: Element, stereotype: str) -> "Tags":
+    def tags(self, element: Element, stereotype: str) -> Tags:
         """Tagged values of one stereotype of the profile; empty when it is not applied."""
         application = self.applied(element, stereotype)
         return Tags({} if application is None else application.attrs)
@@ -198,75 +211,6 @@ class Context(Struct, frozen=True):
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
             self._segments.update(_numbered(siblings))
         return self._segments[element.id]
-
-
-class Tags(Struct, frozen=True):
-    """Tagged values as the types that the profile gives them; None or empty when absent."""
-
-    attrs: Mapping[str, object]
-
-    def text(self, name: str) -> str:
-        """Text, or the empty string."""
-        return next(iter(self.texts(name)), "")
-
-    def texts(self, name: str) -> list[str]:
-        """All texts; a list of ids in one attribute is split."""
-        value = self.attrs.get(f"tag.{name}")
-        if value is None:
-            return []
-        return [str(one) for one in value] if isinstance(value, tuple) else [str(value)]
-
-    def ids(self, name: str) -> list[str]:
-        """References: ids of elements, or names."""
-        return [one for text in self.texts(name) for one in text.split()]
-
-    def flag(self, name: str) -> bool | None:
-        """Truth value."""
-        text = self.text(name).lower()
-        return None if not text else text == "true"
-
-    def amount(self, name: str) -> int | float | None:
-        """A number that is not negative; None when there is none or it cannot be read."""
-        value = number(self.text(name))
-        return value if value is not None and value >= 0 else None
-
-    def integer(self, name: str) -> int | None:
-        """A whole number that is not negative."""
-        value = self.amount(name)
-        return int(value) if value is not None and value == int(value) else None
-
-    def endpoint(self, name: str) -> str | None:
-        """An OPC UA address."""
-        text = self.text(name)
-        return text if text.startswith("opc.tcp://") else None
-
-    def call_kind(self, name: str) -> str | None:
-        """What is done with an OPC UA node; a call when nothing is said."""
-        text = self.text(name) or "call"
-        return text if text in CALL_KINDS else None
-
-    def material_use(self, name: str) -> str | None:
-        """How a material is used."""
-        text = self.text(name)
-        return text if text in MATERIAL_USES else None
-
-    def range(self, low: str, high: str) -> "Range | None":
-        """Two numbers; one of them stands for both."""
-        from sysmlc.recipe.model import Range
-
-        values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
-        return Range(values[0], values[-1]) if values else None
-
-
-def number(text: str) -> int | float | None:
-    """The number that a text is; whole numbers are integers."""
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    if value != value or value in (float("inf"), float("-inf")):
-        return None
-    return int(value) if value == int(value) else value
 
 
 def _index_literals(graph: Graph) -> dict[str, str]:

@@ -8,10 +8,9 @@ from msgspec import Struct, field
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import is_data, is_input, parameter, read, read_time
-from sysmlc.passes.recipe.paths import feature_at, with_values
+from sysmlc.passes.recipe.expressions import read, read_time, with_values
+from sysmlc.passes.recipe.features import feature_at, is_data, is_input, parameter
 from sysmlc.passes.recipe.regions import is_inlined
-from sysmlc.patterns import pattern
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
 from sysmlc.recipe.model import Parameter
 

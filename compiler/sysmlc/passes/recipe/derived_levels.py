@@ -12,7 +12,6 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.query import units as measures
 from sysmlc.passes.recipe.context import Context
-from sysmlc.patterns import pattern
 from sysmlc.recipe import samples
 
 DERIVED = rule(

@@ -7,10 +7,8 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import value, value_type
+from sysmlc.passes.recipe.features import member, value, value_type
 from sysmlc.passes.recipe.machines import opcua_node
-from sysmlc.passes.recipe.paths import member
-from sysmlc.patterns import pattern
 from sysmlc.recipe.checks import graphs
 from sysmlc.recipe.expression import Expr, variables
 from sysmlc.recipe.model import (

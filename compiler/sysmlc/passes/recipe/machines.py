@@ -5,8 +5,10 @@ from collections.abc import Iterable, Iterator
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe.context import Context, Tags
-from sysmlc.passes.recipe.expressions import is_data, optional, value
+from sysmlc.passes.recipe.context import Context
+from sysmlc.passes.recipe.expressions import optional
+from sysmlc.passes.recipe.features import is_data, value
+from sysmlc.passes.recipe.profile import Tags
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant
 

@@ -1,17 +1,16 @@
 """One recipe with the closure of what it refers to."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
 
-from sysmlc.ir import Element
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.passes.recipe.context import Context, word
 from sysmlc.passes.recipe.data import Data
+from sysmlc.passes.recipe.graphs import refined
 from sysmlc.passes.recipe.machine_variables import with_variables
 from sysmlc.passes.recipe.machines import machine, material
 from sysmlc.passes.recipe.nodes import activity_flows, refinement
-from sysmlc.passes.recipe.performances import performances
-from sysmlc.passes.recipe.refined import refined
 from sysmlc.passes.recipe.services import function, service
 from sysmlc.passes.recipe.tasks import (
     Step,
@@ -21,7 +20,7 @@ from sysmlc.passes.recipe.tasks import (
     task,
 )
 from sysmlc.recipe.derive import derive
-from sysmlc.recipe.model import FlowGraph, Model, Recipe
+from sysmlc.recipe.model import FlowGraph, Model, Performance, Recipe
 
 
 class _Named(Protocol):
@@ -125,3 +124,52 @@ def _known(
 
 def _sorted(values: Iterable[_T]) -> tuple[_T, ...]:
     return tuple(sorted(values, key=lambda one: one.id))
+
+
+def performances(
+    context: Context, recipe: Element, graphs: Iterable[str]
+) -> tuple[Performance, ...]:
+    """What the blocks whose behaviour the recipe is say of it, sorted by the block.
+
+    ``graphs`` are the ids of the activities whose nodes the recipe's graphs have.
+    """
+    owners = {recipe.id, *graphs}
+    blocks = context.graph.sources(recipe, Edge.CLASSIFIER_BEHAVIOR)
+    found = (_performance(context, block, recipe, owners) for block in blocks)
+    said = (one for one in found if one.arguments or one.steps)
+    return tuple(sorted(said, key=lambda one: one.block))
+
+
+def _performance(
+    context: Context, block: Element, recipe: Element, owners: set[str]
+) -> Performance:
+    arguments: dict[str, str] = {}
+    steps: dict[str, str] = {}
+    for client, path in _allocated(context, block):
+        if client.kind is Kind.PARAMETER and client.owner == recipe.id:
+            arguments[client.name] = path
+        elif client.kind is not Kind.PARAMETER and client.owner in owners:
+            steps[context.name(client)] = path
+    name = context.name(block)
+    return Performance(name, _sort_pairs(arguments), _sort_pairs(steps), block.id)
+
+
+def _allocated(context: Context, block: Element) -> Iterator[tuple[Element, str]]:
+    """What the block allocates, and the path from the block to what it is allocated to."""
+    graph = context.graph
+    for one in graph.owned(block):
+        if one.kind is Kind.DEPENDENCY and one.role == "allocate":
+            client, supplier = graph.target(one, Edge.CLIENT), graph.target(one, Edge.SUPPLIER)
+            if client is not None and supplier is not None:
+                yield client, ".".join([*_path(context, one), context.label(supplier)])
+
+
+def _path(context: Context, allocation: Element) -> Iterator[str]:
+    given = allocation.attrs.get("target_path")
+    for id in given if isinstance(given, tuple) else str(given or "").split():
+        found = context.graph.get(str(id))
+        yield str(id) if found is None else context.label(found)
+
+
+def _sort_pairs(pairs: dict[str, str]) -> tuple[tuple[str, str], ...]:
+    return tuple(sorted(pairs.items()))

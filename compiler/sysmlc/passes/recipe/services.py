@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.data import data_parameters
-from sysmlc.passes.recipe.expressions import is_data, optional, parameter
+from sysmlc.passes.recipe.expressions import optional
+from sysmlc.passes.recipe.features import is_data, parameter
 from sysmlc.passes.recipe.machines import (
     Relation,
     by_owner,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.passes.recipe.context import Context, number
+from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.data import Data
 from sysmlc.passes.recipe.expressions import optional
 from sysmlc.passes.recipe.machines import (
@@ -17,6 +17,7 @@ from sysmlc.passes.recipe.machines import (
     modes,
 )
 from sysmlc.passes.recipe.nodes import activity_flows, flow_ends, refinement
+from sysmlc.passes.recipe.profile import number
 from sysmlc.recipe.model import MaterialUse, Task
 
 

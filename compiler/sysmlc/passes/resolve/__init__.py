@@ -5,14 +5,11 @@ from typing import ClassVar
 from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import AttrValue, Element, Graph
-from sysmlc.passes.resolve.ends import keep_first_ends
-from sysmlc.passes.resolve.missing import report_libraries
-from sysmlc.passes.resolve.references import Need, Use, attributes, needs
-from sysmlc.passes.resolve.reports import report_lost
-from sysmlc.passes.resolve.resolver import Answers
-from sysmlc.passes.resolve.targets import Targets
-from sysmlc.values import dataclass
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.passes.resolve.references import Use, attributes, needs, use_of
+from sysmlc.passes.resolve.reports import report_libraries, report_lost
+from sysmlc.passes.resolve.resolver import Answers, Targets
+from sysmlc.passes.resolve.rules import SEVERAL_TARGETS
 
 
 class Resolve(Struct, frozen=True):
@@ -72,3 +69,26 @@ def _renamed(answers: Answers, holder: Element, value: AttrValue) -> AttrValue:
         items = (_renamed(answers, holder, item) for item in value)
         return tuple(item for item in items if item is not None)
     return value
+
+
+_FLOW_ENDS = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+
+
+def keep_first_ends(graph: Graph, sink: Sink) -> None:
+    """Leave each flow and transition its first source and target; report where others go."""
+    for flow in graph.of_kind(Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION):
+        for edge in _FLOW_ENDS:
+            ends = graph.targets(flow, edge)
+            if len(ends) > 1:
+                _keep_first(graph, sink, flow, edge, ends)
+
+
+def _keep_first(graph: Graph, sink: Sink, flow: Element, edge: Edge, ends: list[Element]) -> None:
+    graph.replace_targets(edge, flow, ends[:1])
+    sink.report(
+        SEVERAL_TARGETS,
+        graph.subject(flow),
+        relation=edge.value,
+        element=graph.qualified_name(flow),
+        count=len(ends),
+    )

@@ -4,13 +4,12 @@ import re
 from urllib.parse import unquote
 
 from sysmlc.ir import Kind
-from sysmlc.patterns import pattern
 
 PRIMITIVES = ("Boolean", "Integer", "Real", "String", "UnlimitedNatural")
 PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 """The UML primitives of all dialects share one stand-in each, under this href."""
 
-_STANDARD = pattern(
+_STANDARD = re.compile(
     r"""pathmap://(UML_|SysML|SYSMLC_)\w*(LIBRARIES|METAMODELS|PROFILES)/
     | https?://(www|schema)\.omg\.org/spec/(UML|SysML|MOF|XMI)/
     | https?://www\.eclipse\.org/(uml2|emf)/
@@ -21,7 +20,7 @@ _STANDARD = pattern(
     """,
     re.VERBOSE,
 )
-_PRIMITIVES_ONLY = pattern(r"(.*/)?(UML)?PrimitiveTypes\.(library\.uml|xmi)")
+_PRIMITIVES_ONLY = re.compile(r"(.*/)?(UML)?PrimitiveTypes\.(library\.uml|xmi)")
 _ALIASES = {
     "bool": "Boolean",
     "boolean": "Boolean",
@@ -42,9 +41,9 @@ _ALIASES = {
     "estring": "String",
     **{name.lower(): name for name in PRIMITIVES},
 }
-_ROLE_NAME = pattern(r"(?:.*[._])?[a-zA-Z]+_packagedElement_(?P<name>.+)")
-_PACKAGEABLE = pattern(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
-_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
+_ROLE_NAME = re.compile(r"(?:.*[._])?[a-zA-Z]+_packagedElement_(?P<name>.+)")
+_PACKAGEABLE = re.compile(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
+_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
 
 
 def split(href: str) -> tuple[str, str]:

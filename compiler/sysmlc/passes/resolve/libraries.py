@@ -6,22 +6,23 @@ and how their references write them. They are read when a reference first needs 
 
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 from urllib.parse import unquote
 
-from sysmlc import resources
-from sysmlc.ir import Kind
-from sysmlc.patterns import pattern
-from sysmlc.values import dataclass
+from msgspec import Struct
 
-_ROLE_NAME = pattern(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
-_ESCAPE = pattern(r"_u([0-9a-fA-F]{4})")
-_METACLASS = pattern(r"[A-Z][A-Za-z]+")
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.identity import derived_id
+from sysmlc.passes.resolve.hrefs import split
+from sysmlc.support import resources
+
+_ROLE_NAME = re.compile(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
+_ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
+_METACLASS = re.compile(r"[A-Z][A-Za-z]+")
 
 
-@dataclass(frozen=True, slots=True)
-class StandIn:
+class StandIn(Struct, frozen=True):
     """What is known of one element of a library.
 
     ``generals`` and ``metaclasses`` are qualified names; ``href`` is the same for all dialects.
@@ -44,8 +45,7 @@ class StandIn:
         return self.qualified_name.rpartition("::")[0]
 
 
-@dataclass(frozen=True, slots=True)
-class _Library:
+class _Library(Struct, frozen=True):
     name: str
     uri: str
     files: str
@@ -153,7 +153,7 @@ def names_in(fragment: str) -> list[str]:
 @cache
 def libraries() -> Libraries:
     """The stand-ins; read once."""
-    return Libraries(resources.text("metamodels", "libraries.json"))
+    return Libraries(resources.read_text("metamodels", "libraries.json"))
 
 
 def _library(entry: dict[str, object]) -> _Library:
@@ -178,3 +178,46 @@ def _distance(
 
 def _character(code: re.Match[str]) -> str:
     return chr(int(code[1], 16))
+
+
+def find_library_element(
+    target: str, paths: Collection[str], kinds: Collection[Kind]
+) -> StandIn | None:
+    """The element of a known library that a reference means, or None.
+
+    ``paths`` and ``kinds`` are what all references to it say: their order must not matter.
+    """
+    file, fragment = split(target)
+    return libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
+
+
+def add_stub(graph: Graph, stand_in: StandIn, origin: str) -> Element:
+    """Add the stand-in with its packages, generals and metaclasses, unless it is there.
+
+    The packages of SysML are profiles, for Eclipse applies them one by one: what a stand-in is
+    must not depend on the dialect that uses it.
+    """
+    owner = _add_named(graph, stand_in.owner, origin)
+    id = derived_id(stand_in.href, "stub")
+    found = graph.get(id)
+    if found is not None:
+        return found
+    attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": stand_in.href}
+    attrs["origin"] = origin
+    made = graph.add(
+        Element(id, stand_in.kind, stand_in.name, None if owner is None else owner.id, attrs=attrs)
+    )
+    for edge, names in (
+        (Edge.SPECIALIZES, stand_in.generals),
+        (Edge.EXTENDS, stand_in.metaclasses),
+    ):
+        for name in names:
+            general = _add_named(graph, name, origin)
+            if general is not None:
+                graph.connect(edge, made, general)
+    return made
+
+
+def _add_named(graph: Graph, name: str, origin: str) -> Element | None:
+    stand_in = libraries().get(name) if name else None
+    return None if stand_in is None else add_stub(graph, stand_in, origin)
