@@ -12,9 +12,8 @@ from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities import net_safety as token_net
-from sysmlc.logic.activities import one_token
 from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.net_reductions import reduce
+from sysmlc.logic.activities.petri_net import reduce
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activities import construction as activity_tokens
@@ -109,7 +108,7 @@ def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
 @settings(max_examples=300, deadline=None)
 @given(scribbles())
 def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
-    found = one_token.walk(tokens, ACTIVITY_REGION)
+    found = token_net.walk(tokens, ACTIVITY_REGION)
     whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
     assert found in (None, whole)
 
@@ -118,7 +117,7 @@ def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
 @given(lines())
 def test_where_nothing_forks_or_joins_no_marking_is_built(tokens):
     whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
-    assert one_token.walk(tokens, ACTIVITY_REGION) == whole
+    assert token_net.walk(tokens, ACTIVITY_REGION) == whole
 
 
 def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():

@@ -8,7 +8,7 @@ from drawn_activities import start as begin
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.activities import bounds
+from sysmlc.logic.activities import saturation
 from sysmlc.logic.activities import saturation as bound_search
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes import pipeline
@@ -108,9 +108,9 @@ def test_told_is_what_can_stop_and_nothing_else(part, is_known):
 @pytest.mark.parametrize("is_known", [True, False])
 def test_without_a_search_nothing_that_can_stop_is_left_out(part, is_known, monkeypatch):
     monkeypatch.setattr(bound_search, "_MOST_MOVES", 0)
-    bounds.leaving.cache_clear()
+    saturation.leaving.cache_clear()
     pairs = all_compared(part, is_known)
-    bounds.leaving.cache_clear()
+    saturation.leaving.cache_clear()
     for wanted, found in pairs:
         assert {one for one, can in found.items() if can == "can"} <= wanted <= {*found}
     assert any(MANY in found.values() for _, found in pairs)

@@ -3,7 +3,7 @@
 import pytest
 from contracts_in_lines import contract
 
-from sysmlc.logic.composite import Composite, Part
+from sysmlc.logic.contract import Composite, Part
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.algebra.at_once import links
 from sysmlc.synthesis.algebra.composition import DriverError, composition

@@ -6,8 +6,7 @@ import pytest
 from contracts_in_lines import contract
 from listed_runs import Listed
 
-from sysmlc.logic.composite import Composite, Part
-from sysmlc.logic.contract import Class, Contract
+from sysmlc.logic.contract import Class, Composite, Contract, Part
 from sysmlc.logic.evaluate import evaluation
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.algebra.composition import composition

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.render import Finding
-    from sysmlc.logic.composite import Composite
-    from sysmlc.logic.contract import Contract
+    from sysmlc.logic.contract import Composite, Contract
     from sysmlc.sources import Source
     from sysmlc.synthesis.decide import Place
 

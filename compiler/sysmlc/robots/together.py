@@ -12,8 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.composite import Part
-from sysmlc.logic.contract import Class, Conjunct, Contract
+from sysmlc.logic.contract import Class, Conjunct, Contract, Part
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.robots import words
 from sysmlc.robots.among import among_all, breaks, is_kept

@@ -5,8 +5,7 @@ from collections.abc import Iterable, Iterator
 from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
-from sysmlc.logic.composite import Composite
-from sysmlc.logic.contract import Conjunct
+from sysmlc.logic.contract import Composite, Conjunct
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis.algebra.apart import apart, is_joined
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, composition

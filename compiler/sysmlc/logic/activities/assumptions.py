@@ -1,17 +1,109 @@
-"""What the contract of an activity assumes of the environment.
+"""Loops of token graphs that the environment decides, each with the edges that lead out of it."""
 
-A loop whose exit depends on the environment gets the assumption
-``GF(!inside | at the decision & exit guard)``. The plain ``GF(exit guard)`` would not do: the guard
-could be true only while the token is elsewhere in the loop.
-"""
+from collections.abc import Collection, Iterator
 
-from collections.abc import Iterator
+from msgspec import Struct
 
+from sysmlc.ir.algorithms import strong_components
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.loops import Loop, loops
 from sysmlc.logic.activities.step_formulas import Game, at
-from sysmlc.logic.activities.token_graph import Duration, Firing, NodeKind, TokenNode
+from sysmlc.logic.activities.token_graph import (
+    ACTIVITY_REGION,
+    Duration,
+    Firing,
+    NodeKind,
+    TokenEdge,
+    TokenGraph,
+    TokenNode,
+)
 from sysmlc.logic.contract import Class, Conjunct
+from sysmlc.logic.formula import Const
+
+
+class Loop(Struct, frozen=True):
+    """Nodes (ids, in the order of the graph) that reach each other, and the exits."""
+
+    nodes: tuple[str, ...]
+    exits: tuple[TokenEdge, ...]
+
+
+def loops(graph: TokenGraph) -> list[Loop]:
+    """Loops with at least one exit that the environment opens, outer before inner.
+
+    A loop is a strongly connected component; inner loops are the components that are left
+    when the decisions with exits are taken out.
+    """
+    return list(_loops(graph, [node.id for node in graph.nodes]))
+
+
+def endless_entries(graph: TokenGraph) -> list[TokenNode]:
+    """Where loops without an exit are entered: they are gone through again and again."""
+    heads = (_entry(graph, part) for part in _components(graph, [n.id for n in graph.nodes]))
+    return [head for head in heads if head is not None]
+
+
+def _entry(graph: TokenGraph, component: Collection[str]) -> TokenNode | None:
+    if any(_is_exit(graph, edge, component) for edge in graph.edges):
+        return None
+    nodes = [graph.node(id) for id in component]
+    entered = [n for n in nodes if any(_enters(e, component) for e in graph.incoming(n))]
+    return next(iter(entered), nodes[0])
+
+
+def _enters(edge: TokenEdge, component: Collection[str]) -> bool:
+    return edge.source not in component or edge.marked
+
+
+def _loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:
+    for component in _components(graph, nodes):
+        inside = frozenset(component)
+        exits = [edge for edge in graph.edges if _is_exit(graph, edge, inside)]
+        if any(_is_decided_outside(graph, one) for one in exits):
+            yield Loop(component, tuple(exits))
+        deciders = {edge.source for edge in exits}
+        if deciders:
+            yield from _loops(graph, [node for node in component if node not in deciders])
+
+
+def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ...]]:
+    kept = frozenset(nodes)
+    steps = [*((edge.source, edge.target) for edge in graph.edges), *_starts(graph)]
+    following: dict[str, dict[str, None]] = {id: {} for id in nodes}
+    for source, target in steps:
+        if source in kept and target in kept:
+            following[source][target] = None
+    order = {node.id: place for place, node in enumerate(graph.nodes)}
+    found = [
+        tuple(sorted(part, key=order.__getitem__))
+        for part in strong_components(following)
+        if len(part) > 1 or part[0] in following[part[0]]
+    ]
+    return sorted(found, key=lambda part: order[part[0]])
+
+
+def _starts(graph: TokenGraph) -> Iterator[tuple[str, str]]:
+    """A structured node leads to what starts in it: flows may leave from there."""
+    for edge in graph.edges:
+        if edge.marked and edge.region != ACTIVITY_REGION:
+            yield edge.region, edge.target
+
+
+def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> bool:
+    if edge.source not in component or edge.target in component:
+        return False
+    return graph.node(edge.source).firing is Firing.CHOICE
+
+
+def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
+    """Whether the environment opens the branch, by its own guard or by those of the others."""
+    guard = edge.guard
+    if guard is None or isinstance(guard.condition, Const):
+        return False
+    if guard.condition is not None:
+        return graph.is_decided_outside(guard.condition)
+    others = (one.guard for one in graph.outgoing(graph.node(edge.source)))
+    stated = [one.condition for one in others if one is not None and one.condition is not None]
+    return not stated or not all(map(graph.is_own, stated))
 
 
 def assumptions(game: Game) -> Iterator[Conjunct]:

@@ -5,6 +5,8 @@ and what their values are made of. What starts with an unknown value starts with
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from enum import StrEnum
+from functools import lru_cache
 from typing import TypeVar
 
 from msgspec import Struct
@@ -13,8 +15,10 @@ from msgspec.structs import replace
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.concurrency import Together
 from sysmlc.logic.activities.step_formulas import Game
-from sysmlc.logic.activities.token_graph import TokenGraph, TokenNode, Write
+from sysmlc.logic.activities.token_graph import Store, TokenGraph, TokenNode, Write
+from sysmlc.logic.activities.value_analysis import MOST_VALUES, Spread
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.simplify import is_satisfiable, substitute
@@ -163,3 +167,39 @@ class _Oracle:
         for place in range(len(self._plan), len(self._counts)):
             for other in range(1, self._counts[place]):
                 yield [*taken[:place], other]
+
+
+_REMEMBERED = 256
+"""Answers that are kept: a process that compiles again finds those of what was not edited."""
+
+
+class Can(StrEnum):
+    """Whether something happens in some run."""
+
+    YES = "can"
+    NO = "cannot"
+    PERHAPS = "may (it has too many states to tell)"
+
+
+@lru_cache(_REMEMBERED)
+def leaving(tokens: TokenGraph) -> tuple[tuple[Store, Write, Can], ...]:
+    """Each write that has stops, and whether it comes to one."""
+    could = [(store, one) for store in tokens.stores for one in store.writes if one.stops]
+    together = Together(tokens)
+    said = [(*one, _on_the_way(tokens, together, *one)) for one in could]
+    found = search(tokens, [write for _, write, can in said if can is Can.PERHAPS])
+    rest = Can.NO if found.is_complete else Can.PERHAPS
+    return tuple(
+        (store, write, Can.YES if write in found.writes else rest if can is Can.PERHAPS else can)
+        for store, write, can in said
+    )
+
+
+def _on_the_way(tokens: TokenGraph, together: Together, store: Store, write: Write) -> Can:
+    """What the values along the flows say."""
+    if domains.size(store.variable.domain) > MOST_VALUES:
+        return Can.PERHAPS
+    spread = Spread(reduced(tokens, [write]), together, store)
+    if not spread.may_stop(write):
+        return Can.NO
+    return Can.YES if spread.is_exact else Can.PERHAPS

@@ -7,13 +7,22 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic.composition.joints import Joints
-from sysmlc.logic.composition.steps import EXECUTED, ends_of_steps, performed
-from sysmlc.logic.composition.structure import ITSELF, End, Usage, joined, links, usages
+from sysmlc.logic.composition.structure import (
+    EXECUTED,
+    ITSELF,
+    End,
+    Usage,
+    ends_of_steps,
+    joined,
+    links,
+    performed,
+    usages,
+)
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import context_classifier
 from sysmlc.logic.requirements.statements import definition_of
+from sysmlc.support.disjoint_sets import DisjointSets
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 Slot = tuple[str, str]
@@ -53,8 +62,8 @@ class Block:
     """Dotted names of the features of each usage."""
     steps: set[Slot] = field(default_factory=set)
     """What tells of each step of an operation that it is over."""
-    features: Joints[Slot] = field(default_factory=Joints)
-    channels: Joints[Slot] = field(default_factory=Joints)
+    features: DisjointSets[Slot] = field(default_factory=DisjointSets)
+    channels: DisjointSets[Slot] = field(default_factory=DisjointSets)
     """Ends between which messages pass."""
 
 
@@ -85,7 +94,7 @@ def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
             for two in other:
                 _join(block, one, two)
     for step, action in performed(block.graph, element, path):
-        if not block.features.is_joined((step.path, step.feature)):
+        if not block.features.has_merged((step.path, step.feature)):
             _join(block, step, action)
 
 
@@ -145,20 +154,20 @@ def _with_shared(block: Block, around: Element, path: str, member: Member) -> Me
     names = variables_of(graph, context) if context in family else {}
     found = {name: variable for name, variable in names.items() if variable in known}
     for name in found:
-        block.features.unite((path, name), (member.path, name))
+        block.features.union((path, name), (member.path, name))
     block.names[member.path] = list(dict.fromkeys((*block.names[member.path], *found)))
     return replace(member, features={**member.features, **found})
 
 
 def _join(block: Block, one: End, other: End) -> None:
-    block.channels.unite((one.path, one.feature), (other.path, other.feature))
+    block.channels.union((one.path, one.feature), (other.path, other.feature))
     one, other = (_end_of(block, this, that) for this, that in ((one, other), (other, one)))
     if not (one.feature and other.feature):
         return
     theirs = set(_behind(block, other))
     for rest in _behind(block, one):
         if rest in theirs:
-            block.features.unite((one.path, one.feature + rest), (other.path, other.feature + rest))
+            block.features.union((one.path, one.feature + rest), (other.path, other.feature + rest))
 
 
 def _end_of(block: Block, one: End, other: End) -> End:

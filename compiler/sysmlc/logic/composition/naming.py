@@ -45,7 +45,7 @@ def wires(block: Block, members: Iterable[Member]) -> list[Wire]:
         by_path.setdefault(member.path, []).append(member)
     slots = [(path, name) for path, names in block.names.items() for name in names]
     found = []
-    for group in block.features.groups(slots):
+    for group in block.features.group_items(slots):
         ends = [
             (member, _variable(member, name))
             for path, name in group

@@ -1,9 +1,17 @@
-"""Which transitions can be enabled at once: by what occurs, and by their guards."""
+"""Transitions that can be enabled in the same step, and the conflicts between them.
+
+Two transitions can be enabled at once if their triggers can occur together and some values satisfy
+both guards. Such a pair is a conflict if it leaves orthogonal regions that assign the same property
+or leave their common state, or if one transition is nested in the source of the other and so takes
+precedence.
+"""
 
 from collections.abc import Iterator
 from itertools import combinations
 
-from sysmlc.logic import domains
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Graph
+from sysmlc.logic import domains, samples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import evaluation
@@ -11,7 +19,18 @@ from sysmlc.logic.expressions.elaborate import Scope, condition
 from sysmlc.logic.expressions.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.actions import walk
-from sysmlc.logic.machines.machine import AfterTicks, OnEvent, Transition, Vertex
+from sysmlc.logic.machines.machine import (
+    Action,
+    AfterTicks,
+    Assign,
+    Machine,
+    OnEvent,
+    Transition,
+    Vertex,
+    element_id,
+)
+from sysmlc.logic.machines.well_formedness import common_state, segments
+from sysmlc.logic.samples import arrow, machine_of
 
 _LIMIT = 4096
 """Valuations tried to see whether two guards exclude one another; more count as possible."""
@@ -128,3 +147,189 @@ def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domai
         symbol = None if name is None else scope(name)
         if symbol is not None and symbol.domain is not None:
             yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
+
+
+def _two_regions(first: str, second: str) -> str:
+    return machine_of(
+        samples.region(
+            "r", samples.state("a"), arrow("i", "a"), arrow("a", "a", first, effect="level := 1")
+        ),
+        samples.region(
+            "q", samples.state("b"), arrow("qi", "b"), arrow("b", "b", second, effect="level := 2")
+        ),
+    )
+
+
+def _leaving(on: str) -> str:
+    inner = (
+        samples.region("s", samples.state("d"), arrow("si", "d"), arrow("d", "b", on)),
+        samples.region(
+            "t", samples.state("e"), arrow("ti", "e"), arrow("e", "e", "start", "ready")
+        ),
+    )
+    return machine_of(
+        samples.region("r", samples.state("a", *inner), samples.state("b"), arrow("i", "a"))
+    )
+
+
+RACE = rule(
+    "SM426",
+    "race",
+    Severity.WARNING,
+    "'{first}' and '{second}' of orthogonal regions can both assign '{variable}' in one step; "
+    "the component gets no contract",
+    why="Nothing in the diagram orders the two assignments.",
+    help="assign the property in one region only, or on different events",
+    wrong=_two_regions("start", "start"),
+    right=_two_regions("start", "stop"),
+)
+CROSSING = rule(
+    "SM427",
+    "exit-from-orthogonal-state",
+    Severity.WARNING,
+    "'{first}' leaves an orthogonal state while '{second}' can be taken in another of its "
+    "regions; the component gets no contract",
+    why="Nothing in the diagram says which of the two is taken.",
+    help="draw the transition from the border of the orthogonal state, or use another event",
+    wrong=_leaving("start"),
+    right=_leaving("stop"),
+)
+
+
+# -- orthogonal regions ------------------------------------------------------------------------
+
+
+def is_undisturbed(graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink) -> bool:
+    """Return whether orthogonal regions react independently; report the transitions if not."""
+    is_orthogonal = len(machine.top) > 1 or any(
+        len(one.regions) > 1 for one in machine.vertices.values()
+    )
+    if not is_orthogonal:
+        return True
+    races = _races(graph, machine, comparison, sink)
+    return not [*races, *_crossings(graph, machine, comparison, sink)]
+
+
+def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition, str]]:
+    """Pairs whose sources can be active at once, with the state above both (or empty)."""
+    sources = [one for one in machine.transitions() if machine.vertices[one.source].kind == "state"]
+    for one, other in combinations(sources, 2):
+        common = _common_state(machine, one, other)
+        if common is not None and simultaneous(one, other):
+            yield one, other, common
+
+
+def _common_state(machine: Machine, one: Transition, other: Transition) -> str | None:
+    """The state in different regions of which all their sources lie, None when there is none."""
+    found = [common_state(machine, a, b) for a in one.sources for b in other.sources]
+    return None if None in found else found[0]
+
+
+def _races(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> Iterator[str]:
+    assigned = {one.id: _touched(machine, one) for one in machine.transitions()}
+    for one, other, _ in _orthogonal_pairs(machine):
+        shared = [variable for variable in assigned[one.id] if variable in assigned[other.id]]
+        if shared and comparison.are_compatible(one, other):
+            subject = graph.subject(graph[element_id(one.id)])
+            sink.report(RACE, subject, first=one.words, second=other.words, variable=shared[0])
+            yield one.id
+
+
+def _touched(machine: Machine, transition: Transition) -> dict[str, None]:
+    """Properties that may be assigned when the transition is taken; no less, maybe more."""
+    ways = segments(machine, transition)
+    actions = [action for one in ways for action in one.effect]
+    changed = {machine.main_region(one) for one in ways}
+    for state in machine.states():
+        if not changed.isdisjoint(machine.around(state.id)):
+            actions += [*state.entry, *state.exit]
+            actions += _on_start(machine, state.regions)
+    return dict.fromkeys(action.variable for action in actions if isinstance(action, Assign))
+
+
+def _on_start(machine: Machine, regions: tuple[str, ...]) -> list[Action]:
+    starts = [machine.regions[one].initial for one in regions]
+    begun = [one for start in starts for one in machine.outgoing.get(start, ())]
+    return [action for one in begun for each in segments(machine, one) for action in each.effect]
+
+
+def _crossings(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> Iterator[str]:
+    for one, other, state in _orthogonal_pairs(machine):
+        for leaver, stayer in ((one, other), (other, one)):
+            if _leaves(machine, leaver, state) and comparison.are_compatible(one, other):
+                subject = graph.subject(graph[element_id(leaver.id)])
+                sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
+                yield leaver.id
+
+
+def _leaves(machine: Machine, transition: Transition, state: str) -> bool:
+    """Whether taking the transition can leave the state, that is, change what is around it."""
+    if not state or transition.kind == "internal":
+        return False
+    changed = [machine.main_region(one) for one in segments(machine, transition)]
+    owners = [machine.regions[region].state for region in changed if region]
+    return any(
+        owner != state and not (owner and machine.contains(state, owner)) for owner in owners
+    )
+
+
+def _nested(inner: str) -> str:
+    inside = samples.region("s", samples.state("d"), samples.state("e"), arrow("si", "d"), inner)
+    states = (samples.state("a", inside), samples.state("b"))
+    return machine_of(samples.region("r", *states, arrow("i", "a"), arrow("a", "b", "stop")))
+
+
+OVERRIDDEN = rule(
+    "SM434",
+    "event-can-be-lost",
+    Severity.WARNING,
+    "the event of transition {transition} is lost when it comes in the step in which {inner} "
+    "is taken",
+    why="One step takes one transition from nested states, the innermost. What time, a change or "
+    "a completion triggers can come with an event or with one another, and nothing is kept for "
+    "later: a time-out of the outer state that comes in such a step does not come again.",
+    help="if the event must never be lost, let it be repeated until it is answered (a change that "
+    "lasts as a guard, a time-out as a transition of the inner states), or trigger the inner "
+    "transition by an event as well",
+    wrong=_nested(arrow("d", "e", after="after 2 s")),
+    right=_nested(arrow("d", "e", "start")),
+)
+
+
+# -- nested states -----------------------------------------------------------------------------
+
+
+def report_overrides(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> None:
+    """Report each transition whose event can be passed over without a trace."""
+    for outer in machine.transitions():
+        inner = list(_before(machine, outer, comparison))
+        if inner:
+            named = ", ".join(f"'{one.words}'" for one in inner)
+            subject = graph.subject(graph[element_id(outer.id)])
+            sink.report(OVERRIDDEN, subject, transition=f"'{outer.words}'", inner=named)
+
+
+def _before(
+    machine: Machine, outer: Transition, comparison: GuardComparison
+) -> Iterator[Transition]:
+    """Transitions from inside its source that can come in one step with what triggers it.
+
+    Of two events only one comes in a step; times and changes come with anything.
+    """
+    waits_for_event = any(isinstance(one, OnEvent) for one in outer.occurrences)
+    waits_for_more = not all(isinstance(one, OnEvent) for one in outer.occurrences)
+    for inner in machine.transitions():
+        source = machine.vertices[inner.source]
+        if source.kind != "state" or not machine.contains(outer.source, inner.source):
+            continue
+        without_event = [one for one in inner.occurrences if not isinstance(one, OnEvent)]
+        is_unasked = bool(without_event) or not inner.occurrences
+        can_meet = waits_for_more or (waits_for_event and is_unasked)
+        if can_meet and comparison.are_compatible(outer, inner):
+            yield inner

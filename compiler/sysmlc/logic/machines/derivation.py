@@ -28,7 +28,7 @@ from sysmlc.logic.machines.machine import (
     element_id,
 )
 from sysmlc.logic.machines.moves import Derivation, Move, active, explore, is_picked
-from sysmlc.logic.machines.path import Path
+from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.simplify import is_satisfiable, tidy
 
 _Touches = Callable[[Path, str], bool]

@@ -52,8 +52,8 @@ from sysmlc.logic.machines.reaction import (
     is_active,
     last_of,
     take,
+    value_of,
 )
-from sysmlc.logic.machines.step_values import value_of
 
 Valuation = dict[str, Literal]
 

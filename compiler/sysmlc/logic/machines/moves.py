@@ -32,8 +32,7 @@ from sysmlc.logic.machines.machine import (
     WhenTold,
     element_id,
 )
-from sysmlc.logic.machines.path import LIMIT, Path, TooManyPaths
-from sysmlc.logic.machines.paths import Explorer
+from sysmlc.logic.machines.paths import LIMIT, Explorer, Path, TooManyPaths
 from sysmlc.logic.samples import arrow, choice, machine
 from sysmlc.logic.simplify import simplified, tidy
 

@@ -7,21 +7,19 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.machines.actions import Reading
+from sysmlc.logic.machines.actions import Reading, Sharing
 from sysmlc.logic.machines.conflicts import (
     GuardComparison,
     TooManyValuationsError,
     have_common_cause,
+    is_undisturbed,
     may_compete,
+    report_overrides,
 )
 from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element_id
-from sysmlc.logic.machines.orthogonal import is_undisturbed
-from sysmlc.logic.machines.overrides import report_overrides
-from sysmlc.logic.machines.shared import Sharing
 from sysmlc.logic.machines.supported_constructs import is_supported
 from sysmlc.logic.machines.transitions import join_up, read_transitions
-from sysmlc.logic.machines.triggers import Parts
-from sysmlc.logic.machines.vertices import read_regions, remember
+from sysmlc.logic.machines.vertices import Parts, read_regions, remember
 from sysmlc.logic.machines.well_formedness import has_ends, is_well_formed
 from sysmlc.logic.names import Names
 from sysmlc.logic.samples import arrow, machine

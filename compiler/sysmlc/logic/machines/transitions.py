@@ -16,8 +16,8 @@ from sysmlc.logic.machines.machine import (
     id_within,
 )
 from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
-from sysmlc.logic.machines.triggers import Parts, occurrence_of
-from sysmlc.logic.machines.vertices import drawn_from
+from sysmlc.logic.machines.triggers import occurrence_of
+from sysmlc.logic.machines.vertices import Parts, drawn_from
 from sysmlc.logic.machines.well_formedness import common_state
 from sysmlc.logic.names import unique
 

@@ -1,62 +1,30 @@
 """Triggers of a state machine, and the variables that they need."""
 
-from dataclasses import dataclass, field
+import re
+from math import ceil
 
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Edge, Element
 from sysmlc.logic.contract import (
     BooleanDomain,
     Owner,
 )
-from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.machines.actions import (
     Reading,
     read_condition,
 )
-from sysmlc.logic.machines.clock import ticks_of, told_time
 from sysmlc.logic.machines.machine import (
     NO_EVENT,
     AfterTicks,
     Occurrence,
     OnEvent,
     OnRise,
-    Region,
-    Transition,
     Vertex,
     WhenTold,
-    element_id,
-    id_within,
 )
+from sysmlc.logic.machines.vertices import Parts
 from sysmlc.logic.names import unique
-
-
-@dataclass(slots=True)
-class Parts:
-    """The machine while it grows."""
-
-    reading: Reading
-    machine: Element
-    vertices: dict[str, Vertex] = field(default_factory=dict)
-    regions: dict[str, Region] = field(default_factory=dict)
-    outgoing: dict[str, tuple[Transition, ...]] = field(default_factory=dict)
-    events: dict[str, str] = field(default_factory=dict)
-    bounds: dict[str, int] = field(default_factory=dict)
-    memories: dict[str, Expression] = field(default_factory=dict)
-    within: str = ""
-    """The state whose submachine is read, as id of the machine; empty outside submachines."""
-    aliases: dict[str, list[str]] = field(default_factory=dict)
-    """Entry and exit points of a submachine by what stands for them at the submachine state."""
-
-    def key(self, element: Element) -> str:
-        """The id that an element has in the machine."""
-        return id_within(self.within, element.id)
-
-    def element(self, key: str) -> Element:
-        """What is drawn with an id of the machine."""
-        return self.reading.graph[element_id(key)]
-
-    def state_of(self, key: str) -> str:
-        """The submachine state in whose submachine something with this id is; empty in none."""
-        return key[: -len(element_id(key)) - 1] if key != element_id(key) else ""
+from sysmlc.logic.samples import arrow, machine
 
 
 def occurrence_of(parts: Parts, trigger: Element, vertex: Vertex) -> Occurrence:
@@ -98,3 +66,74 @@ def _change(parts: Parts, trigger: Element) -> Occurrence:
     memory = parts.reading.make(key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id)
     parts.memories[memory] = condition
     return OnRise(memory, condition)
+
+
+# -- time ----------------------------------------------------------------------------------------
+
+
+def _waiting(after: str) -> str:
+    return machine(arrow("a", "b", after=after))
+
+
+OPAQUE_TIME = rule(
+    "SM417",
+    "opaque-time",
+    Severity.WARNING,
+    "time '{text}' is no constant relative time; the environment says when it comes, as "
+    "'{variable}'",
+    why="A contract counts a duration in steps, so that it has to be a number.",
+    help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
+    wrong=_waiting("after cooling"),
+    right=_waiting("after 5 s"),
+)
+_SECONDS = {
+    "ms": 0.001,
+    "msec": 0.001,
+    "millisecond": 0.001,
+    "milliseconds": 0.001,
+    "s": 1.0,
+    "sec": 1.0,
+    "second": 1.0,
+    "seconds": 1.0,
+    "min": 60.0,
+    "minute": 60.0,
+    "minutes": 60.0,
+    "m": 60.0,
+    "h": 3600.0,
+    "hour": 3600.0,
+    "hours": 3600.0,
+}
+_TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
+
+
+def ticks_of(reading: Reading, trigger: Element) -> int | None:
+    """Steps after which a time trigger occurs, at least 1; None when it is no constant.
+
+    A number without unit counts steps; with a unit, steps last ``tick_seconds``.
+    """
+    text = str(trigger.attrs.get("when", ""))
+    relative = trigger.attrs.get("relative") is True or text.strip().startswith("after")
+    found = _TIME.match(text)
+    if not relative or found is None or (found[2] and found[2].lower() not in _SECONDS):
+        return None
+    number = float(found[1])
+    if found[2]:
+        number = number * _SECONDS[found[2].lower()] / reading.tick_seconds
+    return max(1, ceil(number))
+
+
+def milliseconds(text: str) -> int | None:
+    """A duration with a unit, ``5 s``, in milliseconds; None for any other text."""
+    found = _TIME.match(text)
+    if found is None or found[2].lower() not in _SECONDS:
+        return None
+    return round(float(found[1]) * _SECONDS[found[2].lower()] * 1000)
+
+
+def told_time(reading: Reading, trigger: Element) -> str:
+    """The Boolean by which the environment says that a time has come."""
+    text = str(trigger.attrs.get("when", "")) or trigger.name
+    variable = reading.told(f"time {text}", f"time_{text}", trigger.id)
+    subject = reading.graph.subject(trigger)
+    reading.sink.report(OPAQUE_TIME, subject, text=text, variable=variable)
+    return variable

@@ -1,14 +1,54 @@
 """Vertices and regions of a state machine, with those of the submachines that its states are."""
 
+from dataclasses import dataclass, field
+
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
-from sysmlc.logic.machines.actions import read_behaviours
-from sysmlc.logic.machines.machine import INACTIVE, Region, Vertex, id_within
+from sysmlc.logic.expressions.expression import Expression
+from sysmlc.logic.machines.actions import Reading, read_behaviours
+from sysmlc.logic.machines.machine import (
+    INACTIVE,
+    Region,
+    Transition,
+    Vertex,
+    element_id,
+    id_within,
+)
 from sysmlc.logic.machines.supported_constructs import initial_of, submachine_of
-from sysmlc.logic.machines.triggers import Parts
 from sysmlc.logic.names import identifier, unique
+
+
+@dataclass(slots=True)
+class Parts:
+    """The machine while it grows."""
+
+    reading: Reading
+    machine: Element
+    vertices: dict[str, Vertex] = field(default_factory=dict)
+    regions: dict[str, Region] = field(default_factory=dict)
+    outgoing: dict[str, tuple[Transition, ...]] = field(default_factory=dict)
+    events: dict[str, str] = field(default_factory=dict)
+    bounds: dict[str, int] = field(default_factory=dict)
+    memories: dict[str, Expression] = field(default_factory=dict)
+    within: str = ""
+    """The state whose submachine is read, as id of the machine; empty outside submachines."""
+    aliases: dict[str, list[str]] = field(default_factory=dict)
+    """Entry and exit points of a submachine by what stands for them at the submachine state."""
+
+    def key(self, element: Element) -> str:
+        """The id that an element has in the machine."""
+        return id_within(self.within, element.id)
+
+    def element(self, key: str) -> Element:
+        """What is drawn with an id of the machine."""
+        return self.reading.graph[element_id(key)]
+
+    def state_of(self, key: str) -> str:
+        """The submachine state in whose submachine something with this id is; empty in none."""
+        return key[: -len(element_id(key)) - 1] if key != element_id(key) else ""
+
 
 _KINDS = (Kind.STATE, Kind.FINAL_STATE, Kind.PSEUDOSTATE)
 

@@ -25,6 +25,7 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplified
+from sysmlc.logic.texts.formal import is_formal
 
 _TANK = """\
 Package p "Plant"
@@ -99,8 +100,6 @@ def _is_condition(constraint: Element) -> bool:
     language = str(constraint.attrs.get("language", ""))
     if not language:
         return True
-    from sysmlc.logic.texts.formal import is_formal
-
     return not is_formal(language, body)
 
 

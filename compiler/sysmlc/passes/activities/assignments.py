@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
-from sysmlc.logic.activities.bounds import Can, leaving
+from sysmlc.logic.activities.saturation import Can, leaving
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.expressions.declared import Feature

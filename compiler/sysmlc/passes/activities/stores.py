@@ -12,7 +12,7 @@ from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.path import saturated
+from sysmlc.logic.machines.paths import saturated
 from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned

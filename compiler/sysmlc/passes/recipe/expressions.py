@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Element
 from sysmlc.logic.expressions import expression as source
-from sysmlc.logic.machines.clock import milliseconds
+from sysmlc.logic.machines.triggers import milliseconds
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import feature_at, literal_value, value_type
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Opaque, Var

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.composite import Composite
-from sysmlc.logic.composition.joints import Joints
-from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.contract import Composite, Conjunct, Contract
+from sysmlc.support.disjoint_sets import DisjointSets
 
 
 def apart(composite: Composite) -> list[Composite]:
@@ -20,10 +19,10 @@ def apart(composite: Composite) -> list[Composite]:
     The whole is with those that it speaks of; beside the others stands one that promises nothing
     and assumes nothing.
     """
-    shared: Joints[str] = Joints()
+    shared: DisjointSets[str] = DisjointSets()
     for names in _together(composite):
         for other in names[1:]:
-            shared.unite(names[0], other)
+            shared.union(names[0], other)
     groups: dict[str, list[int]] = {}
     for number, part in enumerate(composite.parts):
         first = next((one.name for one in part.contract.variables), f"#{number}")
@@ -56,7 +55,7 @@ def _names(conjunct: Conjunct) -> list[str]:
     return list(dict.fromkeys(one.name for one in f.variables(conjunct.formula)))
 
 
-def _only(composite: Composite, group: list[int], shared: Joints[str], key: str) -> Composite:
+def _only(composite: Composite, group: list[int], shared: DisjointSets[str], key: str) -> Composite:
     def ours(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
         return tuple(one for one in conjuncts if shared.find(_names(one)[0]) == key)
 
@@ -69,7 +68,7 @@ def _only(composite: Composite, group: list[int], shared: Joints[str], key: str)
     )
 
 
-def _whole(whole: Contract | None, shared: Joints[str], key: str) -> Contract | None:
+def _whole(whole: Contract | None, shared: DisjointSets[str], key: str) -> Contract | None:
     if whole is None or not whole.variables:
         return whole
     if shared.find(whole.variables[0].name) == key:

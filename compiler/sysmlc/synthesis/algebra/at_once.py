@@ -5,8 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from msgspec import Struct
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.composite import Composite, Part
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.contract import Class, Composite, Conjunct, Contract, Owner, Part
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.bdd.manager import Node

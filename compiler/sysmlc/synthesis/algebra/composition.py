@@ -12,8 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.composite import Composite, Part
-from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
+from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, Variable
 from sysmlc.synthesis.algebra.discharge import Open, discharge, outputs
 from sysmlc.synthesis.algebra.entail import Entailment
 from sysmlc.synthesis.algebra.observed import observed

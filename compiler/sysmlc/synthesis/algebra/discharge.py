@@ -13,8 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from msgspec import Struct
 
-from sysmlc.logic.composite import Composite, Part
-from sysmlc.logic.contract import Class, Conjunct, Owner
+from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.synthesis.algebra.at_once import Readings, readings
 from sysmlc.synthesis.algebra.entail import Entailment

@@ -12,8 +12,7 @@ from math import prod
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.composite import Part
-from sysmlc.logic.contract import Class, Conjunct
+from sysmlc.logic.contract import Class, Conjunct, Part
 from sysmlc.synthesis.algebra.fair import Runs
 from sysmlc.synthesis.algebra.systems import Universe
 from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
