@@ -312,7 +312,7 @@ def _compile(
         _check_pass_names([step.name for step in request.pipeline()], settings.print_after)
         return compile_model(request, progress, opened)
     except ConfigError as problem:
-        fail(f"{request.config.file}: {problem}")
+        fail(f"{request.config.file}: {problem}" if request.config.file else str(problem))
     finally:
         progress.clear()
 

@@ -94,8 +94,9 @@ def _digest_own_files() -> Iterator[str]:
 
 
 def _digest_plug_ins() -> Iterator[str]:
-    for entry_point in registry.plug_ins():
-        yield from _digest_package(entry_point)
+    for group in (registry.BACKEND_GROUP, registry.PASS_GROUP):
+        for entry_point in registry.find_plug_ins(group).values():
+            yield from _digest_package(entry_point)
 
 
 def _digest_package(entry_point: "EntryPoint") -> Iterator[str]:

@@ -1,9 +1,14 @@
-"""Front ends, back ends and rules: where they are found, without importing what is not used."""
+"""Front ends, passes, back ends and rules: where they are found, imported when they are used.
+
+Other distributions add passes and back ends by entry points. A pass of a plug-in runs after those
+of sysmlc. The rules of a plug-in are those that its modules define when they are imported.
+"""
 
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import Struct, structs
@@ -11,19 +16,18 @@ from msgspec import Struct, structs
 from sysmlc.backends.base import Backend
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
-from sysmlc.driver.distributions import may_be_named
 from sysmlc.frontends.base import Frontend, Libraried
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
     from _typeshed import DataclassInstance
 
-GROUP = "sysmlc.backends"
+BACKEND_GROUP = "sysmlc.backends"
 """Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
+PASS_GROUP = "sysmlc.passes"
+"""Entry point group of passes; an entry names an object with the protocol ``Pass``."""
 
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
 _BACKENDS = {
@@ -82,16 +86,29 @@ def frontends(library: str = "") -> list[Frontend]:
 
 
 def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
-    """The passes in order, with options by the name of the pass.
+    """Return the passes in order, with *options* by the name of the pass.
 
-    Raises ConfigError for a pass or an option that does not exist.
+    Raise ConfigError for a pass or an option that does not exist, and for a plug-in that cannot be
+    loaded.
     """
+    plug_ins = find_plug_ins(PASS_GROUP)
+    names = [*pipeline.NAMES, *plug_ins]
     for name in options:
-        if name not in pipeline.NAMES:
-            advice = did_you_mean(name, pipeline.NAMES)
+        if name not in names:
+            advice = did_you_mean(name, names)
             raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
+    loaded += [_load_pass(entry) for entry in plug_ins.values()]
     return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
+
+
+def _load_pass(entry: EntryPoint) -> Pass:
+    if entry.name in pipeline.NAMES:
+        raise ConfigError(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
+    try:
+        return cast("Pass", entry.load())
+    except Exception as problem:
+        raise ConfigError(f"pass '{entry.name}' cannot be loaded: {problem!r}") from problem
 
 
 def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
@@ -135,13 +152,23 @@ def load_backends(names: Iterable[str]) -> list[Backend]:
     return _loaded(names, _others())
 
 
-def _loaded(names: Iterable[str], others: "dict[str, EntryPoint]") -> list[Backend]:
+def _loaded(names: Iterable[str], others: dict[str, EntryPoint]) -> list[Backend]:
     return [_load(name, others) for name in dict.fromkeys(names)]
 
 
-def _others() -> "dict[str, EntryPoint]":
-    """The back ends of other distributions by name; to look for them takes some milliseconds."""
-    return {entry.name: entry for entry in plug_ins()}
+def _others() -> dict[str, EntryPoint]:
+    """Return the back ends of other distributions by name. Raise BackendError."""
+    plug_ins = find_plug_ins(BACKEND_GROUP)
+    for name, entry in plug_ins.items():
+        if name in _BACKENDS:
+            raise BackendError(f"the plug-in {entry.value} takes the name of back end '{name}'")
+    return plug_ins
+
+
+def find_plug_ins(group: str) -> dict[str, EntryPoint]:
+    """Return the entry points of other distributions by name, sorted by name; load none."""
+    entries = [entry for entry in entry_points(group=group) if not _is_ours(entry)]
+    return {entry.name: entry for entry in sorted(entries, key=lambda entry: entry.name)}
 
 
 def select_backends(wanted: Sequence[str]) -> list[Backend]:
@@ -175,10 +202,13 @@ def full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Ru
     for name in others:
         with suppress(BackendError):
             _load(name, others)
+    for entry in find_plug_ins(PASS_GROUP).values():
+        with suppress(ConfigError):
+            _load_pass(entry)
     return catalogue()
 
 
-def _known(names: Iterable[str], others: "dict[str, EntryPoint]") -> frozenset[str]:
+def _known(names: Iterable[str], others: dict[str, EntryPoint]) -> frozenset[str]:
     known = sorted({*_BACKENDS, *others})
     for name in names:
         if name not in known:
@@ -186,25 +216,11 @@ def _known(names: Iterable[str], others: "dict[str, EntryPoint]") -> frozenset[s
     return frozenset(names)
 
 
-def plug_ins() -> "list[EntryPoint]":
-    """Entry points of back ends of other distributions, sorted by name. Raises BackendError."""
-    if not may_be_named(GROUP):
-        return []
-    from importlib.metadata import entry_points
-
-    found = {entry.name: entry for entry in entry_points(group=GROUP) if not _is_ours(entry)}
-    taken = sorted(found.keys() & _BACKENDS.keys())
-    if taken:
-        entry = found[taken[0]]
-        raise BackendError(f"the plug-in {entry.value} takes the name of back end '{entry.name}'")
-    return [found[name] for name in sorted(found)]
-
-
-def _is_ours(entry: "EntryPoint") -> bool:
+def _is_ours(entry: EntryPoint) -> bool:
     return entry.value.startswith("sysmlc.")
 
 
-def _load(name: str, others: "dict[str, EntryPoint]") -> Backend:
+def _load(name: str, others: dict[str, EntryPoint]) -> Backend:
     _known([name], others)
     try:
         if name in _BACKENDS:
