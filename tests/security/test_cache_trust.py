@@ -192,7 +192,7 @@ def test_an_intact_entry_of_another_form_is_a_miss(store):
     """What an entry holds is checked against its types, value by value."""
     store_outcome(store, KEY, OUTCOME)
     entry = msgspec.json.decode(store.get(KEY))
-    strangers = (None, 1, "x", True, [], {}, ["x"], [[]], -1.5, "SM000", [None] * 8)
+    strangers = (None, 1, "x", True, [], {}, ["x"], [[]], {"x": 1}, -1.5, "SM000", [None] * 8)
     number = 0
     for change in _iter_changes(entry, strangers):
         store.put(KEY, msgspec.json.encode(change))
@@ -212,6 +212,10 @@ def _iter_changes(value, strangers):
         for at, part in enumerate(value):
             for changed in _iter_changes(part, strangers):
                 yield [*value[:at], changed, *value[at + 1 :]]
+    if isinstance(value, dict):
+        for key, part in value.items():
+            for changed in _iter_changes(part, strangers):
+                yield value | {key: changed}
 
 
 def test_nothing_unmarshals_or_unpickles_what_the_cache_holds():
