@@ -1,10 +1,14 @@
 """Options of passes from the configuration reach the passes, or say what is wrong with them."""
 
+from dataclasses import dataclass
+
 import pytest
+from msgspec import Struct
 
 from sysmlc import config
 from sysmlc.config import ConfigError
 from sysmlc.driver import registry
+from sysmlc.passes import pipeline
 
 
 def passes(folder, text):
@@ -17,6 +21,35 @@ def passes(folder, text):
 def test_options_are_fields_of_the_pass(tmp_path):
     made = passes(tmp_path, "[passes.activities]\nmax_markings = 7\n")
     assert made["activities"].max_markings == 7
+
+
+class StructPass(Struct, frozen=True):
+    name: str = "counting"
+    after: tuple[str, ...] = ()
+    limit: int = 1
+
+    def run(self, graph, sink):
+        """Change nothing."""
+
+
+@dataclass(frozen=True)
+class DataclassPass:
+    name: str = "counting"
+    after: tuple[str, ...] = ()
+    limit: int = 1
+
+    def run(self, graph, sink):
+        """Change nothing."""
+
+
+@pytest.mark.parametrize("written", [StructPass(), DataclassPass()])
+def test_passes_are_structs_or_dataclasses(monkeypatch, written):
+    monkeypatch.setattr(pipeline, "NAMES", ("counting",))
+    monkeypatch.setattr(pipeline, "load", lambda name: written)
+    (made,) = registry.passes({"counting": {"limit": 7}})
+    assert (type(made), made.limit, written.limit) == (type(written), 7, 1)
+    with pytest.raises(ConfigError, match="did you mean 'limit'"):
+        registry.passes({"counting": {"limits": 7}})
 
 
 def test_an_integer_serves_as_a_number(tmp_path):

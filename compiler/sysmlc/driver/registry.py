@@ -127,7 +127,7 @@ def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
 
 
 def _option_names(step: Pass) -> list[str]:
-    """Names of the options of a pass; third parties write passes as dataclasses, too."""
+    """Return the names of the options of a pass: the fields of a struct or a dataclass."""
     if isinstance(step, Struct):
         return list(step.__struct_fields__)
     return [field.name for field in dataclasses.fields(cast("DataclassInstance", step))]
