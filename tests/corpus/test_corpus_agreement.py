@@ -13,7 +13,7 @@ from agreement import Agreement, Difference
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
-from sysmlc.frontends.xmi.snapshots.file_parts import split
+from sysmlc.frontends.xmi.snapshots.libraries import split_file_parts
 from sysmlc.ir import Graph
 from sysmlc.passes import pipeline
 from sysmlc.sources import load
@@ -158,7 +158,9 @@ def graph(corpus, name, has_snapshots=True):
     path = corpus / "xmi" / name
     sources = load(path, path.name)
     made, sink = Graph(), Sink()
-    FRONTEND.read(sources if has_snapshots else split(sources)[0], made, sink, Coverage())
+    FRONTEND.read(
+        sources if has_snapshots else split_file_parts(sources)[0], made, sink, Coverage()
+    )
     pipeline.pipeline(("resolve", "classify")).run(made, sink)
     return made
 

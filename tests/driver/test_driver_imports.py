@@ -68,7 +68,7 @@ NOT_IN_A_RUN_OF_SYSML = [
     "sysmlc.frontends.sysml.interactions",
     "sysmlc.frontends.sysml.requirements",
     "sysmlc.frontends.sysml.usecases",
-    "sysmlc.frontends.xmi.links",
+    "sysmlc.frontends.xmi.reading",
     "sysmlc.ir.text",
     "sysmlc.language.text.hints",
     "sysmlc.language.text.errors",

@@ -1,27 +1,31 @@
 """Reads the bytes of an XMI file into the columns of a document with one pass of expat.
 
-Expat calls the handlers for each element of the file, so they only append to columns;
-``indexing`` derives features, types and ids from the columns afterwards. Expat and not an lxml
-parser target, because expat tells the byte offset of a fault, and both take the same time.
+Expat calls the handlers for each element of the file, so they only append to columns; features,
+types and ids are derived from the columns afterwards. Expat and not an lxml parser target, because
+expat tells the byte offset of a fault, and both take the same time.
 """
 
 from itertools import pairwise
 
+from sysmlc.frontends.xmi import namespaces
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.frontends.xmi.indexing import index
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.xml import parse, parser, too_deep
 
 _SKIPPED = frozenset({"diagramRepresentation", "filePart"})
 """Elements of MagicDraw's extensions whose content is only counted: up to 87 % of a file."""
 
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+
 
 def read_document(source: Source) -> Document:
     """Return the document of an XMI file. Raises SourceError."""
     reader = _ColumnReader(source)
     reader.run()
-    index(reader.document, tuple(reader.namespaces))
-    return reader.document
+    document = reader.document
+    document.declared_namespaces = tuple(reader.namespaces)
+    _derive_columns(document)
+    return document
 
 
 class _ColumnReader:
@@ -114,8 +118,8 @@ class _ColumnReader:
     def _resume(self, outer: str, skipped: int) -> None:
         document = self.document
         if skipped:
-            document.drawn[outer] += skipped
-        self._breaks.append((len(document.tags), document.drawn.total()))
+            document.skipped_elements[outer] += skipped
+        self._breaks.append((len(document.tags), document.skipped_elements.total()))
         document.ends[self._open_rows.pop()] = len(document.tags)
         self._set_handlers()
 
@@ -126,3 +130,52 @@ def _number_elements(rows: int, breaks: list[tuple[int, int]]) -> list[int]:
     for (row, skipped), (next_row, _) in pairwise([(0, 0), *breaks, (rows, 0)]):
         ordinals += range(row + skipped, next_row + skipped)
     return ordinals
+
+
+def _derive_columns(document: Document) -> None:
+    """Fill the columns that depend on tags and attributes; types leave the attributes."""
+    versions = [uri for uri in document.declared_namespaces if namespaces.is_xmi(uri)]
+    xmi, *other_versions = versions or [""]
+    for namespace in other_versions:
+        _rename_attributes(document, namespace, xmi)
+    document.id_key, document.type_key = f"{xmi}}}id", f"{xmi}}}type"
+    document.idref_key = f"{xmi}}}idref"
+    document.features = [_drop_prefix(tag.rpartition("}")[2]) for tag in document.tags]
+    document.types = _extract_types(document, document.type_key)
+    if _XSI in document.declared_namespaces and not any(document.types):
+        # EMF saves the type in this namespace if the options of UML2 are not set.
+        document.types = _extract_types(document, f"{_XSI}}}type")
+    _index_ids(document)
+    rows = zip(document.features, document.attributes, strict=True)
+    document.referring_features = frozenset(
+        feature for feature, names in rows if document.idref_key in names or "href" in names
+    )
+
+
+def _rename_attributes(document: Document, namespace: str, new_namespace: str) -> None:
+    """Move the attributes of XMI to one namespace.
+
+    Enterprise Architect mixes versions of XMI in one file.
+    """
+    for values in document.attributes:
+        for name in ("id", "type", "idref"):
+            value = values.pop(f"{namespace}}}{name}", None)
+            if value is not None:
+                values[f"{new_namespace}}}{name}"] = value
+
+
+def _drop_prefix(name: str) -> str:
+    return name.rpartition(":")[2]
+
+
+def _extract_types(document: Document, key: str) -> list[str]:
+    return [_drop_prefix(values.pop(key, "")) for values in document.attributes]
+
+
+def _index_ids(document: Document) -> None:
+    for row, values in enumerate(document.attributes):
+        id = values.get(document.id_key)
+        if id is not None:
+            first = document.ids.setdefault(id, row)
+            if first != row:
+                document.repeated_ids.setdefault(id, [first]).append(row)

@@ -1,214 +1,210 @@
-"""What the readers of rows share: the document, the graph, and the bookkeeping of verdicts."""
+"""The lowering of one document: its elements, verdicts, and the work that later steps finish."""
 
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Sink, Subject, Verdict
-from sysmlc.frontends.xmi import feature_names as naming
-from sysmlc.frontends.xmi import metaclasses, rules
+from sysmlc.diagnostics import Place, Rule, Sink, Subject, Verdict
+from sysmlc.frontends.xmi import rules
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.keys import KEYS, PASSED_OVER
-from sysmlc.frontends.xmi.loose import Loose
-from sysmlc.frontends.xmi.rows import Rows
-from sysmlc.frontends.xmi.unit import Link, Lowered, Unit
-from sysmlc.frontends.xmi.values import ValueText, bound
-from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.sources import DEFAULT_LIMITS
+from sysmlc.frontends.xmi.document import WrittenReference
+from sysmlc.frontends.xmi.unit import LoweredDocument, Unit, UnresolvedReference
+from sysmlc.ir import AttrValue, Edge, Element
+from sysmlc.ir.identity import derived_id
 
-Completion = Callable[["Context", Element, int], None]
-"""Adds to an element what is special about it; takes its row."""
-
-
-class Event(NamedTuple):
-    """What an event says of the triggers that name it."""
-
-    types: list[tuple[str, str, int, bool]]
-    """Features with a target, its row, and whether it is an href."""
-    conditions: list[tuple[str, ValueText]]
-    is_relative: bool
+RowHandler = Callable[["Context", int], None]
+"""Lowers a row and its content."""
+ElementHandler = Callable[["Context", Element, int], None]
+"""Completes the element of a row."""
 
 
-class Context(Rows):
+class UncheckedReference(NamedTuple):
+    """Ids that a feature names, that its own file does not define, and that no edge follows."""
+
+    holder: str
+    """Id of the element that has the feature, or of the nearest element around it."""
+    ordinal: int
+    feature: str
+    targets: list[str]
+    is_redundant: bool
+    """Whether another feature, or ownership, states the same relation."""
+
+
+class Context:
     """The lowering of one document.
 
-    Readers leave in ``deferred`` what can only be said when every document is read.
+    The walk over the rows fills the lists; the steps of ``reading.read`` that need all documents
+    of the unit consume them.
     """
 
-    def __init__(self, unit: Unit, lowered: Lowered, sink: Sink) -> None:
-        super().__init__(unit, lowered, sink)
+    def __init__(self, unit: Unit, file: LoweredDocument, sink: Sink) -> None:
+        self.unit = unit
+        self.graph = unit.graph
+        self.sink = sink
+        self.file = file
+        self.document = file.document
+        self.elements = file.elements
+        self.element_ids = file.element_ids
+        self.verdicts = file.verdicts
+        self.losses: dict[int, str] = {}
+        """What approximated rows are read without; SM114 reports it."""
+        self.loss_rules: dict[int, tuple[Rule, str]] = {}
+        """Rules that report the other approximated rows, and the reason."""
+        self._positions: dict[tuple[str, str], int] = {}
+        # Rows and elements that later steps lower.
         self.applications: list[int] = []
+        self.baseless_applications: list[int] = []
         self.extensions: list[int] = []
-        self.parts: list[int] = []
+        """Rows of the extensions of Enterprise Architect."""
+        self.contained_hrefs: list[int] = []
+        """Rows that stand for elements which their owner contains in another file."""
+        self.connector_ends: list[tuple[Element, int]] = []
+        self.parameter_nodes: list[tuple[Element, int]] = []
         self.triggers: list[tuple[Element, int]] = []
         self.event_rows: list[int] = []
-        self.events: dict[tuple[str, int], Event] = {}
-        self.deferred: list[tuple[Completion, Element, int]] = []
-        self.ends: list[tuple[Element, int]] = []
-        self.parameters: list[tuple[Element, int]] = []
-        self.opaque: dict[str, tuple[Element, int]] = {}
+        self.used_events: set[tuple[str, int]] = set()
+        """File and row of the events that triggers of this document read."""
         self.guards: list[tuple[Element, str, int]] = []
-        self.rows_of: dict[str, list[tuple[Element, int]]] = {}
-        self.odd_values: list[tuple[int, str, str]] = []
-        """Rows with an attribute whose value is none that UML knows for it."""
-        self.baseless: list[int] = []
-        self.loose: list[Loose] = []
-        self.flow_targets: frozenset[str] | None = None
-        self.computed: set[str] = set()
-        """Elements with a bound that is an expression."""
+        """Transitions with the id of the constraint that is their guard."""
+        self.opaque_elements: dict[str, tuple[Element, int]] = {}
+        """Elements with several bodies or languages, by their id."""
+        self.record_rows: dict[str, list[tuple[Element, int]]] = {}
+        """Rows that become records of their owner (clauses, handlers, link ends), by attribute."""
+        self.completions: list[tuple[ElementHandler, Element, int]] = []
+        # Attributes that need the ids of all documents.
         self.bounds: dict[str, list[AttrValue]] = {}
-        self.late_conditions: list[tuple[str, str]] = []
-        self.late: list[tuple[Element, str, list[str], bool]] = []
+        """Lower and upper bound of elements, by their id."""
+        self.computed_bounds: set[str] = set()
+        """Ids of elements that have an expression as a bound."""
+        self.deferred_ids: list[tuple[Element, str, list[str], bool]] = []
+        """Attributes that hold ids: element, attribute, ids or hrefs, whether they are hrefs."""
+        self.deferred_conditions: list[tuple[str, str]] = []
+        """Ids of constraints that are pre- or postconditions, with their subkind."""
+        # Findings that the last step reports.
+        self.unknown_values: list[tuple[int, str, str]] = []
+        """Rows with an attribute whose value UML does not list."""
+        self.unchecked_references: list[UncheckedReference] = []
 
-    def may_own(self, owner: str, kind: Kind) -> bool:
-        """Whether elements of the kind can stand below the owner."""
-        above = self.graph.get(owner)
-        return above is not None and above.kind in metaclasses.OWNERS[kind]
+    # -- verdicts ----------------------------------------------------------------------------------
 
-    # -- attributes and references -------------------------------------------------------------
+    def mark_mapped(self, row: int) -> None:
+        """Mark the row as mapped to the element above it."""
+        parent = self.document.parents[row]
+        self.element_ids[row] = self.element_ids[parent] if parent >= 0 else ""
+        self.verdicts[row] = Verdict.MAPPED
 
-    def attribute(self, element: Element, row: int, name: str, value: str) -> None:
-        """Put one UML attribute (or reference list) of the row into the graph."""
-        edge = v.REFERENCES.get(name)
-        if edge is not None:
-            if name in v.AMBIGUOUS:
-                edge = v.SPECIAL.get((element.kind, name), edge)
-            for target in self._targets(row, name, value):
-                self.link(edge, element.id, target, row, name)
-        elif name in KEYS:
-            key = KEYS[name]
-            if value != key.default and not key.keep(element, value):
-                self.odd_values.append((row, name, value))
-        else:
-            self._other(element, row, name, value)
+    def mark_subtree(self, row: int, verdict: Verdict) -> int:
+        """Give the row and all its content one verdict; return the row after."""
+        end, parent = self.document.ends[row], self.document.parents[row]
+        id = self.element_ids[row] or (self.element_ids[parent] if parent >= 0 else "")
+        self.verdicts[row:end] = [verdict] * (end - row)
+        self.element_ids[row:end] = [id] * (end - row)
+        return end
 
-    def _targets(self, row: int, name: str, value: str) -> list[str]:
-        """The ids in a list, as far as a list may be long."""
-        targets = self.document.tokens(value)
-        most = DEFAULT_LIMITS.references
-        if len(targets) > most:
-            subject = Subject(self.qualified_name(row), "", self.place(row))
-            self.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
-        return targets[:most]
+    def next_row(self, row: int) -> int:
+        """Return the next row of the walk: after the row's content if that has its verdicts."""
+        following = row + 1
+        end = self.document.ends[row]
+        return end if following < end and self.verdicts[following] is not None else following
 
-    def _other(self, element: Element, row: int, name: str, value: str) -> None:
-        backwards = v.REVERSED.get((element.kind, name))
-        if backwards is not None:
-            for target in value.split():
-                self.link(backwards, element.id, target, row, name, is_reversed=True)
-        elif name in v.CONDITIONS:
-            self.conditions(value.split(), name)
-        elif name in _BOUNDS:
-            self.bound(row, _BOUNDS.index(name), bound(value))
-        elif name == "kind" and element.kind in _DIVIDED:
-            if value != _DIVIDED[element.kind]:
-                element.attrs["subkind"] = metaclasses.hyphenated(value)
-        elif name in v.REDUNDANT:
-            self.look(row, name, value)
-        elif name in naming.NAMING:
-            self.keep_ids(element, v.snake(name), self.document.tokens(value))
-        elif name not in PASSED_OVER:
-            self._said(element, row, name, value)
-
-    def _said(self, element: Element, row: int, name: str, value: str) -> None:
-        """Keep an attribute that no table names, unless it says nothing."""
-        if name in naming.FLAGS:
-            value = _WRITTEN.get(value, value)
-        if value not in naming.VALUES.get(name, (value,)):
-            self.odd_values.append((row, name, value))
-        elif value != v.default(name):
-            self.keep(element, v.snake(name), value)
-
-    def look(self, row: int, feature: str, value: str, is_said_elsewhere: bool = True) -> None:
-        """Note the ids of a reference that nobody follows which are not in this file."""
-        ids = self.document.ids
-        missing = [target for target in self.document.tokens(value) if target not in ids]
-        if missing and not self.document.is_in_extension(row):
-            ordinal = self.document.ordinals[row]
-            self.loose.append(Loose(self.gids[row], ordinal, feature, missing, is_said_elsewhere))
-
-    def keep(self, element: Element, key: str, value: str) -> None:
-        """Keep what no table names: ids of elements, a truth value, or text."""
-        tokens = value.split()
-        if tokens and all(token in self.document.ids for token in tokens):
-            self.late.append((element, key, tokens, False))
-        elif value in ("true", "false"):
-            element.attrs[key] = value == "true"
-        elif value:
-            element.attrs[key] = value
-
-    def keep_ids(self, element: Element, key: str, ids: list[str], is_href: bool = False) -> None:
-        """Keep ids (or hrefs) as ids of the graph, when all elements are there."""
-        if ids:
-            self.late.append((element, key, ids, is_href))
-
-    def text(self, row: int, feature: str) -> None:
-        """A child that is only text stands for an attribute of the same name."""
-        owner = self.owner(row)
-        value = self.document.texts.get(row, "")
-        if owner is None:
-            self.verdicts[row] = Verdict.UNSUPPORTED
-            return
-        if not naming.is_known(feature):
-            self._report_stray(row, feature)
-        if not value:
-            return
-        if feature == "name":
-            self.graph.rename(owner, value)
-        elif feature in ("body", "language") and feature in owner.attrs:
-            self.opaque[owner.id] = (owner, self.document.parents[row])
-        else:
-            self.attribute(owner, row, feature, value)
-
-    def _report_stray(self, row: int, feature: str) -> None:
-        name = self.qualified_name(self.document.parents[row])
-        subject = Subject(name, self.gids[row], self.place(row))
-        self.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
+    def approximate(self, row: int, loss: str) -> None:
+        """Mark the row as approximated; *loss* is the part of its meaning that is lost."""
         self.verdicts[row] = Verdict.APPROXIMATED
-        self.told[row] = rules.STRAY_TEXT, "kept as text: no feature of UML has its name"
+        self.losses[row] = loss
 
-    def link(
+    # -- owners, ids and names ---------------------------------------------------------------------
+
+    def find_owner(self, row: int) -> Element | None:
+        """Return the element of the nearest row above that has one."""
+        parent = self.document.parents[row]
+        if parent < 0:
+            return None
+        return self.elements[parent] or self.graph.get(self.element_ids[parent])
+
+    def new_id(self, row: int, owner: str, feature: str) -> str:
+        """Return the id for the row's element: its own, else one derived from its position."""
+        id = self.document.attributes[row].get(self.document.id_key)
+        if not id:
+            return derived_id(owner or self.document.name, self._next_position(owner, feature))
+        graph_id = self.unit.graph_id(self.document.name, id)
+        if id in self.document.repeated_ids and graph_id in self.graph:
+            self._report_repeated(row, id)
+            return derived_id(graph_id, str(self.document.ordinals[row]))
+        return graph_id
+
+    def _next_position(self, owner: str, feature: str) -> str:
+        number = self._positions.get((owner, feature), 0)
+        self._positions[owner, feature] = number + 1
+        return f"{feature}[{number}]"
+
+    def _report_repeated(self, row: int, id: str) -> None:
+        if self.document.is_in_extension(row):
+            return
+        subject = Subject(self.qualified_name(row), id, self.locate(row))
+        self.sink.report(rules.REPEATED_ID, subject, id=id, file=self.document.name)
+
+    def qualified_name(self, row: int) -> str:
+        """Return the qualified name of a row, also of a row without an element of its own."""
+        if self.elements[row]:
+            return self.graph.qualified_name(self.graph[self.element_ids[row]])
+        owner = self.find_owner(row)
+        name = self.document.attributes[row].get("name") or f"<{self.document.features[row]}>"
+        return f"{self.graph.qualified_name(owner)}::{name}" if owner is not None else name
+
+    def locate(self, row: int) -> Place:
+        """Return the location of the row."""
+        return Place(self.document.name, self.document.ordinals[row])
+
+    # -- references --------------------------------------------------------------------------------
+
+    def add_reference(
         self,
         edge: Edge,
         source: str,
-        target: str,
-        row: int,
+        reference: WrittenReference,
         feature: str,
-        is_href: bool = False,
+        *,
         is_reversed: bool = False,
+        file: LoweredDocument | None = None,
     ) -> None:
-        """Leave a reference from an element to an id or href."""
-        link = Link(edge, source, self.lowered, target, row, feature, is_href, is_reversed)
-        self.unit.links.append(link)
+        """Add an edge from *source* to the target of *reference*, which *feature* writes.
 
-    def link_from(
-        self,
-        holder: Lowered,
-        edge: Edge,
-        source: str,
-        target: str,
-        row: int,
-        feature: str,
-        is_href: bool,
-    ) -> None:
-        """Leave a reference that a row of another document makes."""
-        self.unit.links.append(Link(edge, source, holder, target, row, feature, is_href))
+        The reference is resolved when all documents are lowered. *file* is the file that writes it
+        if it is not this document.
+        """
+        target, row, is_href = reference
+        self.unit.references.append(
+            UnresolvedReference(
+                edge, source, file or self.file, target, row, is_href, feature, is_reversed
+            )
+        )
 
-    def conditions(self, targets: list[str], feature: str) -> None:
-        """The constraints with these ids are pre- or postconditions."""
-        self.late_conditions.extend((target, v.CONDITIONS[feature]) for target in targets)
+    def add_references(self, edge: Edge, source: str, row: int, feature: str) -> None:
+        """Add an edge from *source* to each target of a feature of the row."""
+        for reference in self.document.references(row, feature):
+            self.add_reference(edge, source, reference, feature)
 
-    def bound(self, row: int, index: int, value: AttrValue) -> None:
-        """Lower (0) or upper (1) bound of the element above the row."""
-        gid = self.gids[row]
-        if gid:
-            self.bounds.setdefault(gid, [1, 1])[index] = value
+    def defer_check(self, row: int, feature: str, value: str, is_redundant: bool = True) -> None:
+        """Note the ids of a reference that no edge follows, to check later that they exist."""
+        ids = self.document.ids
+        missing = [target for target in self.document.split_ids(value) if target not in ids]
+        if missing and not self.document.is_in_extension(row):
+            holder, ordinal = self.element_ids[row], self.document.ordinals[row]
+            self.unchecked_references.append(
+                UncheckedReference(holder, ordinal, feature, missing, is_redundant)
+            )
 
+    def defer_ids(self, element: Element, key: str, ids: list[str], is_href: bool = False) -> None:
+        """Set an attribute to ids of the graph once all elements exist; *ids* are as written."""
+        if ids:
+            self.deferred_ids.append((element, key, ids, is_href))
 
-_BOUNDS = ("lower", "upper")
-"""Derived attributes, which Enterprise Architect writes."""
+    def defer_conditions(self, targets: list[str], feature: str) -> None:
+        """Mark the constraints with these ids as conditions once all elements exist."""
+        subkind = v.CONDITIONS[feature]
+        self.deferred_conditions.extend((target, subkind) for target in targets)
 
-_WRITTEN = {"1": "true", "0": "false"}
-"""The other ways to write an xs:boolean."""
-
-_DIVIDED = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
-"""Kinds whose attribute ``kind`` is their subkind, and the value that is not written."""
+    def set_bound(self, row: int, index: int, value: AttrValue) -> None:
+        """Set the lower (0) or upper (1) bound of the element of the row."""
+        id = self.element_ids[row]
+        if id:
+            self.bounds.setdefault(id, [1, 1])[index] = value

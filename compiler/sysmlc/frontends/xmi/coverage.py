@@ -1,92 +1,184 @@
-"""What became of every element of a file: coverage, and findings about what is not read."""
+"""Coverage of a file: the verdict of every element, and diagnostics about unread elements."""
 
 from collections import Counter
+from collections.abc import Iterator, Sequence
 
-from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
+from sysmlc.diagnostics import Coverage, Rule, Severity, Sink, Subject, Verdict, rule
+from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.xmi import metaclasses, rules
 from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.document import Document
+
+EXTERNAL = rule(
+    "SM160",
+    "external-element",
+    Severity.INFO,
+    "{reason}",
+    why="The element stands for something in a file that is not part of the compile unit; the "
+    "graph knows its kind and its name, but not its content. Only 'sysmlc coverage' lists them, "
+    "one by one; 'missing-library' tells of each file once.",
+    help="give the other file as a further input",
+    wrong='<type xmi:type="uml:Class" href="Other.uml#_pallet"/>',
+    right='<type xmi:idref="_pallet"/>',
+)
 
 
-def account(context: Context, sink: Sink, coverage: Coverage) -> None:
-    """Count every element of the file once, and report what is not or not wholly read."""
+def report_coverage(context: Context, sink: Sink, coverage: Coverage) -> None:
+    """Count every element of the file once, and report elements that are not or partly read."""
     document = context.document
     counts = coverage.file(document.name)
-    is_own = map(bool, context.lowered.own)
-    rows = zip(document.types, document.features, is_own, context.verdicts, strict=True)
-    for (written, feature, own, verdict), number in Counter(rows).items():
-        counts.count(_type(written, feature, own), verdict or Verdict.UNSUPPORTED, number)
-    for feature, number in document.drawn.items():
+    type_names = _list_type_names(context)
+    rows = Counter(zip(type_names, context.verdicts, strict=True))
+    for (type_name, verdict), number in rows.items():
+        counts.count(type_name, verdict or Verdict.UNSUPPORTED, number)
+    for feature, number in document.skipped_elements.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
-        from sysmlc.frontends.xmi.losses import losses
-
-        counts.losses.extend(losses(context, _types(context)))
-    _report_unsupported(context, sink)
-    _report_approximated(context, sink)
+        counts.losses.extend(_list_losses(context, type_names))
+    _report_unsupported(context, sink, type_names)
+    _report_approximated(context, sink, type_names)
     _report_baseless(context, sink)
-    if not any(context.lowered.own):
-        subject = Subject(document.name, place=context.place(0))
+    if not any(context.elements):
+        subject = Subject(document.name, place=context.locate(0))
         sink.report(rules.NO_MODEL, subject, file=document.name)
 
 
-def _types(context: Context) -> list[str]:
-    """Name of each row's type."""
-    is_own = map(bool, context.lowered.own)
-    rows = zip(context.document.types, context.document.features, is_own, strict=True)
-    return [_type(*row) for row in rows]
+def _list_type_names(context: Context) -> list[str]:
+    """Return the type of each row: as written, else the default of its feature, else its tag.
 
-
-def _type(written: str, feature: str, is_own: bool) -> str:
-    """Name of a row's type: as written, else the default of its feature, else its tag."""
-    known = written or (metaclasses.DEFAULT_TYPES.get(feature) if is_own else "")
-    return f"uml:{known}" if known else feature
-
-
-def _report_unsupported(context: Context, sink: Sink) -> None:
-    if Verdict.UNSUPPORTED not in context.verdicts:
-        return
+    Only rows with an element of their own have a default type.
+    """
     document = context.document
-    found: dict[str, list[tuple[int, int]]] = {}
-    types = _types(context)
-    baseless = frozenset(context.baseless)
+    rows = zip(document.types, document.features, context.elements, strict=True)
+    type_names = []
+    for written, feature, element in rows:
+        metaclass = written or (metaclasses.DEFAULT_TYPES.get(feature) if element else "")
+        type_names.append(f"uml:{metaclass}" if metaclass else feature)
+    return type_names
+
+
+# -- diagnostics -----------------------------------------------------------------------------------
+
+
+def _report_unsupported(context: Context, sink: Sink, type_names: Sequence[str]) -> None:
+    document = context.document
+    rows_by_type: dict[str, list[int]] = {}
+    baseless = frozenset(context.baseless_applications)
     end = -1
     for row, verdict in enumerate(context.verdicts):
         if verdict is Verdict.UNSUPPORTED and row >= end:
             end = document.ends[row]
             if row not in baseless:
-                found.setdefault(types[row], []).append((row, end - row))
-    for type_name, rows in found.items():
-        number = sum(size for _, size in rows)
-        subject = _subject(context, rows[0][0])
-        count = _count(len(rows))
+                rows_by_type.setdefault(type_names[row], []).append(row)
+    for type_name, rows in rows_by_type.items():
+        number = sum(document.ends[row] - row for row in rows)
+        subject, count = _subject(context, rows[0]), _format_count(len(rows))
         sink.report(rules.UNSUPPORTED, subject, count=count, type=type_name, number=number)
 
 
-def _report_approximated(context: Context, sink: Sink) -> None:
-    found: dict[tuple[str, str], list[int]] = {}
-    types = _types(context) if context.lost else []
-    for row, lost in context.lost.items():
-        found.setdefault((types[row], lost), []).append(row)
-    for (type_name, lost), rows in found.items():
-        subject = _subject(context, rows[0])
-        count = _count(len(rows))
-        sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=lost)
+def _report_approximated(context: Context, sink: Sink, type_names: Sequence[str]) -> None:
+    rows_by_loss: dict[tuple[str, str], list[int]] = {}
+    for row, loss in context.losses.items():
+        rows_by_loss.setdefault((type_names[row], loss), []).append(row)
+    for (type_name, loss), rows in rows_by_loss.items():
+        subject, count = _subject(context, rows[0]), _format_count(len(rows))
+        sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=loss)
 
 
 def _report_baseless(context: Context, sink: Sink) -> None:
-    found: dict[str, list[int]] = {}
-    for row in context.baseless:
-        found.setdefault(context.document.features[row], []).append(row)
-    for name, rows in found.items():
-        subject = Subject(name, context.document.id(rows[0]), context.place(rows[0]))
+    rows_by_stereotype: dict[str, list[int]] = {}
+    for row in context.baseless_applications:
+        rows_by_stereotype.setdefault(context.document.features[row], []).append(row)
+    for name, rows in rows_by_stereotype.items():
+        subject = Subject(name, context.document.id(rows[0]), context.locate(rows[0]))
         times = "once" if len(rows) == 1 else f"{len(rows)} times"
         sink.report(rules.BASELESS, subject, stereotype=name, times=times)
 
 
 def _subject(context: Context, row: int) -> Subject:
-    """The row as the subject of a finding: the element that it is, or is inside of."""
-    return Subject(context.qualified_name(row), context.gids[row], context.place(row))
+    """Return the element that the row is, or that contains it, as the subject of a diagnostic."""
+    return Subject(context.qualified_name(row), context.element_ids[row], context.locate(row))
 
 
-def _count(number: int) -> str:
+def _format_count(number: int) -> str:
     return "1 element" if number == 1 else f"{number} elements"
+
+
+# -- losses ----------------------------------------------------------------------------------------
+
+
+def _list_losses(context: Context, type_names: Sequence[str]) -> Iterator[Loss]:
+    """Yield the rows that are not mapped, in document order, for ``sysmlc coverage``.
+
+    The content of a row counts with the row as long as it has the same verdict.
+    """
+    baseless = frozenset(context.baseless_applications)
+    for row, number in _count_losses(context).items():
+        verdict = context.verdicts[row] or Verdict.UNSUPPORTED
+        loss_rule, reason = _explain_loss(context, row, verdict, row in baseless)
+        # The element has the name, if the row has an element of its own.
+        name = "" if context.elements[row] else context.document.attributes[row].get("name", "")
+        yield Loss(
+            type_names[row],
+            verdict,
+            context.document.ordinals[row],
+            number,
+            context.element_ids[row],
+            name,
+            loss_rule,
+            reason,
+        )
+
+
+def _count_losses(context: Context) -> dict[int, int]:
+    """Return the number of elements of each loss, by the row at which it begins."""
+    document, verdicts = context.document, context.verdicts
+    first_rows: dict[int, int] = {}
+    sizes: dict[int, int] = {}
+    skipped = _count_skipped(document)
+    for row, verdict in enumerate(verdicts):
+        if verdict is Verdict.MAPPED:
+            continue
+        parent = document.parents[row]
+        has_reason = row in context.loss_rules or row in context.losses
+        is_inside = parent in first_rows and verdicts[parent] is verdict and not has_reason
+        first_rows[row] = first = first_rows[parent] if is_inside else row
+        sizes[first] = sizes.get(first, 0) + 1 + skipped.get(row, 0)
+    return sizes
+
+
+def _count_skipped(document: Document) -> dict[int, int]:
+    """Return the number of skipped elements inside a row, for rows that have any."""
+    if not document.skipped_elements:
+        return {}
+    total = len(document) + document.skipped_elements.total()
+    next_ordinals = (*document.ordinals[1:], total)
+    rows = enumerate(zip(document.ordinals, next_ordinals, strict=True))
+    return {
+        row: next_ordinal - ordinal - 1
+        for row, (ordinal, next_ordinal) in rows
+        if next_ordinal - ordinal > 1
+    }
+
+
+def _explain_loss(
+    context: Context, row: int, verdict: Verdict, is_baseless: bool
+) -> tuple[Rule | None, str]:
+    if verdict is Verdict.APPROXIMATED and row in context.loss_rules:
+        return context.loss_rules[row]
+    if verdict is Verdict.APPROXIMATED:
+        return rules.APPROXIMATED, f"read without {context.losses.get(row, 'part of its meaning')}"
+    if verdict is Verdict.EXTERNAL:
+        return EXTERNAL, f"stands for {_find_href(context, row)}, which is in no file of the unit"
+    if verdict is Verdict.IGNORED_NOTATION:
+        return None, "drawing or tool settings"
+    if is_baseless:
+        return rules.BASELESS, "applied to nothing that is in the model"
+    return rules.UNSUPPORTED, "not read"
+
+
+def _find_href(context: Context, row: int) -> str:
+    """Return the first href in the row or its content, quoted."""
+    document = context.document
+    hrefs = (document.href(inner) for inner in range(row, document.ends[row]))
+    return next((f"'{href}'" for href in hrefs if href), "another element")

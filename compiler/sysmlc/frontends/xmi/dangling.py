@@ -1,69 +1,73 @@
-"""References that lead nowhere although no reader follows them: no name of an element is lost.
+"""Reports references that no edge follows and whose target does not exist.
 
-Most say only what the other end says, or what ownership says (``incoming``, ``association``):
-what they name must exist all the same. Readers note what they do not follow while they walk;
-what no file of the unit has is told once for each element and feature.
+Most of them repeat the reference of the other end, or ownership (``incoming``, ``association``),
+but their targets must exist nevertheless. Handlers note the targets that are not in their own file;
+targets that no file of the unit defines are reported once for each element and feature.
 """
 
+from collections.abc import Collection
+
 from sysmlc.diagnostics import Place, Subject
-from sysmlc.frontends.xmi import feature_names as naming
-from sysmlc.frontends.xmi import rules
-from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.loose import Loose, Names
-from sysmlc.frontends.xmi.vocabulary import snake
+from sysmlc.frontends.xmi import rules, uml_features
+from sysmlc.frontends.xmi.context import Context, UncheckedReference
+from sysmlc.frontends.xmi.vocabulary import to_snake_case
 from sysmlc.ir import Element
 
-_SAID_ELSEWHERE = frozenset(map(snake, naming.SAID_ELSEWHERE))
+_REDUNDANT_KEYS = frozenset(map(to_snake_case, uml_features.REDUNDANT_REFERENCES))
 
 
-def look_inside(context: Context, row: int, lost: Names = ()) -> None:
-    """Note the dangling references of a row, and of all inside, that become no elements.
+def check_references_inside(context: Context, row: int, followed: Collection[str] = ()) -> None:
+    """Note the references of a row and its content, which become no elements.
 
-    Those that ``lost`` names are said nowhere else.
+    Nothing else states the references named *followed*, so that their loss is an error.
     """
     document = context.document
-    for at in range(row, document.ends[row]):
-        for name, value in document.attributes[at].items():
-            if name in naming.NAMING or name in lost:
-                context.look(at, name, value, name not in lost)
-        idref = document.idref(at)
-        if idref and at != row:
-            feature = document.features[at]
-            context.look(document.parents[at], feature, idref, feature not in lost)
+    for inner in range(row, document.ends[row]):
+        for name, value in document.attributes[inner].items():
+            if name in uml_features.NAMING or name in followed:
+                context.defer_check(inner, name, value, name not in followed)
+        idref = document.idref(inner)
+        if idref and inner != row:
+            feature = document.features[inner]
+            context.defer_check(document.parents[inner], feature, idref, feature not in followed)
 
 
-def existing(context: Context, element: Element, key: str, targets: list[str]) -> list[str]:
-    """The ids kept under ``key`` that lead somewhere; the others are noted."""
-    if key in naming.ASKED_LATER or all(target in context.document.ids for target in targets):
+def select_existing(context: Context, element: Element, key: str, targets: list[str]) -> list[str]:
+    """Return the ids of the attribute *key* that exist, and note the others to report them."""
+    ids = context.document.ids
+    if key in uml_features.CHECKED_BY_RESOLVE or all(target in ids for target in targets):
         return targets
     missing = [target for target in targets if _is_missing(context, target)]
     if missing:
-        is_said = key in _SAID_ELSEWHERE
-        context.loose.append(Loose(element.id, element.ordinal, key, missing, is_said))
+        reference = UncheckedReference(
+            element.id, element.ordinal, key, missing, key in _REDUNDANT_KEYS
+        )
+        context.unchecked_references.append(reference)
     return [target for target in targets if target not in missing]
 
 
-def report(context: Context) -> None:
-    """Report what no file of the unit has; all documents must have been read."""
-    found: dict[tuple[int, str, bool], list[Loose]] = {}
-    for one in context.loose:
-        missing = [target for target in one.targets if _is_missing(context, target)]
+def report_dangling(context: Context) -> None:
+    """Report targets that no file of the unit has; all documents must have been lowered."""
+    groups: dict[tuple[int, str, bool], list[UncheckedReference]] = {}
+    for reference in context.unchecked_references:
+        missing = [target for target in reference.targets if _is_missing(context, target)]
         if missing:
-            key = one.ordinal, one.feature, one.is_said_elsewhere
-            found.setdefault(key, []).append(one._replace(targets=missing))
-    for uses in found.values():
-        _report(context, uses[0], [target for one in uses for target in one.targets])
+            key = reference.ordinal, reference.feature, reference.is_redundant
+            groups.setdefault(key, []).append(reference._replace(targets=missing))
+    for references in groups.values():
+        targets = [target for reference in references for target in reference.targets]
+        _report(context, references[0], targets)
 
 
 def _is_missing(context: Context, target: str) -> bool:
-    return context.unit.find(context.lowered, target, False) is None
+    return context.unit.find_target(context.file, target, False) is None
 
 
-def _report(context: Context, first: Loose, targets: list[str]) -> None:
+def _report(context: Context, first: UncheckedReference, targets: list[str]) -> None:
     holder = context.graph.get(first.holder)
     place = Place(context.document.name, first.ordinal)
     name = context.graph.qualified_name(holder) if holder is not None else context.document.name
-    rule = rules.DANGLING_OPPOSITE if first.is_said_elsewhere else rules.DANGLING_FEATURE
+    rule = rules.DANGLING_OPPOSITE if first.is_redundant else rules.DANGLING_FEATURE
     others = len(dict.fromkeys(targets)) - 1
     context.sink.report(
         rule,

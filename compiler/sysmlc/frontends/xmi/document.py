@@ -1,114 +1,130 @@
-"""An XMI file as columns: one row an element, in document order."""
+"""An XMI file as columns: one row for each XML element, in document order."""
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 
+class WrittenReference(NamedTuple):
+    """A reference as a file writes it; *row* is the row of the attribute or child."""
+
+    target: str
+    """A local id, or an href."""
+    row: int
+    is_href: bool = False
+
+
+@dataclass(slots=True, eq=False)
 class Document:
-    """Columns of one file; a row stands for one XML element.
+    """The columns of one file. A row is the index of an XML element in each list."""
 
-    ``tags`` are ``namespace}local`` as expat gives them, ``attributes`` have such keys where
-    the attribute has a namespace. ``features`` are local names of the tags, ``types`` of
-    ``xmi:type`` (or empty), which is no longer in ``attributes``; ``ends[row]`` is the first
-    row after the row's content; ``retyped`` are rows whose type the file does not write;
-    ``referring`` are the features of the rows that refer to others;
-    ``declared`` are the namespaces that the file declares outside drawings.
-    """
-
-    __slots__ = (
-        "attributes",
-        "declared",
-        "drawn",
-        "ends",
-        "features",
-        "id_key",
-        "idref_key",
-        "ids",
-        "name",
-        "ordinals",
-        "parents",
-        "referring",
-        "repeated",
-        "retyped",
-        "tags",
-        "texts",
-        "type_key",
-        "types",
-    )
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.tags: list[str] = []
-        self.attributes: list[dict[str, str]] = []
-        self.parents: list[int] = []
-        self.ends: list[int] = []
-        self.ordinals: list[int] = []
-        self.texts: dict[int, str] = {}
-        self.drawn: Counter[str] = Counter()
-        self.features: list[str] = []
-        self.types: list[str] = []
-        self.referring: frozenset[str] = frozenset()
-        self.retyped: set[int] = set()
-        self.ids: dict[str, int] = {}
-        self.repeated: dict[str, list[int]] = {}
-        self.declared: tuple[str, ...] = ()
-        self.id_key = self.type_key = self.idref_key = ""
+    name: str
+    tags: list[str] = field(default_factory=list)
+    """Element names as expat gives them, ``namespace}local``."""
+    attributes: list[dict[str, str]] = field(default_factory=list)
+    """Attributes without ``xmi:type``; a name in a namespace is written ``namespace}local``."""
+    parents: list[int] = field(default_factory=list)
+    ends: list[int] = field(default_factory=list)
+    """For each row the first row after its content."""
+    ordinals: list[int] = field(default_factory=list)
+    """Position of each element in the file; skipped elements have positions but no rows."""
+    texts: dict[int, str] = field(default_factory=dict)
+    features: list[str] = field(default_factory=list)
+    """Local names of the tags."""
+    types: list[str] = field(default_factory=list)
+    """Local names of ``xmi:type``, or empty."""
+    retyped: set[int] = field(default_factory=set)
+    """Rows whose type the file omits, and that ``retype`` has set."""
+    ids: dict[str, int] = field(default_factory=dict)
+    """Row of each id; the first row if an id is repeated."""
+    repeated_ids: dict[str, list[int]] = field(default_factory=dict)
+    referring_features: frozenset[str] = frozenset()
+    """Features of the rows that have ``xmi:idref`` or ``href``."""
+    skipped_elements: Counter[str] = field(default_factory=Counter)
+    """Number of elements without rows, by the tag of the row that contains them."""
+    declared_namespaces: tuple[str, ...] = ()
+    """Namespaces that the file declares outside skipped elements."""
+    id_key: str = ""
+    type_key: str = ""
+    idref_key: str = ""
 
     def __len__(self) -> int:
         return len(self.tags)
 
     def id(self, row: int) -> str:
-        """The row's ``xmi:id``, or the empty string."""
+        """Return the ``xmi:id`` of the row, or the empty string."""
         return self.attributes[row].get(self.id_key, "")
 
     def idref(self, row: int) -> str:
-        """The row's ``xmi:idref``, or the empty string."""
+        """Return the ``xmi:idref`` of the row, or the empty string."""
         return self.attributes[row].get(self.idref_key, "")
 
+    def href(self, row: int) -> str:
+        """Return the ``href`` of the row, or the empty string."""
+        return self.attributes[row].get("href", "")
+
     def get(self, row: int, name: str) -> str:
-        """An attribute without namespace, or the text of a child of that name."""
+        """Return an attribute without namespace, or the text of a child of that name."""
         value = self.attributes[row].get(name)
         if value is not None:
             return value
-        return next((self.texts.get(c, "") for c in self.children(row, name)), "")
+        return next((self.texts.get(child, "") for child in self.children(row, name)), "")
 
     def children(self, row: int, feature: str = "") -> Iterator[int]:
-        """Rows of the children, all or those of one feature."""
+        """Return the rows of the children, or of the children with *feature*."""
         end = self.ends[row]
         if end == row + 1:
             return iter(())
         ends, features = self.ends, self.features
-        found = []
+        children = []
         child = row + 1
         while child < end:
             if not feature or features[child] == feature:
-                found.append(child)
+                children.append(child)
             child = ends[child]
-        return iter(found)
+        return iter(children)
 
     def targets(self, row: int, feature: str) -> list[str]:
-        """Local ids that the row's feature refers to, as attribute list or as children."""
+        """Return the local ids that *feature* refers to, as an attribute or as children."""
         written = self.attributes[row].get(feature)
-        ids = self.tokens(written) if written else []
-        if feature not in self.referring:
+        ids = self.split_ids(written) if written else []
+        if feature not in self.referring_features:
             return ids
-        return ids + [ref for c in self.children(row, feature) if (ref := self.idref(c))]
+        return ids + [id for child in self.children(row, feature) if (id := self.idref(child))]
+
+    def references(self, row: int, feature: str) -> list[WrittenReference]:
+        """Return the references of *feature*, local ids and hrefs."""
+        written = self.attributes[row].get(feature)
+        ids = self.split_ids(written) if written else []
+        references = [WrittenReference(id, row) for id in ids]
+        if feature not in self.referring_features:
+            return references
+        for child in self.children(row, feature):
+            href = self.href(child)
+            target = href or self.idref(child)
+            if target:
+                references.append(WrittenReference(target, child, bool(href)))
+        return references
 
     def retype(self, row: int, type_name: str) -> None:
-        """Give the row a type that the file omits."""
+        """Set the type of a row whose type the file omits."""
         self.types[row] = type_name
         self.retyped.add(row)
 
-    def tokens(self, value: str) -> list[str]:
-        """Ids in an attribute; Enterprise Architect's ids may hold spaces."""
+    def split_ids(self, value: str) -> list[str]:
+        """Return the ids in an attribute.
+
+        Ids of Enterprise Architect may contain spaces.
+        """
         return [value] if value in self.ids else value.split()
 
     def is_in_extension(self, row: int) -> bool:
-        """Whether the row is what a tool keeps beside the model, and numbers as it likes."""
+        """Whether the row is in ``xmi:Extension``, where tools repeat ids and invent references."""
         while row > 0 and self.features[row] != "Extension":
             row = self.parents[row]
         return row > 0
 
     def namespace(self, row: int) -> str:
-        """Namespace of the row's element name."""
+        """Return the namespace of the row's element name."""
         return self.tags[row].rpartition("}")[0]

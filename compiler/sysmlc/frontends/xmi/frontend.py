@@ -1,71 +1,96 @@
-"""The front end for UML and SysML v1 in XMI; what reads is imported when there is such a file."""
+"""The front end for UML and SysML v1 in XMI; the modules that read are imported when needed."""
 
+import html
+import re
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.base import FileNames
-from sysmlc.frontends.xmi import detection as detect
+from sysmlc.frontends.xmi.detection import score_source
+from sysmlc.frontends.xmi.namespaces import default_namespace
 from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.ir import Graph
+from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
+
+# Links and names are searched in the bytes: the unit decides which files are parsed at all.
+_HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
+_ROOT = re.compile(rb"<uml:(Profile|Model|Package)\b([^>]*)")
+_NAME = re.compile(rb"""\sname\s*=\s*(?:"([^"]*)|'([^']*))""")
+_EMF_NAMESPACE = re.compile(rb"""\bnsURI\s*=\s*["']([^"']+)""")
+_XML_NAMESPACE = re.compile(rb"""\bxmlns:[\w.-]+\s*=\s*["']([^"']+)""")
 
 
 class XmiFrontend:
-    """Reads UML 2 and SysML v1 models in XMI: Papyrus, MagicDraw/Cameo, and what is like them."""
+    """Reads UML 2 and SysML v1 models in XMI of Papyrus, MagicDraw/Cameo and similar tools."""
 
     name = "xmi"
     is_folder_unit = False
 
     def detect(self, source: Source) -> float:
-        """How sure it is, from 0 to 1, that the source is UML in XMI."""
-        if is_snapshot(source):
-            return 1.0
-        return detect.score(source)
+        """Return how certain it is, from 0 to 1, that the source is UML in XMI."""
+        return 1.0 if is_snapshot(source) else score_source(source)
 
     def links(self, source: Source) -> Sequence[str]:
-        """The files that its hrefs name; those of a snapshot are in the same archive."""
+        """Return the files that hrefs refer to, each once and in order.
+
+        Snapshots refer only to entries of their own archive. A document in UTF-16 gives no links.
+        """
         if is_snapshot(source):
             return []
-        from sysmlc.frontends.xmi.links import links
-
-        return links(source)
+        paths = (double or single for double, single in _HREF.findall(source.data))
+        return list(dict.fromkeys(map(_decode, paths)))
 
     def read_names(self, source: Source) -> FileNames:
-        """A profile is a library, named by its namespaces; models name others by hrefs only."""
+        """Return the namespaces of a profile, and those that a model uses.
+
+        A profile is a library; models refer to one another by hrefs only.
+        """
         if is_snapshot(source):
             return FileNames(is_library=True)
-        from sysmlc.frontends.xmi.links import profile_namespaces, used_namespaces
-
-        declared = profile_namespaces(source)
+        declared = _read_profile_namespaces(source)
         return FileNames(
             is_library=declared is not None,
             declared=declared or frozenset(),
-            used=used_namespaces(source),
+            used=frozenset(map(_decode, _XML_NAMESPACE.findall(source.data))),
         )
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph; references are left for the pass ``resolve``.
-
-        A damaged file is reported and left out. Raises SourceError for what exceeds the
-        limits. The graph does not depend on the order of the files.
-        """
+        """Read the files into the graph; see ``reading.read``."""
         from sysmlc.frontends.xmi import reading
 
         reading.read(sources, graph, sink, coverage)
 
     def companions(self, name: str) -> Sequence[str]:
-        """Papyrus' notation file, MagicDraw's entries with shapes."""
-        from sysmlc.frontends.xmi.diagrams import reading as drawings
+        """Return Papyrus' notation file, or MagicDraw's entries with shapes."""
+        from sysmlc.frontends.xmi.diagrams.reading import list_companions
 
-        return drawings.companions(name)
+        return list_companions(name)
 
     def drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
-        """Keep the diagrams of authors for the pass ``views``."""
-        from sysmlc.frontends.xmi.diagrams import reading as drawings
-        from sysmlc.ir.drawing import Drawing
+        """Store the diagrams of the authors for the pass ``views``."""
+        from sysmlc.frontends.xmi.diagrams.reading import read_diagrams
 
         ordered = sorted(sources, key=lambda source: source.name)
         models = [source for source in ordered if not is_snapshot(source)]
-        graph.store(Drawing, [*graph.derived(Drawing), *drawings.read(models, beside, sink)])
+        graph.store(Drawing, [*graph.derived(Drawing), *read_diagrams(models, beside, sink)])
+
+
+def _read_profile_namespaces(source: Source) -> frozenset[str] | None:
+    """Return the namespaces of the stereotypes in a profile; None for any other document.
+
+    Papyrus saves one for each version of the profile, MagicDraw derives it from the name.
+    """
+    root = _ROOT.search(source.data)
+    if root is None or root[1] != b"Profile":
+        return None
+    match = _NAME.search(root[2])
+    name = _decode(match[1] or match[2] or b"") if match is not None else ""
+    namespaces = map(_decode, _EMF_NAMESPACE.findall(source.data))
+    return frozenset([default_namespace(name), *namespaces])
+
+
+def _decode(data: bytes) -> str:
+    return html.unescape(data.decode("utf-8", "replace"))

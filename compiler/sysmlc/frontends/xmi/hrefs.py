@@ -1,18 +1,19 @@
-"""References to other files: which element of the unit they mean, and what to call a stub."""
+"""References to other files: the paths and fragments of hrefs, and stubs for external targets."""
 
 import posixpath
 import re
 from functools import lru_cache
 from urllib.parse import unquote
 
+from sysmlc.frontends.xmi import namespaces
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.metaclasses import kind_of
-from sysmlc.frontends.xmi.vocabulary import HINTS
+from sysmlc.frontends.xmi.vocabulary import TARGET_KINDS
 from sysmlc.ir import Kind
 from sysmlc.ir.identity import ROOT, is_unmistakable
 
-_LONGEST = 8192
-"""Characters of an href that count: a longer one leads nowhere, and is told by its beginning."""
+_MAX_LENGTH = 8192
+"""Characters of an href that count: a longer one is cut, and leads nowhere."""
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 _MODEL_FILE = re.compile(r"([^.]+)(?:\.\w+)*\.(?:uml|xmi|mdzip|xml)$")
 _READABLE = re.compile(r"[A-Za-z][A-Za-z ]*$")
@@ -21,10 +22,13 @@ _PROJECT = re.compile(r"(local:/)?PROJECT-[^/]*\?resource=")
 
 
 @lru_cache(4096)
-def normalised(href: str, file: str) -> str:
-    """The href with its path relative to the unit's root; what has a scheme stays as it is."""
-    if len(href) > _LONGEST:
-        href = href[:_LONGEST]
+def normalise_href(href: str, file: str) -> str:
+    """Return *href* with its path relative to the root of the unit; an absolute URI is unchanged.
+
+    *file* is the file that contains the href.
+    """
+    if len(href) > _MAX_LENGTH:
+        href = href[:_MAX_LENGTH]
     path, _, fragment = href.partition("#")
     if not path:
         return f"{file}#{fragment}"
@@ -35,36 +39,80 @@ def normalised(href: str, file: str) -> str:
 
 
 def is_in_project(href: str, fragment: str) -> bool:
-    """Whether it leads into a project as MagicDraw names them: this one, or one that it uses.
+    """Whether *href* leads into a project of MagicDraw: the model's own, or a used one.
 
-    Which of them, only the id can tell, and those of the roots cannot.
+    The href does not say which of them, only the id does; ids of roots are the same in each.
     """
     return not fragment.startswith(ROOT) and _PROJECT.match(href) is not None
 
 
 def can_lead_into(library: str, path: str, id: str) -> bool:
-    """Whether a reference to the id in the file ``path`` can mean an element of the library.
+    """Whether a reference to *id* in the file *path* can mean an element of *library*.
 
-    The id alone tells when it is the same in no two models; ``_0`` is in many.
+    Ids that tools generate are the same in no two models, so that the path does not matter;
+    ``_0`` is an id in many models.
     """
     return is_unmistakable(id) or is_in_project(path, id) or path == library != ""
 
 
 def base_name(path: str) -> str:
-    """Last part of a path or URI, without an archive's entry."""
+    """Return the last part of a path or URI, without an archive's entry."""
     return unquote(posixpath.basename(path.partition("!")[0].partition("?")[0]))
 
 
-def hint(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
-    """Kind, if it is written, and name of the external element that an ``href`` refers to.
+# -- path fragments of EMF -------------------------------------------------------------------------
 
-    MagicDraw writes its qualified name.
+
+def is_path(fragment: str) -> bool:
+    """Whether *fragment* is a path of EMF such as ``//@packagedElement.0/@ownedAttribute.2``."""
+    return fragment.startswith("/")
+
+
+def find_row_at_path(document: Document, fragment: str) -> int | None:
+    """Return the row that the path leads to, or None.
+
+    The first segment is the number of the root, empty for the first. ``@feature.2`` is the third
+    child of that feature, ``@feature`` its only one; a segment without ``@`` is a name.
     """
-    path, type_name = _reference_extension(document, row)
-    href = document.attributes[row].get("href", "")
-    name = path or name_in(href)
-    known = kind_of(document.types[row] or type_name)
-    kind = known[0] if known else None
+    first, *steps = fragment.removeprefix("/").split("/")
+    roots = _list_roots(document)
+    number = _parse_number(first or "0")
+    row = roots[number] if number is not None and number < len(roots) else None
+    for step in steps:
+        row = None if row is None else _find_child(document, row, step)
+    return row
+
+
+def _list_roots(document: Document) -> list[int]:
+    """Return the roots that EMF counts: the children of ``xmi:XMI`` that are not XMI's own."""
+    if not namespaces.is_xmi(document.namespace(0)):
+        return [0]
+    return [row for row in document.children(0) if not namespaces.is_xmi(document.namespace(row))]
+
+
+def _find_child(document: Document, row: int, step: str) -> int | None:
+    if not step.startswith("@"):
+        return next((c for c in document.children(row) if document.get(c, "name") == step), None)
+    feature, _, index = step.removeprefix("@").partition(".")
+    number = _parse_number(index or "0")
+    children = list(document.children(row, feature))
+    return children[number] if number is not None and number < len(children) else None
+
+
+def _parse_number(text: str) -> int | None:
+    return int(text) if text.isdecimal() and len(text) < 10 else None
+
+
+# -- stubs -----------------------------------------------------------------------------------------
+
+
+def read_stub(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
+    """Return the kind, if it is written, and the name of the external target of an href."""
+    path, type_name = _read_reference_extension(document, row)
+    href = document.href(row)
+    name = path or read_name(href)
+    mapped = kind_of(document.types[row] or type_name)
+    kind = mapped[0] if mapped else None
     if kind is None and feature == "type" and name.rpartition("::")[2] in _PRIMITIVES:
         kind = Kind.DATA_TYPE
     if not name and feature in ("appliedProfile", "importedPackage"):
@@ -73,17 +121,17 @@ def hint(document: Document, row: int, feature: str) -> tuple[Kind | None, str]:
     return kind, name
 
 
-def likely(feature: str) -> Kind:
-    """What the target of a feature is when nothing else says so."""
-    return HINTS.get(feature, Kind.CLASS)
+def guess_kind(feature: str) -> Kind:
+    """Return the kind that targets of *feature* usually have."""
+    return TARGET_KINDS.get(feature, Kind.CLASS)
 
 
 @lru_cache(4096)
-def name_in(href: str) -> str:
-    """A name that can be read in the fragment of an href, or the empty string.
+def read_name(href: str) -> str:
+    """Return a name that can be read in the fragment of an href, or the empty string.
 
     Eclipse writes ``...stereotype_packagedElement_Block``, OMG writes ``Integer``; other ids
-    say nothing.
+    contain no name.
     """
     fragment = unquote(href.partition("#")[2])
     if re.search(r"_(packagedElement|owned[A-Z][a-z]+|nestedPackage|owned[A-Z]\w+?)_", fragment):
@@ -92,7 +140,8 @@ def name_in(href: str) -> str:
     return last if _READABLE.match(last) else ""
 
 
-def _reference_extension(document: Document, row: int) -> tuple[str, str]:
+def _read_reference_extension(document: Document, row: int) -> tuple[str, str]:
+    """Return the qualified name and type that MagicDraw writes beside an href, or empty strings."""
     for child in range(row + 1, document.ends[row]):
         if document.features[child] == "referenceExtension":
             values = document.attributes[child]

@@ -2,168 +2,178 @@
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
-from sysmlc.frontends.xmi.behaviour import references
-from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.elements import Reader, reading
-from sysmlc.frontends.xmi.unit import Lowered
-from sysmlc.frontends.xmi.value_features import value_in
-from sysmlc.frontends.xmi.values import text_of
+from sysmlc.frontends.xmi.context import Context, RowHandler
+from sysmlc.frontends.xmi.elements import make_handler
+from sysmlc.frontends.xmi.unit import LoweredDocument, Target
+from sysmlc.frontends.xmi.value_features import lower_value
 from sysmlc.ir import Edge, Element, Kind
 
-_ENDS = (("sendEvent", Edge.FLOW_SOURCE), ("receiveEvent", Edge.FLOW_TARGET))
-"""Features that name the ends of a message, and the edge to the lifeline that each covers."""
+_MESSAGE_ENDS = (("sendEvent", Edge.FLOW_SOURCE), ("receiveEvent", Edge.FLOW_TARGET))
+"""Features that refer to the ends of a message, and the edge to the lifeline that each covers."""
 _KIND_BY_ENDS = {
     (True, True): "",
     (True, False): "lost",
     (False, True): "found",
     (False, False): "unknown",
 }
-"""The derived ``messageKind``, by whether a send and a receive event are there (17.4.4)."""
+"""The derived ``messageKind``, by the presence of a send and of a receive event (17.4.4)."""
 
 
-# -- while walking -----------------------------------------------------------------------------
+# -- handlers of rows ------------------------------------------------------------------------------
 
 
-def _combined(context: Context, element: Element, row: int) -> None:
+def _complete_fragment(context: Context, fragment: Element, row: int) -> None:
     operator = context.document.get(row, "interactionOperator") or "seq"
-    element.attrs["subkind"] = metaclasses.hyphenated(operator)
-    for target, at, is_href in references(context.document, row, "message"):
-        context.link(Edge.REFERENCES, element.id, target, at, "message", is_href)
+    fragment.attrs["subkind"] = metaclasses.to_kebab_case(operator)
+    context.add_references(Edge.REFERENCES, fragment.id, row, "message")
 
 
-def _message(context: Context, element: Element, row: int) -> None:
-    sort = context.document.get(row, "messageSort") or "synchCall"
-    element.attrs["subkind"] = metaclasses.hyphenated(sort)
-    ends = [bool(references(context.document, row, feature)) for feature, _ in _ENDS]
-    kind = _KIND_BY_ENDS[ends[0], ends[1]]
-    if kind:
-        element.attrs["message_kind"] = kind
-    context.deferred.append((_message_ends, element, row))
-
-
-def _events(context: Context, element: Element, row: int) -> None:
-    """What is observed, and whether its beginning or its end counts."""
-    for target, at, is_href in references(context.document, row, "event"):
-        context.link(Edge.REFERENCES, element.id, target, at, "event", is_href)
-    _first_event(context, element, row)
-
-
-def _first_event(context: Context, element: Element, row: int) -> None:
+def _complete_message(context: Context, message: Element, row: int) -> None:
     document = context.document
-    written = document.attributes[row].get("firstEvent", "").split()
-    written += [document.texts.get(child, "") for child in document.children(row, "firstEvent")]
-    if "false" in written:
-        values = tuple(value == "true" for value in written)
+    sort = document.get(row, "messageSort") or "synchCall"
+    message.attrs["subkind"] = metaclasses.to_kebab_case(sort)
+    is_sent, is_received = (bool(document.references(row, end)) for end, _ in _MESSAGE_ENDS)
+    kind = _KIND_BY_ENDS[is_sent, is_received]
+    if kind:
+        message.attrs["message_kind"] = kind
+    context.completions.append((_connect_lifelines, message, row))
+
+
+def _complete_observation(context: Context, observation: Element, row: int) -> None:
+    context.add_references(Edge.REFERENCES, observation.id, row, "event")
+    _store_first_event(context, observation, row)
+
+
+def _store_first_event(context: Context, element: Element, row: int) -> None:
+    """Store which of the observed events count at their end; the beginning is the default."""
+    document = context.document
+    flags = document.attributes[row].get("firstEvent", "").split()
+    flags += [document.texts.get(child, "") for child in document.children(row, "firstEvent")]
+    if "false" in flags:
+        values = tuple(flag == "true" for flag in flags)
         element.attrs["first_event"] = values if len(values) > 1 else values[0]
 
 
-def _time_constraint(context: Context, element: Element, row: int) -> None:
-    """Besides the bounds, which are text, the observations that they are told by."""
+def _complete_time_constraint(context: Context, constraint: Element, row: int) -> None:
+    """Store the observations that the bounds refer to; the bounds themselves are text."""
     document = context.document
-    inside = range(row + 1, document.ends[row])
-    found = [target for at in inside for target in document.targets(at, "observation")]
-    context.keep_ids(element, "observations", found)
-    _first_event(context, element, row)
+    observations = [
+        target
+        for inner in range(row + 1, document.ends[row])
+        for target in document.targets(inner, "observation")
+    ]
+    context.defer_ids(constraint, "observations", observations)
+    _store_first_event(context, constraint, row)
 
 
-def _occurrence(context: Context, element: Element, row: int) -> None:
+def _complete_occurrence(context: Context, occurrence: Element, row: int) -> None:
     if context.document.attributes[row].get("event"):
-        context.deferred.append((_occurrence_event, element, row))
+        context.completions.append((_mark_destruction, occurrence, row))
 
 
-def _times(name: str) -> Reader:
-    """A bound of a loop is said by the constraint of its operand, and means the operand."""
+def _make_loop_bound_handler(key: str) -> RowHandler:
+    """Return a handler of the bounds of a loop, which the guard of its operand contains."""
 
-    def read(context: Context, row: int) -> None:
-        constraint = context.owner(row)
-        value = value_in(context, row).value
-        operand = context.graph.owner(constraint) if constraint is not None else None
+    def lower(context: Context, row: int) -> None:
+        guard = context.find_owner(row)
+        value = lower_value(context, row).value
+        operand = context.graph.owner(guard) if guard is not None else None
         if operand is not None and operand.kind is Kind.OPERAND:
-            operand.attrs[name] = value
-        elif constraint is not None:
-            constraint.attrs[name] = value
+            operand.attrs[key] = value
+        elif guard is not None:
+            guard.attrs[key] = value
 
-    return read
+    return lower
 
 
-def _value(key: str) -> Reader:
-    def read(context: Context, row: int) -> None:
-        owner = context.owner(row)
-        text = text_of(value_in(context, row))
+def _make_text_handler(key: str) -> RowHandler:
+    """Return a handler that stores a value as text."""
+
+    def lower(context: Context, row: int) -> None:
+        owner = context.find_owner(row)
+        text = lower_value(context, row).text
         if owner is not None:
             owner.attrs[key] = text
 
-    return read
+    return lower
 
 
-def _part_of_others(context: Context, row: int) -> None:
-    """Events of occurrences say what the messages and executions say."""
-    context.subtree(row, Verdict.MAPPED)
+def _omit_event(context: Context, row: int) -> None:
+    # Messages and executions state what these events of UML before 2.4 state.
+    context.mark_subtree(row, Verdict.MAPPED)
 
 
-FEATURES: dict[str, Reader] = {
-    "minint": _times("min"),
-    "maxint": _times("max"),
-    "selector": _value("selector"),
-    "returnValue": _value("return_value"),
+FEATURES: dict[str, RowHandler] = {
+    "minint": _make_loop_bound_handler("min"),
+    "maxint": _make_loop_bound_handler("max"),
+    "selector": _make_text_handler("selector"),
+    "returnValue": _make_text_handler("return_value"),
 }
 
-TYPES: dict[str, Reader] = {
-    "CombinedFragment": reading("CombinedFragment", _combined),
-    "ConsiderIgnoreFragment": reading("ConsiderIgnoreFragment", _combined),
-    "Message": reading("Message", _message),
-    "OccurrenceSpecification": reading("OccurrenceSpecification", _occurrence),
-    "MessageOccurrenceSpecification": reading("MessageOccurrenceSpecification", _occurrence),
-    "TimeObservation": reading("TimeObservation", _events),
-    "DurationObservation": reading("DurationObservation", _events),
-    "TimeConstraint": reading("TimeConstraint", _time_constraint),
-    "DurationConstraint": reading("DurationConstraint", _time_constraint),
-    **dict.fromkeys(("ExecutionEvent", "DestructionEvent", "CreationEvent"), _part_of_others),
+_COMPLETIONS = {
+    "CombinedFragment": _complete_fragment,
+    "ConsiderIgnoreFragment": _complete_fragment,
+    "Message": _complete_message,
+    "OccurrenceSpecification": _complete_occurrence,
+    "MessageOccurrenceSpecification": _complete_occurrence,
+    "TimeObservation": _complete_observation,
+    "DurationObservation": _complete_observation,
+    "TimeConstraint": _complete_time_constraint,
+    "DurationConstraint": _complete_time_constraint,
+}
+
+TYPES: dict[str, RowHandler] = {
+    **{name: make_handler(name, complete) for name, complete in _COMPLETIONS.items()},
+    **dict.fromkeys(("ExecutionEvent", "DestructionEvent", "CreationEvent"), _omit_event),
 }
 
 
-# -- when all documents are read ---------------------------------------------------------------
+# -- completion when all documents are lowered -----------------------------------------------------
 
 
-def _message_ends(context: Context, element: Element, row: int) -> None:
-    """The lifelines that the occurrences cover are the ends of the message."""
-    is_signed = bool(references(context.document, row, "signature"))
-    for feature, edge in _ENDS:
-        for target, _, is_href in references(context.document, row, feature):
-            found = context.unit.find(context.lowered, target, is_href)
-            if found is not None:
-                _message_end(context, element, edge, *found)
-                is_signed = is_signed or _legacy_signature(context, element, *found)
+def _connect_lifelines(context: Context, message: Element, row: int) -> None:
+    """Add edges from a message to the lifelines that its send and receive occurrence cover."""
+    has_signature = bool(context.document.references(row, "signature"))
+    for feature, edge in _MESSAGE_ENDS:
+        for reference in context.document.references(row, feature):
+            end = context.unit.find_target(context.file, reference.target, reference.is_href)
+            if end is not None:
+                _connect_end(context, message, edge, end)
+                has_signature = has_signature or _add_legacy_signature(context, message, end)
 
 
-def _message_end(context: Context, element: Element, edge: Edge, holder: Lowered, row: int) -> None:
-    for target, at, is_href in references(holder.document, row, "covered"):
-        context.link_from(holder, edge, element.id, target, at, "covered", is_href)
-    end = context.graph.get(holder.gids[row])
-    if end is not None and end.kind is Kind.OCCURRENCE and not end.subkind:
-        end.attrs["subkind"] = "message"  # Enterprise Architect writes the general metaclass.
+def _connect_end(context: Context, message: Element, edge: Edge, end: Target) -> None:
+    for reference in end.document.references(end.row, "covered"):
+        context.add_reference(edge, message.id, reference, "covered", file=end.file)
+    occurrence = context.graph.get(end.element_id)
+    if occurrence is not None and occurrence.kind is Kind.OCCURRENCE and not occurrence.subkind:
+        # Enterprise Architect writes the general metaclass OccurrenceSpecification.
+        occurrence.attrs["subkind"] = "message"
 
 
-def _legacy_signature(context: Context, element: Element, holder: Lowered, row: int) -> bool:
-    """UML before 2.4 says what is sent by the event of the occurrence; whether it does so."""
-    event = _event(context, holder, row)
+def _add_legacy_signature(context: Context, message: Element, end: Target) -> bool:
+    """Refer to the signature, which UML before 2.4 writes at the event of the occurrence.
+
+    Return whether the event has one.
+    """
+    event = _find_event(context, end.file, end.row)
     if event is None:
         return False
-    file, at = event
-    sent = [*references(file.document, at, "operation"), *references(file.document, at, "signal")]
-    for target, place, is_href in sent[:1]:
-        context.link_from(file, Edge.CALLS, element.id, target, place, "signature", is_href)
-    return bool(sent)
+    document, row = event.document, event.row
+    signatures = [*document.references(row, "operation"), *document.references(row, "signal")]
+    for signature in signatures[:1]:
+        context.add_reference(Edge.CALLS, message.id, signature, "signature", file=event.file)
+    return bool(signatures)
 
 
-def _occurrence_event(context: Context, element: Element, row: int) -> None:
-    """UML before 2.4 says by its event that an occurrence destroys the lifeline."""
-    found = _event(context, context.lowered, row)
-    if found is not None and found[0].document.types[found[1]] == "DestructionEvent":
-        element.attrs["subkind"] = "destruction"
+def _mark_destruction(context: Context, occurrence: Element, row: int) -> None:
+    """Set the subkind of an occurrence whose event (UML before 2.4) destroys the lifeline."""
+    event = _find_event(context, context.file, row)
+    if event is not None and event.type == "DestructionEvent":
+        occurrence.attrs["subkind"] = "destruction"
 
 
-def _event(context: Context, holder: Lowered, row: int) -> tuple[Lowered, int] | None:
-    for target, _, is_href in references(holder.document, row, "event"):
-        return context.unit.find(holder, target, is_href)
+def _find_event(context: Context, file: LoweredDocument, row: int) -> Target | None:
+    for reference in file.document.references(row, "event"):
+        return context.unit.find_target(file, reference.target, reference.is_href)
     return None

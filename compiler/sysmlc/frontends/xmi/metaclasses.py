@@ -1,11 +1,11 @@
-"""Tables: what the metaclasses of UML become in the graph (docs/ir.md)."""
+"""Tables that map the metaclasses of UML to kinds of the graph (docs/ir.md)."""
 
 import re
 from functools import cache
 
 from sysmlc.ir import Kind
 
-_PLAIN = {
+_WITHOUT_SUBKIND = {
     "Package": Kind.PACKAGE,
     "Profile": Kind.PROFILE,
     "Class": Kind.CLASS,
@@ -62,7 +62,7 @@ _PLAIN = {
     "TemplateBinding": Kind.TEMPLATE_BINDING,
     "TemplateParameterSubstitution": Kind.TEMPLATE_SUBSTITUTION,
 }
-_DIVIDED = {
+_WITH_SUBKIND = {
     "Model": (Kind.PACKAGE, "model"),
     "PrimitiveType": (Kind.DATA_TYPE, "primitive"),
     "AssociationClass": (Kind.ASSOCIATION, "association-class"),
@@ -103,7 +103,7 @@ _DIVIDED = {
     "PartDecomposition": (Kind.FRAGMENT, "part-decomposition"),
     "StateInvariant": (Kind.FRAGMENT, "state-invariant"),
     "Continuation": (Kind.FRAGMENT, "continuation"),
-    # UML 2.0 called them so; old exports of Enterprise Architect and MagicDraw do.
+    # Names of UML 2.0, in old exports of Enterprise Architect and MagicDraw.
     "EventOccurrence": (Kind.OCCURRENCE, "message"),
     "Stop": (Kind.OCCURRENCE, "destruction"),
     "ExecutionOccurrence": (Kind.EXECUTION, "behavior"),
@@ -154,8 +154,11 @@ _ACTIONS = {
 _ACTION = re.compile(r"[A-Z][A-Za-z]*Action$")
 _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 
-KINDS: dict[str, tuple[Kind, str]] = {name: (kind, "") for name, kind in _PLAIN.items()} | _DIVIDED
-"""Kind and subkind of each metaclass that becomes an element; actions are ``kind_of``'s."""
+KINDS: dict[str, tuple[Kind, str]] = {
+    **{name: (kind, "") for name, kind in _WITHOUT_SUBKIND.items()},
+    **_WITH_SUBKIND,
+}
+"""Kind and subkind of each metaclass that becomes an element; ``kind_of`` adds the actions."""
 
 DEFAULT_TYPES = {
     "ownedParameter": "Parameter",
@@ -255,7 +258,7 @@ DEFAULT_TYPES = {
     "returnInformation": "OutputPin",
     "structuredNodeOutput": "OutputPin",
 }
-"""Type of an element without ``xmi:type``: the declared type of its feature (UML 2.5.1)."""
+"""Metaclass of an element without ``xmi:type``: the declared type of its feature (UML 2.5.1)."""
 
 EDGE_TYPES = (
     "Generalization",
@@ -264,7 +267,7 @@ EDGE_TYPES = (
     "ProtocolConformance",
     "Include",
 )
-"""Metaclasses that are an edge of their owner."""
+"""Metaclasses whose elements become an edge of their owner."""
 
 EVENT_TYPES = {
     "SignalEvent": "signal",
@@ -277,7 +280,10 @@ EVENT_TYPES = {
     "SendSignalEvent": "signal",
     "SendOperationEvent": "call",
 }
-"""Metaclasses that become part of the triggers that name them, and the triggers' subkind."""
+"""Metaclasses of events and the subkind of the triggers that refer to them.
+
+An event is no element: its content becomes part of these triggers.
+"""
 
 VALUE_TYPES = frozenset(
     {
@@ -311,22 +317,22 @@ OWNERS: dict[Kind, frozenset[Kind]] = {
     Kind.OPERAND: frozenset({Kind.FRAGMENT}),
     Kind.TEMPLATE_SUBSTITUTION: frozenset({Kind.TEMPLATE_BINDING}),
 }
-"""Kinds that can only stand below some others; elsewhere they are not read."""
+"""Owners that elements of a kind may have; elements below other owners are not read."""
 
 
 def kind_of(type_name: str) -> tuple[Kind, str] | None:
-    """Kind and subkind of a metaclass that becomes an element, else None."""
-    known = KINDS.get(type_name)
-    if known is None and _ACTION.match(type_name):
-        known = KINDS[type_name] = (Kind.ACTION, _action(type_name))
-    return known
+    """Return kind and subkind of a metaclass that becomes an element, else None."""
+    mapped = KINDS.get(type_name)
+    if mapped is None and _ACTION.match(type_name):
+        return Kind.ACTION, _action_subkind(type_name)
+    return mapped
 
 
-def _action(type_name: str) -> str:
-    return _ACTIONS.get(type_name) or hyphenated(type_name.removesuffix("Action"))
+def _action_subkind(type_name: str) -> str:
+    return _ACTIONS.get(type_name) or to_kebab_case(type_name.removesuffix("Action"))
 
 
 @cache
-def hyphenated(name: str) -> str:
-    """``camelCase`` as ``camel-case``."""
+def to_kebab_case(name: str) -> str:
+    """Convert ``camelCase`` to ``camel-case``."""
     return _CAPITAL.sub(r"-\1", name).lower()

@@ -1,7 +1,9 @@
-"""Namespaces of XMI and UML in all their versions, and which files they make ours."""
+"""Namespaces of XMI, UML, SysML and of the profiles of a compile unit."""
 
 import re
-from functools import lru_cache
+from functools import cache, lru_cache
+
+from sysmlc.ir import Element, Graph, Kind
 
 _XMI = re.compile(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
 _UML = re.compile(
@@ -18,22 +20,84 @@ _SETTINGS = re.compile(r"MagicDrawProfile/?$|eclipse\.org/emf/2002/Ecore$|/UMLD[
 
 @lru_cache(256)
 def is_xmi(namespace: str) -> bool:
-    """Whether it is a namespace of XMI 2."""
+    """Whether *namespace* is that of a version of XMI 2."""
     return _XMI.match(namespace) is not None
 
 
 @lru_cache(256)
 def is_uml(namespace: str) -> bool:
-    """Whether it is a namespace of UML 2 (a profile of UML is not)."""
+    """Whether *namespace* is that of a version of UML 2; those of UML profiles are not."""
     return _UML.match(namespace) is not None
 
 
 @lru_cache(256)
 def is_settings(namespace: str) -> bool:
-    """Whether its elements say how a tool shows or stores the model, and nothing else."""
+    """Whether all elements of *namespace* are notation or settings of a tool."""
     return _SETTINGS.search(namespace) is not None
 
 
 def is_sysml(namespace: str) -> bool:
-    """Whether its elements are applications of SysML's own stereotypes."""
+    """Whether the elements of *namespace* are applications of stereotypes of SysML itself."""
     return _SYSML.match(namespace) is not None
+
+
+class Profiles:
+    """The stereotypes of a compile unit by namespace and name."""
+
+    def __init__(self) -> None:
+        self._packages: dict[str, list[str]] = {}
+        self._stereotypes: dict[tuple[str, str], Element] | None = None
+
+    def add(self, namespace: str, package: str) -> None:
+        """Record that the package with the graph id *package* has this namespace."""
+        packages = self._packages.setdefault(namespace, [])
+        if package not in packages:
+            packages.append(package)
+
+    def find_stereotype(self, graph: Graph, namespace: str, name: str) -> Element | None:
+        """Return the stereotype *name* in a profile with this namespace, or None.
+
+        The first call builds the index, so that all profiles must have been added before.
+        """
+        if self._stereotypes is None:
+            self._stereotypes = self._index_stereotypes(graph)
+        return self._stereotypes.get((namespace, mangle_name(name)))
+
+    def _index_stereotypes(self, graph: Graph) -> dict[tuple[str, str], Element]:
+        namespaces: dict[str, list[str]] = {}
+        for namespace, ids in self._packages.items():
+            for id in ids:
+                namespaces.setdefault(id, []).append(namespace)
+        index: dict[tuple[str, str], Element] = {}
+        for stereotype in graph.of_kind(Kind.STEREOTYPE):
+            name = mangle_name(stereotype.name)
+            for package in graph.ancestors(stereotype):
+                recorded = namespaces.get(package.id, ())
+                for namespace in (*recorded, *_conventional_namespaces(package)):
+                    index.setdefault((namespace, name), stereotype)
+        return index
+
+
+@cache
+def mangle_name(name: str) -> str:
+    """Return the name of a stereotype as it is written in XML element names."""
+    return re.sub(r"\W", "_", name)
+
+
+def profile_in_namespace(namespace: str) -> str:
+    """Return the profile's name in a namespace: ``Arrowhead`` in ``.../schemas/Arrowhead.xmi``."""
+    return namespace.rpartition("/")[2].removesuffix(".xmi")
+
+
+def default_namespace(profile: str) -> str:
+    """Return the namespace that MagicDraw gives a profile without a URI of its own."""
+    return f"http://www.magicdraw.com/schemas/{mangle_name(profile)}.xmi"
+
+
+def _conventional_namespaces(package: Element) -> list[str]:
+    """Return the URI of a profile, if it has one, and the namespace that MagicDraw gives it."""
+    if package.kind is not Kind.PROFILE:
+        return []
+    uri = package.attrs.get("u_r_i") or package.attrs.get("uri")
+    default = default_namespace(package.name)
+    return [str(uri), default] if uri else [default]

@@ -1,82 +1,84 @@
-"""Templates: their parameters, and bindings with what takes the parameters' places.
+"""Templates: their parameters, and bindings that substitute the parameters (UML 2.5.1 clause 7.3).
 
-UML 2.5.1 clause 7.3. A template has at most one signature: its parameters belong to the template
-itself in the graph.
+A template has at most one signature, so that its parameters belong to the template itself in the
+graph.
 """
 
 from sysmlc.frontends.xmi import metaclasses
-from sysmlc.frontends.xmi.behaviour import references
-from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.elements import Reader, reading
-from sysmlc.frontends.xmi.value_features import value_in
+from sysmlc.frontends.xmi.context import Context, RowHandler
+from sysmlc.frontends.xmi.document import WrittenReference
+from sysmlc.frontends.xmi.elements import make_handler
+from sysmlc.frontends.xmi.value_features import lower_value
 from sysmlc.ir import Edge, Element
 
-_OWNED = ("ownedParameteredElement", "ownedActual")
+_CONTAINING = ("ownedParameteredElement", "ownedActual")
+"""Features whose content the parameter or substitution refers to."""
 
 
-def _signature(context: Context, row: int) -> None:
+def _lower_signature(context: Context, row: int) -> None:
     document = context.document
-    context.inherit(row)
-    owner = context.owner(row)
+    context.mark_mapped(row)
+    owner = context.find_owner(row)
     for child in document.children(row, "ownedParameter"):
-        # Papyrus omits the type; the same feature of operations holds other elements.
+        # Papyrus omits the type; the same feature of operations contains parameters.
         if not document.types[child]:
             document.retype(child, "TemplateParameter")
-    targets = document.targets(row, "extendedSignature")
     if owner is not None:
-        context.keep_ids(owner, "extended_signature", targets)
+        targets = document.targets(row, "extendedSignature")
+        context.defer_ids(owner, "extended_signature", targets)
 
 
-def _parameter(context: Context, element: Element, row: int) -> None:
-    for feature in _OWNED:
-        for child in context.document.children(row, feature):
-            id = context.document.id(child)
-            if id and context.document.types[child] not in metaclasses.VALUE_TYPES:
-                context.link(Edge.REFERENCES, element.id, id, child, feature)
-    for child in context.document.children(row, "ownedDefault"):
-        if context.document.types[child] not in metaclasses.VALUE_TYPES:
-            context.keep_ids(element, "default", [context.document.id(child)])
-    context.deferred.append((_name, element, row))
+def _complete_parameter(context: Context, parameter: Element, row: int) -> None:
+    document = context.document
+    for feature in _CONTAINING:
+        for child in document.children(row, feature):
+            id = document.id(child)
+            if id and document.types[child] not in metaclasses.VALUE_TYPES:
+                reference = WrittenReference(id, child)
+                context.add_reference(Edge.REFERENCES, parameter.id, reference, feature)
+    for child in document.children(row, "ownedDefault"):
+        if document.types[child] not in metaclasses.VALUE_TYPES:
+            context.defer_ids(parameter, "default", [document.id(child)])
+    context.completions.append((_name_parameter, parameter, row))
 
 
-def _name(context: Context, element: Element, row: int) -> None:
-    """A parameter is called as what it stands for: itself it has no name."""
-    targets = references(context.document, row, "parameteredElement")
-    targets += [
-        (id, child, False)
-        for child in context.document.children(row, "ownedParameteredElement")
-        if (id := context.document.id(child))
+def _name_parameter(context: Context, parameter: Element, row: int) -> None:
+    """Give a parameter the name of the element that it exposes; it has no name of its own."""
+    document = context.document
+    references = document.references(row, "parameteredElement")
+    references += [
+        WrittenReference(id, child)
+        for child in document.children(row, "ownedParameteredElement")
+        if (id := document.id(child))
     ]
-    for target, _, is_href in targets[:1]:
-        found = context.unit.find(context.lowered, target, is_href)
-        if found is not None and not element.name:
-            name = found[0].document.attributes[found[1]].get("name", "")
-            context.graph.rename(element, name)
+    for reference in references[:1]:
+        target = context.unit.find_target(context.file, reference.target, reference.is_href)
+        if target is not None and not parameter.name:
+            context.graph.rename(parameter, target.name)
 
 
-def _owned_default(context: Context, row: int) -> None:
-    """What takes the parameter's place when a binding says nothing."""
-    _put(context, row, "default")
+def _make_value_handler(key: str) -> RowHandler:
+    """Return a handler that stores a value as an attribute of its owner."""
+
+    def lower(context: Context, row: int) -> None:
+        owner = context.find_owner(row)
+        value = lower_value(context, row).value
+        if owner is not None:
+            owner.attrs[key] = value
+
+    return lower
 
 
-def _owned_actual(context: Context, row: int) -> None:
-    _put(context, row, "value")
+FEATURES: dict[str, RowHandler] = {
+    "ownedDefault": _make_value_handler("default"),
+    "ownedActual": _make_value_handler("value"),
+}
 
-
-def _put(context: Context, row: int, key: str) -> None:
-    owner = context.owner(row)
-    value = value_in(context, row).value
-    if owner is not None:
-        owner.attrs[key] = value
-
-
-FEATURES: dict[str, Reader] = {"ownedDefault": _owned_default, "ownedActual": _owned_actual}
-
-TYPES: dict[str, Reader] = {
-    "TemplateSignature": _signature,
-    "RedefinableTemplateSignature": _signature,
+TYPES: dict[str, RowHandler] = {
+    "TemplateSignature": _lower_signature,
+    "RedefinableTemplateSignature": _lower_signature,
     **{
-        name: reading(name, _parameter)
+        name: make_handler(name, _complete_parameter)
         for name in (
             "TemplateParameter",
             "ClassifierTemplateParameter",

@@ -1,148 +1,203 @@
-"""Rows that hold values: bounds, defaults, bodies of constraints, arguments."""
-
-from collections.abc import Callable
+"""Features that hold values: bounds, defaults, slots, bodies of constraints, arguments."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.dangling import look_inside
-from sysmlc.frontends.xmi.values import ValueText, bound, text_of, value_of
+from sysmlc.frontends.xmi import metaclasses, rules
+from sysmlc.frontends.xmi.context import Context, RowHandler
+from sysmlc.frontends.xmi.dangling import check_references_inside
+from sysmlc.frontends.xmi.document import WrittenReference
+from sysmlc.frontends.xmi.elements import add_element
+from sysmlc.frontends.xmi.values import Value, is_natural, parse_bound, read_value
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
-_Reader = Callable[[Context, int], None]
 
-
-def value_in(context: Context, row: int) -> ValueText:
-    """The value in a row; it and its content are mapped."""
-    context.subtree(row, Verdict.MAPPED)
+def lower_value(context: Context, row: int) -> Value:
+    """Return the value in a row, and mark the row and its content as mapped."""
+    context.mark_subtree(row, Verdict.MAPPED)
     if not context.document.types[row].startswith("Literal"):
-        look_inside(context, row, ("instance", "element", "observation"))
-    return value_of(context.document, row)
+        check_references_inside(context, row, ("instance", "element", "observation"))
+    return read_value(context.document, row)
 
 
-def lone_value_in(context: Context, row: int) -> ValueText:
-    """The value in a row, where the graph has no room for alternatives: they are reported."""
-    value = value_in(context, row)
+def lower_single_value(context: Context, row: int) -> Value:
+    """Return the value in a row; report alternative bodies, which the graph cannot store here."""
+    value = lower_value(context, row)
     if value.bodies:
         context.approximate(row, "its alternative bodies")
     return value
 
 
-def keep_alternatives(element: Element, value: ValueText, key: str = "") -> None:
-    """Note all bodies and languages of an expression that has several."""
+def store_alternatives(element: Element, value: Value, key: str = "") -> None:
+    """Store all bodies and languages of an expression that has several."""
     if value.bodies:
         prefix = f"{key}_" if key else ""
         element.attrs[f"{prefix}bodies"] = value.bodies
         element.attrs[f"{prefix}languages"] = value.languages
 
 
-def _lower(context: Context, row: int) -> None:
-    context.bound(row, 0, _bound(context, row))
+def _append(element: Element, key: str, value: AttrValue) -> None:
+    stored = element.attrs.get(key)
+    if stored is None:
+        element.attrs[key] = value
+    else:
+        element.attrs[key] = (*stored, value) if isinstance(stored, tuple) else (stored, value)
 
 
-def _upper(context: Context, row: int) -> None:
-    context.bound(row, 1, _bound(context, row))
+# -- multiplicities --------------------------------------------------------------------------------
 
 
-def _bound(context: Context, row: int) -> AttrValue:
-    value = lone_value_in(context, row)
+def _lower_lower_bound(context: Context, row: int) -> None:
+    context.set_bound(row, 0, _lower_bound(context, row))
+
+
+def _lower_upper_bound(context: Context, row: int) -> None:
+    context.set_bound(row, 1, _lower_bound(context, row))
+
+
+def _lower_bound(context: Context, row: int) -> AttrValue:
+    value = lower_single_value(context, row)
     if not value.is_literal:
-        context.computed.add(context.gids[row])
+        context.computed_bounds.add(context.element_ids[row])
     return value.value
 
 
-def _written(index: int) -> _Reader:
-    """A derived bound, which Enterprise Architect writes instead of a value specification."""
+def _make_derived_bound_handler(index: int) -> RowHandler:
+    """Return a handler of the derived bound that Enterprise Architect writes."""
 
-    def read(context: Context, row: int) -> None:
-        context.subtree(row, Verdict.MAPPED)
+    def lower(context: Context, row: int) -> None:
+        context.mark_subtree(row, Verdict.MAPPED)
         document = context.document
         text = document.attributes[row].get("value") or document.texts.get(row, "")
-        context.bound(row, index, bound(text.strip()))
+        context.set_bound(row, index, parse_bound(text.strip()))
 
-    return read
-
-
-def _default(context: Context, row: int) -> None:
-    _put(context, row, "default")
+    return lower
 
 
-def _specification(context: Context, row: int) -> None:
-    owner = context.owner(row)
+def set_multiplicities(context: Context) -> None:
+    """Set the multiplicities of the document's elements, and report bounds that are invalid."""
+    graph = context.graph
+    for id, (lower, upper) in context.bounds.items():
+        text = _format_multiplicity(lower, upper)
+        if text:
+            element = graph[id]
+            element.attrs["multiplicity"] = text
+            is_valid = is_natural(lower) and (upper == "*" or is_natural(upper))
+            # A bound may be an expression, such as ``size``, but not a text or a negative number.
+            if not is_valid and text != "*" and id not in context.computed_bounds:
+                subject, name = graph.subject(element), graph.qualified_name(element)
+                context.sink.report(rules.BAD_BOUND, subject, multiplicity=text, element=name)
+
+
+def _format_multiplicity(lower: AttrValue, upper: AttrValue) -> str:
+    """Return two bounds in the notation of UML; the empty string for exactly 1."""
+    if lower == upper:
+        return "" if lower == 1 else str(lower)
+    return "*" if lower == 0 and upper == "*" else f"{lower}..{upper}"
+
+
+# -- values of owners ------------------------------------------------------------------------------
+
+
+def _lower_default(context: Context, row: int) -> None:
+    _store_value(context, row, "default")
+
+
+def _lower_specification(context: Context, row: int) -> None:
+    owner = context.find_owner(row)
     if owner is None or owner.kind is not Kind.CONSTRAINT:
-        _put(context, row, "value")
+        _store_value(context, row, "value")
         return
-    value = value_in(context, row)
-    owner.attrs["body"] = text_of(value)
+    value = lower_value(context, row)
+    owner.attrs["body"] = value.text
     if value.language:
         owner.attrs["language"] = value.language
-    keep_alternatives(owner, value)
+    store_alternatives(owner, value)
 
 
-def _value(context: Context, row: int) -> None:
-    owner = context.owner(row)
+def _lower_slot_value(context: Context, row: int) -> None:
+    owner = context.find_owner(row)
     if owner is None or owner.kind is not Kind.SLOT:
-        _put(context, row, "value")
+        _store_value(context, row, "value")
         return
-    value = value_in(context, row)
+    value = lower_value(context, row)
     if value.instance:
         is_href = value.instance not in context.document.ids
         child = next(context.document.children(row, "instance"), row)
-        context.link(Edge.REFERENCES, owner.id, value.instance, child, "instance", is_href)
+        reference = WrittenReference(value.instance, child, is_href)
+        context.add_reference(Edge.REFERENCES, owner.id, reference, "instance")
     else:
         _append(owner, "value", value.value)
 
 
-def _append(element: Element, key: str, value: AttrValue) -> None:
-    known = element.attrs.get(key)
-    if known is None:
-        element.attrs[key] = value
-    else:
-        element.attrs[key] = (*known, value) if isinstance(known, tuple) else (known, value)
-
-
-def _put(context: Context, row: int, key: str) -> None:
-    owner = context.owner(row)
-    value = value_in(context, row)
+def _store_value(context: Context, row: int, key: str) -> None:
+    owner = context.find_owner(row)
+    value = lower_value(context, row)
     if owner is None:
         return
     owner.attrs[key] = value.value
     if value.instance:
         is_href = value.instance not in context.document.ids
-        context.keep_ids(owner, f"{key}_instance", [value.instance], is_href)
+        context.defer_ids(owner, f"{key}_instance", [value.instance], is_href)
     elif not value.is_literal:
         owner.attrs[f"{key}_language"] = value.language
-        keep_alternatives(owner, value, key)
+        store_alternatives(owner, value, key)
 
 
-def _text(key: str, unless: str = "") -> _Reader:
-    def read(context: Context, row: int) -> None:
-        owner = context.owner(row)
-        value = value_in(context, row)
-        text = text_of(value)
-        if owner is not None and text != unless:
-            owner.attrs[key] = text
-            keep_alternatives(owner, value, key)
+def _make_text_handler(key: str, default: str = "") -> RowHandler:
+    """Return a handler that stores a value as text unless it is the default."""
 
-    return read
+    def lower(context: Context, row: int) -> None:
+        owner = context.find_owner(row)
+        value = lower_value(context, row)
+        if owner is not None and value.text != default:
+            owner.attrs[key] = value.text
+            store_alternatives(owner, value, key)
+
+    return lower
 
 
-def _argument(context: Context, row: int) -> None:
-    owner = context.owner(row)
-    text = text_of(lone_value_in(context, row))
+def _lower_argument(context: Context, row: int) -> None:
+    owner = context.find_owner(row)
+    text = lower_single_value(context, row).text
     if owner is not None:
         _append(owner, "arguments", text)
 
 
-FEATURES: dict[str, _Reader] = {
-    "lowerValue": _lower,
-    "upperValue": _upper,
-    "lower": _written(0),
-    "upper": _written(1),
-    "defaultValue": _default,
-    "specification": _specification,
-    "value": _value,
-    "joinSpec": _text("join_spec"),
-    "upperBound": _text("upper_bound", unless="*"),
-    "nameExpression": _text("name_expression"),
-    "argument": _argument,
+FEATURES: dict[str, RowHandler] = {
+    "lowerValue": _lower_lower_bound,
+    "upperValue": _lower_upper_bound,
+    "lower": _make_derived_bound_handler(0),
+    "upper": _make_derived_bound_handler(1),
+    "defaultValue": _lower_default,
+    "specification": _lower_specification,
+    "value": _lower_slot_value,
+    "joinSpec": _make_text_handler("join_spec"),
+    "upperBound": _make_text_handler("upper_bound", default="*"),
+    "nameExpression": _make_text_handler("name_expression"),
+    "argument": _lower_argument,
+}
+
+
+# -- values that packages own ----------------------------------------------------------------------
+
+
+def _make_packaged_value_handler(type_name: str) -> RowHandler:
+    """Return a handler of values in packages: elements, because constraints refer to them."""
+
+    def lower(context: Context, row: int) -> None:
+        if context.document.features[row] != "packagedElement":
+            context.mark_subtree(row, Verdict.UNSUPPORTED)
+            return
+        subkind = metaclasses.to_kebab_case(type_name)
+        add_element(context, row, Kind.EXPRESSION, subkind, type_name)
+        element = context.graph[context.element_ids[row]]
+        value = lower_value(context, row)
+        element.attrs["value"] = value.value
+        if value.language:
+            element.attrs["value_language"] = value.language
+
+    return lower
+
+
+TYPES: dict[str, RowHandler] = {
+    name: _make_packaged_value_handler(name) for name in metaclasses.VALUE_TYPES
 }

@@ -1,4 +1,4 @@
-"""Tables: what the features of UML become in the graph (docs/ir.md)."""
+"""Tables that map the features of UML to edges and attributes of the graph (docs/ir.md)."""
 
 import re
 from functools import cache
@@ -9,10 +9,10 @@ _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 _FLAG = re.compile(r"is[A-Z]")
 
 NOTATION_FEATURES = frozenset({"eAnnotations", "icon", "Documentation", "Extension", "Diagram"})
-"""Features whose content says how a tool shows or stores the model."""
+"""Features whose content is notation or settings of a tool."""
 
 EXTENSION_CONTENT = ("primitivetypes", "profiles")
-"""Parts of Enterprise Architect's extension that hold UML elements."""
+"""Parts of Enterprise Architect's extension that contain UML elements."""
 
 REFERENCES: dict[str, Edge] = {
     "type": Edge.TYPED_BY,
@@ -87,7 +87,7 @@ REFERENCES: dict[str, Edge] = {
     "entry": Edge.REFERENCES,
     "exit": Edge.REFERENCES,
 }
-"""Edge of a feature that refers to elements; ``SPECIAL`` overrides it for some kinds."""
+"""Edge of a feature that refers to elements; ``REFERENCES_BY_KIND`` overrides it for some kinds."""
 
 FOLDED_REFERENCES: dict[str, Edge] = {
     "general": Edge.SPECIALIZES,
@@ -96,19 +96,19 @@ FOLDED_REFERENCES: dict[str, Edge] = {
     "addition": Edge.INCLUDES,
     "generalMachine": Edge.REALIZES,
 }
-"""Features of folded elements; the edge leaves the element that owns them."""
+"""References of elements that become an edge; the edge leaves the owner of such an element."""
 
-SPECIAL: dict[tuple[Kind, str], Edge] = {
+REFERENCES_BY_KIND: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTION, "classifier"): Edge.CALLS,
     (Kind.RECEPTION, "signal"): Edge.TYPED_BY,
     (Kind.TEMPLATE_BINDING, "signature"): Edge.BINDS,
     (Kind.STATE, "entry"): Edge.ENTRY,
     (Kind.STATE, "exit"): Edge.EXIT,
 }
-"""Edges of features that mean something else for these kinds."""
+"""Edges of features that have another meaning for these kinds."""
 
-AMBIGUOUS = frozenset(name for _, name in SPECIAL)
-"""Features for which the kind has to be looked at."""
+KIND_DEPENDENT = frozenset(name for _, name in REFERENCES_BY_KIND)
+"""Features whose edge depends on the kind."""
 
 _SUBJECTS = (
     Kind.CLASS,
@@ -120,7 +120,7 @@ _SUBJECTS = (
     Kind.STATE_MACHINE,
     Kind.INTERACTION,
 )
-"""Classifiers that may be what use cases are about."""
+"""Classifiers that may be the subject of use cases."""
 
 REVERSED: dict[tuple[Kind, str], Edge] = {
     (Kind.ACTIVITY, "specification"): Edge.METHOD,
@@ -213,10 +213,10 @@ REDUNDANT = frozenset(
         "subsettingContext",
     }
 )
-"""References that say what the other end, or ownership, says already."""
+"""References that repeat the reference of the other end, or ownership; no edge follows them."""
 
 TRUE = frozenset({"true", "1"})
-"""Ways to write a true xs:boolean (XML Schema part 2, clause 3.2.2)."""
+"""The two ways to write a true xs:boolean (XML Schema part 2, clause 3.2.2)."""
 
 FLAGS = {
     "isAbstract": "abstract",
@@ -230,10 +230,10 @@ FLAGS = {
     "isTestedFirst": "tested_first",
     "isRelative": "relative",
 }
-"""Attributes that are true or absent in the graph."""
+"""Attributes that are true or absent in the graph, with their names there."""
 
 UNLESS_FALSE = {"isUnique": "unique", "isService": "service", "isReentrant": "reentrant"}
-"""Attributes that are true unless they say otherwise: false or absent in the graph."""
+"""Attributes whose default is true: false or absent in the graph."""
 
 TEXTS = {
     "aggregation": ("aggregation", "none"),
@@ -243,7 +243,7 @@ TEXTS = {
     "language": ("language", ""),
     "alias": ("alias", ""),
 }
-"""Attributes with text: the graph's name, and the value that is not written."""
+"""Text attributes: their name in the graph, and the value that is not stored."""
 
 _DEFAULTS = {
     "allowSubstitutable": "true",
@@ -260,9 +260,9 @@ _DEFAULTS = {
     "ordering": "FIFO",
     "setting": "true",
 }
-"""Values that the tools write or leave out as they like (UML 2.5.1, defaults of the metamodel).
+"""Default values, which tools write or omit (UML 2.5.1, defaults of the metamodel).
 
-Other attributes are false when they are truth values; numbers and texts have no default.
+Other flags are false by default; numbers and texts have no default.
 """
 
 PIN_DIRECTIONS = {"InputPin": "in", "ValuePin": "in", "ActionInputPin": "in", "OutputPin": "out"}
@@ -279,7 +279,7 @@ CONDITIONS = {
     "preCondition": "precondition",
     "postCondition": "postcondition",
 }
-"""Subkind of a constraint by the feature that owns or names it."""
+"""Subkind of a constraint by the feature that owns it or refers to it."""
 
 STATE_BEHAVIOURS = {
     "entry": Edge.ENTRY,
@@ -300,9 +300,9 @@ LISTS = frozenset(
         "observations",
     }
 )
-"""Kept lists of ids that are tuples also when there is one."""
+"""Attributes with ids that are tuples even if there is only one id."""
 
-HINTS: dict[str, Kind] = {
+TARGET_KINDS: dict[str, Kind] = {
     "appliedProfile": Kind.PROFILE,
     "importedPackage": Kind.PACKAGE,
     "role": Kind.PORT,
@@ -332,17 +332,17 @@ HINTS: dict[str, Kind] = {
     "quantityKind": Kind.QUANTITY_KIND,
     "dimension": Kind.QUANTITY_KIND,
 }
-"""What an external target is when only the feature that refers to it is known."""
+"""Likely kind of an external target, by the feature that refers to it."""
 
 
 @cache
-def snake(name: str) -> str:
-    """Name of an attribute of the graph for a feature that no table names."""
+def to_snake_case(name: str) -> str:
+    """Return the graph's attribute name for a feature that no table maps."""
     plain = name[2:] if _FLAG.match(name) else name
     return _CAPITAL.sub(r"_\1", plain).lower()
 
 
 @cache
-def default(name: str) -> str:
-    """The value that an absent attribute means, for those that no other table names."""
+def default_value(name: str) -> str:
+    """Return the default value of an attribute that no other table maps."""
     return _DEFAULTS.get(name, "false" if _FLAG.match(name) else "")

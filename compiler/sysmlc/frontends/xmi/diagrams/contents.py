@@ -1,8 +1,7 @@
-"""Lines of diagrams that are edges of the graph: a generalization has an id in the file only."""
+"""What the diagrams of all tools have in common: types, shapes inside shapes, and relations."""
 
 from collections.abc import Iterable, Mapping
 
-from sysmlc.frontends.xmi.diagrams.shapes import target_of
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
@@ -11,44 +10,105 @@ from sysmlc.sources.xml import parse, plain_parser
 Relation = tuple[Edge, str, str]
 """An edge with the ids or hrefs of its ends."""
 
+_MAX_DEPTH = 40
 
-class Relations:
-    """Collects the relations of a model file; told of every start and end of an element."""
+_DIAGRAM_TYPES = (
+    ("table", "table"),
+    ("matrix", "matrix"),
+    ("relationmap", "matrix"),
+    ("blockdefinition", "bdd"),
+    ("internalblock", "ibd"),
+    ("compositestructure", "ibd"),
+    ("parametric", "par"),
+    ("requirement", "req"),
+    ("usecase", "uc"),
+    ("activity", "act"),
+    ("statemachine", "stm"),
+    ("statechart", "stm"),
+    ("sequence", "sd"),
+    ("package", "pkg"),
+    ("class", "class"),
+    ("logical", "class"),
+    ("object", "class"),
+    ("component", "class"),
+    ("deployment", "class"),
+    ("profile", "class"),
+)
+"""Parts of the tools' names for diagrams, and the abbreviations of annexes A of SysML and UML."""
+
+
+def abbreviate_type(*types: str) -> str:
+    """Return the abbreviation of a diagram type; the first of *types* that is known counts.
+
+    Empty for diagrams that are neither SysML's nor UML's, such as mind maps.
+    """
+    for type_ in types:
+        plain = type_.lower().replace(" ", "").replace("_", "")
+        for part, abbreviation in _DIAGRAM_TYPES:
+            if part in plain:
+                return abbreviation
+    return ""
+
+
+def read_target(attributes: Mapping[str, str]) -> str:
+    """Return the id or href that an element refers to, with any prefix for XMI."""
+    for name, value in attributes.items():
+        if name.rpartition(":")[2] in ("idref", "href"):
+            return value
+    return ""
+
+
+def extend_path(path: tuple[str, ...], id: str) -> tuple[str, ...]:
+    """Return the path of a shape that is drawn inside *path* and shows the element *id*.
+
+    Some symbols consist of two shapes of the same element. Shapes deeper than the limit stand
+    beside the last one above it.
+    """
+    return path if path[-1:] == (id,) else (*path[: _MAX_DEPTH - 1], id)
+
+
+class RelationReader:
+    """Parser handlers that collect the relations of a model file that are edges of the graph.
+
+    A generalization, for example, has an id in the file only.
+    """
 
     def __init__(self) -> None:
-        self.found: dict[str, Relation] = {}
+        self.relations: dict[str, Relation] = {}
         self._ids: list[str] = []
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
-        """An element begins; ``generalization`` has ``general`` as attribute or as a child."""
+        """Handle the start of an element; ``general`` is an attribute or a child of a relation."""
         if len(self._ids) > 1 and name in FOLDED_REFERENCES:
-            self._note(FOLDED_REFERENCES[name], self._ids[-2:], target_of(attributes))
+            owner, id = self._ids[-2:]
+            self._add(FOLDED_REFERENCES[name], owner, id, read_target(attributes))
         id = attributes.get("xmi:id", "")
         for feature in FOLDED_REFERENCES.keys() & attributes.keys() if self._ids else ():
-            self._note(FOLDED_REFERENCES[feature], [self._ids[-1], id], attributes[feature])
+            self._add(FOLDED_REFERENCES[feature], self._ids[-1], id, attributes[feature])
         self._ids.append(id)
 
-    def end(self) -> None:
-        """An element ends."""
+    def end(self, _name: str) -> None:
+        """Handle the end of an element."""
         self._ids.pop()
 
-    def _note(self, edge: Edge, ids: list[str], target: str) -> None:
-        owner, id = ids
+    def _add(self, edge: Edge, owner: str, id: str, target: str) -> None:
         if owner and id and target:
-            self.found[id] = (edge, owner, target)
+            self.relations[id] = (edge, owner, target)
 
 
-def relations(model: Source) -> dict[str, Relation]:
-    """The relations of a model file by their ids. Raises SourceError."""
-    found = Relations()
-    made = plain_parser()
-    made.StartElementHandler = found.start
-    made.EndElementHandler = lambda _name: found.end()
-    parse(model, made)
-    return found.found
+def read_relations(model: Source) -> dict[str, Relation]:
+    """Return the relations of a model file by their ids. Raises SourceError."""
+    reader = RelationReader()
+    xml_parser = plain_parser()
+    xml_parser.StartElementHandler = reader.start
+    xml_parser.EndElementHandler = reader.end
+    parse(model, xml_parser)
+    return reader.relations
 
 
-def shown(known: Mapping[str, Relation], targets: Iterable[str]) -> tuple[Relation, ...]:
-    """The relations among what a diagram shows."""
+def select_relations(
+    relations: Mapping[str, Relation], targets: Iterable[str]
+) -> tuple[Relation, ...]:
+    """Return the relations that are among the ids and hrefs that a diagram shows."""
     ids = (target.rpartition("#")[2] for target in targets)
-    return tuple(known[id] for id in ids if id in known)
+    return tuple(relations[id] for id in ids if id in relations)

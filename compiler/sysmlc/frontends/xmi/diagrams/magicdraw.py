@@ -1,65 +1,115 @@
-"""Diagrams of MagicDraw and Cameo: ``ownedDiagram`` in the model, shapes in entries beside it."""
+"""Diagrams of MagicDraw and Cameo: ``ownedDiagram`` in the model, shapes in entries beside it.
+
+An entry ``BINARY-...`` of a project archive is XML that does not declare its prefix ``xmi``, and is
+therefore read without namespaces. A project saved as one XML file contains it as a ``filePart``.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
-from sysmlc.frontends.xmi.diagrams.contents import Relation, Relations
-from sysmlc.frontends.xmi.diagrams.shapes import Shapes
-from sysmlc.frontends.xmi.diagrams.types import diagram_word
+from sysmlc.frontends.xmi.diagrams import contents
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
 
-ENTRY = "BINARY-"
-"""How the names of entries with shapes begin."""
+ENTRY_PREFIX = "BINARY-"
+"""Start of the names of entries with shapes."""
+
+_FRAME = "DiagramFrame"
 
 
-@dataclass(slots=True)
-class _Draft:
-    """A diagram while it is read."""
+class ShapeReader:
+    """Parser handlers that collect the elements that are drawn, and inside which others.
 
-    ordinal: int
-    attributes: Mapping[str, str]
-    type: str = ""
-    base_type: str = ""
-    shapes: str = ""
-    used: dict[str, None] = field(default_factory=dict)
+    ``paths`` are ids, outermost first. An id of MagicDraw means the same element in every file, so
+    that only the fragment of an href counts.
+    """
+
+    def __init__(self) -> None:
+        self.paths: dict[tuple[str, ...], None] = {}
+        self._open_paths: list[tuple[str, ...]] = [()]
+        self._has_element: list[bool] = [True]
+
+    def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        """Handle the start of an element."""
+        if name == "mdElement":
+            self._open_paths.append(self._open_paths[-1])
+            self._has_element.append(attributes.get("elementClass") == _FRAME)
+        elif name == "elementID" and not self._has_element[-1]:
+            self._has_element[-1] = True
+            id = contents.read_target(attributes).rpartition("#")[2]
+            if id:
+                path = contents.extend_path(self._open_paths[-1], id)
+                self._open_paths[-1] = path
+                self.paths[path] = None
+
+    def end(self, name: str) -> None:
+        """Handle the end of an element."""
+        if name == "mdElement":
+            self._open_paths.pop()
+            self._has_element.pop()
 
 
-@dataclass(slots=True)
-class _Found:
-    """What one model file says of diagrams."""
+def read_shapes(entry: Source) -> ShapeReader:
+    """Return the shapes in an entry of an archive, none if it is not XML. Raises SourceError."""
+    reader = ShapeReader()
+    xml_parser = plain_parser()
+    xml_parser.StartElementHandler = reader.start
+    xml_parser.EndElementHandler = reader.end
+    if entry.data.lstrip().startswith(b"<"):
+        parse(entry, xml_parser)
+    return reader
 
-    drafts: list[_Draft] = field(default_factory=list)
-    shapes: dict[str, Shapes] = field(default_factory=dict)
-    relations: Mapping[str, Relation] = field(default_factory=dict)
 
-
-def drawings(model: Source, shapes_of: Callable[[str], Shapes]) -> Iterator[Drawing]:
-    """The diagrams of a model; ``shapes_of`` reads an entry of its archive.
+def read_diagrams(model: Source, read_entry: Callable[[str], ShapeReader]) -> Iterator[Drawing]:
+    """Yield the diagrams of a model; *read_entry* reads an entry of its archive.
 
     Raises SourceError.
     """
     if b"ownedDiagram" not in model.data:
         return
-    found = _read(model)
-    for draft in found.drafts:
-        drawn = found.shapes.get(draft.shapes) or shapes_of(draft.shapes)
-        yield _drawing(model.name, draft, drawn, found.relations)
+    reader = _ModelReader()
+    xml_parser = plain_parser()
+    xml_parser.StartElementHandler = reader.start
+    xml_parser.EndElementHandler = reader.end
+    xml_parser.CharacterDataHandler = reader.add_text
+    parse(model, xml_parser)
+    for draft in reader.drafts:
+        shapes = reader.shapes.get(draft.entry) or read_entry(draft.entry)
+        yield _finish(model.name, draft, shapes, reader.relation_reader.relations)
 
 
-def _drawing(
-    file: str, draft: _Draft, shapes: Shapes, relations: Mapping[str, Relation]
+@dataclass(slots=True)
+class _Draft:
+    """A diagram that is being read."""
+
+    ordinal: int
+    attributes: Mapping[str, str]
+    type: str = ""
+    base_type: str = ""
+    entry: str = ""
+    used: dict[str, None] = field(default_factory=dict)
+
+    def add(self, name: str, attributes: Mapping[str, str]) -> None:
+        """Add the element *name* inside the diagram."""
+        if name.endswith("DiagramRepresentationObject"):
+            self.type = attributes.get("type", "")
+            self.base_type = attributes.get("umlType", "")
+        elif name == "binaryObject":
+            self.entry = attributes.get("streamContentID", "")
+
+
+def _finish(
+    file: str, draft: _Draft, shapes: ShapeReader, relations: Mapping[str, contents.Relation]
 ) -> Drawing:
-    id = _id(draft.attributes)
+    id = draft.attributes.get("xmi:id", "")
     drawn = {path[-1]: None for path in shapes.paths}
-    shown = [one for one in dict.fromkeys((*drawn, *draft.used)) if one != id]
+    shown = [target for target in dict.fromkeys((*drawn, *draft.used)) if target != id]
     return Drawing(
         id,
         draft.attributes.get("name", ""),
         draft.type,
-        diagram_word(draft.type, draft.base_type),
+        contents.abbreviate_type(draft.type, draft.base_type),
         file,
         file,
         draft.ordinal,
@@ -67,90 +117,56 @@ def _drawing(
         draft.attributes.get("context", ""),
         tuple(shown),
         tuple(path for path in shapes.paths if len(path) > 1),
-        tuple(one for one in shown if drawn and one not in drawn),
-        drawing_relations.shown(relations, shown),
+        tuple(target for target in shown if drawn and target not in drawn),
+        contents.select_relations(relations, shown),
     )
 
 
-def _id(attributes: Mapping[str, str]) -> str:
-    return attributes.get("xmi:id", "")
-
-
-def shapes(entry: Source) -> Shapes:
-    """The shapes in an entry of an archive; none in one that is no XML. Raises SourceError."""
-    found = Shapes()
-    made = plain_parser()
-    made.StartElementHandler = found.start
-    made.EndElementHandler = found.end
-    if entry.data.lstrip().startswith(b"<"):
-        parse(entry, made)
-    return found
-
-
-def _read(model: Source) -> _Found:
-    reader = _Reader()
-    made = plain_parser()
-    made.StartElementHandler = reader.start
-    made.EndElementHandler = reader.end
-    made.CharacterDataHandler = reader.text
-    parse(model, made)
-    return reader.found
-
-
-class _Reader:
-    """Told of everything in a model file, it keeps what concerns diagrams."""
+class _ModelReader:
+    """Parser handlers that collect diagrams, shapes and relations of a model file."""
 
     def __init__(self) -> None:
-        self._relations = Relations()
-        self.found = _Found(relations=self._relations.found)
+        self.drafts: list[_Draft] = []
+        self.shapes: dict[str, ShapeReader] = {}
+        self.relation_reader = contents.RelationReader()
         self._ordinal = -1
         self._open: list[str] = []
         self._draft: _Draft | None = None
-        self._shapes: Shapes | None = None
-        self._used = ""
+        self._shape_reader: ShapeReader | None = None
+        """Receives the elements while a file part with shapes is open."""
+        self._used_element = ""
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self._ordinal += 1
-        if self._shapes is not None:
-            self._shapes.start(name, attributes)
+        if self._shape_reader is not None:
+            self._shape_reader.start(name, attributes)
             return
         if name == "filePart":
-            self._begin_shapes(attributes)
+            entry = attributes.get("name", "")
+            if entry.startswith(ENTRY_PREFIX):
+                self._shape_reader = self.shapes[entry] = ShapeReader()
         elif name == "ownedDiagram":
             self._draft = _Draft(self._ordinal, attributes)
-            self.found.drafts.append(self._draft)
+            self.drafts.append(self._draft)
         elif self._draft is not None:
-            _fill(self._draft, name, attributes)
-        self._relations.start(name, attributes)
+            self._draft.add(name, attributes)
+        self.relation_reader.start(name, attributes)
         self._open.append(name)
 
     def end(self, name: str) -> None:
         if name == "filePart":
-            self._shapes = None
-        if self._shapes is not None:
-            self._shapes.end(name)
+            self._shape_reader = None
+        if self._shape_reader is not None:
+            self._shape_reader.end(name)
             return
         self._open.pop()
-        self._relations.end()
+        self.relation_reader.end(name)
         if name == "ownedDiagram":
             self._draft = None
         elif name == "usedElements" and self._draft is not None:
-            self._draft.used[self._used.strip()] = None
-            self._used = ""
+            self._draft.used[self._used_element.strip()] = None
+            self._used_element = ""
 
-    def text(self, data: str) -> None:
+    def add_text(self, data: str) -> None:
         if self._open and self._open[-1] == "usedElements":
-            self._used += data
-
-    def _begin_shapes(self, attributes: Mapping[str, str]) -> None:
-        entry = attributes.get("name", "")
-        if entry.startswith(ENTRY):
-            self._shapes = self.found.shapes[entry] = Shapes()
-
-
-def _fill(draft: _Draft, name: str, attributes: Mapping[str, str]) -> None:
-    if name.endswith("DiagramRepresentationObject"):
-        draft.type = attributes.get("type", "")
-        draft.base_type = attributes.get("umlType", "")
-    elif name == "binaryObject":
-        draft.shapes = attributes.get("streamContentID", "")
+            self._used_element += data

@@ -3,9 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.diagrams import contents as drawing_relations
-from sysmlc.frontends.xmi.diagrams.shapes import inside, target_of
-from sysmlc.frontends.xmi.diagrams.types import diagram_word
+from sysmlc.frontends.xmi.diagrams import contents
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import parse, plain_parser
@@ -17,22 +15,22 @@ _LABELS = ("StereotypeLabel", "StereotypeBrace", "StereotypeCompartment", "Stere
 """Nodes that name a stereotype; a stereotype that is drawn itself is a ``Stereotype_Shape``."""
 
 
-def drawings(notation: Source, model: Source) -> Iterator[Drawing]:
-    """The diagrams in the notation file of a model. Raises SourceError."""
-    relations = drawing_relations.relations(model)
-    reader = _Reader()
-    made = plain_parser()
-    made.StartElementHandler = reader.start
-    made.EndElementHandler = reader.end
-    parse(notation, made)
+def read_diagrams(notation: Source, model: Source) -> Iterator[Drawing]:
+    """Yield the diagrams in the notation file of a model. Raises SourceError."""
+    relations = contents.read_relations(model)
+    reader = _NotationReader()
+    xml_parser = plain_parser()
+    xml_parser.StartElementHandler = reader.start
+    xml_parser.EndElementHandler = reader.end
+    parse(notation, xml_parser)
     for draft in reader.drafts:
-        paths = draft.paths()
+        paths = draft.list_paths()
         shown = tuple(dict.fromkeys(path[-1] for path in paths))
         yield Drawing(
             draft.id,
             draft.name,
             draft.type,
-            diagram_word(draft.kind, draft.type),
+            contents.abbreviate_type(draft.profile_type, draft.type),
             model.name,
             notation.name,
             draft.ordinal,
@@ -40,89 +38,92 @@ def drawings(notation: Source, model: Source) -> Iterator[Drawing]:
             draft.context,
             shown,
             tuple(path for path in paths if len(path) > 1),
-            relations=drawing_relations.shown(relations, shown),
+            relations=contents.select_relations(relations, shown),
         )
 
 
 @dataclass(slots=True)
 class _Node:
-    """A node of a diagram: where it is, whether it can be seen, and what it shows."""
+    """A node of a diagram; ``target`` is the element that it shows."""
 
-    above: "_Node | None"
-    is_seen: bool
-    shows: str = ""
+    parent: "_Node | None"
+    is_visible: bool
+    target: str = ""
     path: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
 class _Draft:
-    """A diagram while it is read; ``kind`` is the profile's word for it (Papyrus SysML)."""
+    """A diagram that is being read; ``profile_type`` is its type in the profile of SysML."""
 
     id: str
     name: str
     type: str
     ordinal: int
-    kind: str = ""
+    profile_type: str = ""
     owner: str = ""
     context: str = ""
     nodes: list[_Node] = field(default_factory=list)
 
-    def paths(self) -> list[tuple[str, ...]]:
-        """What is seen, outermost first; a node says what it shows after what is inside it."""
-        found: dict[tuple[str, ...], None] = {}
+    def list_paths(self) -> list[tuple[str, ...]]:
+        """Return the paths of the visible elements.
+
+        The paths are known when the diagram is complete: the target of a node may come after the
+        nodes inside it.
+        """
+        paths: dict[tuple[str, ...], None] = {}
         for node in self.nodes:
-            above = node.above
-            node.path = above.path if above else ()
-            node.is_seen = node.is_seen and (above is None or above.is_seen)
-            if node.is_seen and node.shows:
-                node.path = inside(node.path, node.shows)
-                found[node.path] = None
-        return list(found)
+            parent = node.parent
+            node.path = parent.path if parent else ()
+            node.is_visible = node.is_visible and (parent is None or parent.is_visible)
+            if node.is_visible and node.target:
+                node.path = contents.extend_path(node.path, node.target)
+                paths[node.path] = None
+        return list(paths)
 
 
-class _Reader:
-    """Told of everything in a notation file, it keeps the diagrams."""
+class _NotationReader:
+    """Parser handlers that collect the diagrams of a notation file."""
 
     def __init__(self) -> None:
         self.drafts: list[_Draft] = []
         self._ordinal = -1
         self._open: list[str] = []
-        self._nodes: list[_Node] = []
+        self._open_nodes: list[_Node] = []
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self._ordinal += 1
-        local = name.rpartition(":")[2]
-        above = self._open[-1] if self._open else ""
-        self._open.append(local)
-        if local == _DIAGRAM and not self._nodes:
-            self._begin(attributes)
+        local_name = name.rpartition(":")[2]
+        parent = self._open[-1] if self._open else ""
+        self._open.append(local_name)
+        if local_name == _DIAGRAM and not self._open_nodes:
+            self._add_diagram(attributes)
         elif self.drafts:
-            self._inside(local, above, attributes)
+            self._add_content(local_name, parent, attributes)
 
     def end(self, _name: str) -> None:
-        if self._open.pop() in _NODES and self._nodes:
-            self._nodes.pop()
+        if self._open.pop() in _NODES and self._open_nodes:
+            self._open_nodes.pop()
 
-    def _begin(self, attributes: dict[str, str]) -> None:
-        get = attributes.get
-        id, name = get("xmi:id", ""), get("name", "")
-        self.drafts.append(_Draft(id, name, get("type", ""), self._ordinal))
+    def _add_diagram(self, attributes: dict[str, str]) -> None:
+        id, name = attributes.get("xmi:id", ""), attributes.get("name", "")
+        self.drafts.append(_Draft(id, name, attributes.get("type", ""), self._ordinal))
 
-    def _inside(self, local: str, above: str, attributes: dict[str, str]) -> None:
+    def _add_content(self, name: str, parent: str, attributes: dict[str, str]) -> None:
         draft = self.drafts[-1]
-        if local in _NODES:
-            self._node(draft, attributes)
-        elif local == "element" and above in _NODES:
-            self._nodes[-1].shows = target_of(attributes)
-        elif local == "element" and above == _DIAGRAM:
-            draft.context = target_of(attributes)
-        elif local == "owner":
-            draft.owner = target_of(attributes)
-        draft.kind = attributes.get("diagramKindId", draft.kind)
+        if name in _NODES:
+            self._add_node(draft, attributes)
+        elif name == "element" and parent in _NODES:
+            self._open_nodes[-1].target = contents.read_target(attributes)
+        elif name == "element" and parent == _DIAGRAM:
+            draft.context = contents.read_target(attributes)
+        elif name == "owner":
+            draft.owner = contents.read_target(attributes)
+        draft.profile_type = attributes.get("diagramKindId", draft.profile_type)
 
-    def _node(self, draft: _Draft, attributes: dict[str, str]) -> None:
+    def _add_node(self, draft: _Draft, attributes: dict[str, str]) -> None:
         is_label = attributes.get("type", "").startswith(_LABELS)
-        is_seen = attributes.get("visible") != "false" and not is_label
-        node = _Node(self._nodes[-1] if self._nodes else None, is_seen)
-        self._nodes.append(node)
+        is_visible = attributes.get("visible") != "false" and not is_label
+        node = _Node(self._open_nodes[-1] if self._open_nodes else None, is_visible)
+        self._open_nodes.append(node)
         draft.nodes.append(node)

@@ -1,14 +1,12 @@
-"""Authors' diagrams of all tools, for the pass ``views``; read only when they are asked for."""
+"""Reads the diagrams of authors for the pass ``views``, from the files of all tools."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import TypeVar
 
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
-from sysmlc.frontends.xmi.diagrams import enterprise_architect as drawings_ea
-from sysmlc.frontends.xmi.diagrams import magicdraw as drawings_magicdraw
-from sysmlc.frontends.xmi.diagrams import papyrus as drawings_papyrus
-from sysmlc.frontends.xmi.diagrams.shapes import Shapes
+from sysmlc.frontends.xmi.diagrams import enterprise_architect, magicdraw, papyrus
+from sysmlc.frontends.xmi.diagrams.magicdraw import ShapeReader
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source, SourceError
 
@@ -26,53 +24,54 @@ UNREADABLE = rule(
 )
 
 
-def companions(name: str) -> list[str]:
-    """Names of what lies beside a model and holds its diagrams (``Frontend.companions``)."""
+def list_companions(name: str) -> list[str]:
+    """Return the names of the files beside a model that hold its diagrams."""
     archive, is_entry, _ = name.partition("!")
     if is_entry:
-        return [f"{archive}!{drawings_magicdraw.ENTRY}*"]
+        return [f"{archive}!{magicdraw.ENTRY_PREFIX}*"]
     stem, dot, suffix = name.rpartition(".")
-    return [stem + drawings_papyrus.SUFFIX] if dot and suffix == "uml" else []
+    return [stem + papyrus.SUFFIX] if dot and suffix == "uml" else []
 
 
-def read(models: Sequence[Source], beside: Sequence[Source], sink: Sink) -> list[Drawing]:
-    """The diagrams of the models; ``beside`` are the files and entries that go with them."""
-    files = {source.name: source for source in beside}
-    return [one for model in models for one in _of_model(model, files, sink)]
+def read_diagrams(
+    models: Sequence[Source], companions: Sequence[Source], sink: Sink
+) -> list[Drawing]:
+    """Return the diagrams of the models; *companions* are the files and entries beside them."""
+    files = {source.name: source for source in companions}
+    return [drawing for model in models for drawing in _read_model(model, files, sink)]
 
 
-def _of_model(model: Source, files: Mapping[str, Source], sink: Sink) -> Iterator[Drawing]:
-    # A model that is damaged has been reported by those who read it whole.
+def _read_model(model: Source, files: Mapping[str, Source], sink: Sink) -> Iterator[Drawing]:
+    # The reader of the model reports a damaged model.
     with suppress(SourceError):
-        yield from drawings_magicdraw.drawings(
-            model, lambda name: _shapes(model, name, files, sink)
+        yield from magicdraw.read_diagrams(
+            model, lambda name: _read_shapes(model, name, files, sink)
         )
     with suppress(SourceError):
-        yield from drawings_ea.drawings(model)
-    for name in companions(model.name):
+        yield from enterprise_architect.read_diagrams(model)
+    for name in list_companions(model.name):
         if name in files:
-            yield from _notation(files[name], model, sink)
+            yield from _read_notation(files[name], model, sink)
 
 
-def _notation(notation: Source, model: Source, sink: Sink) -> list[Drawing]:
-    nothing: list[Drawing] = []
-    return _told(lambda: list(drawings_papyrus.drawings(notation, model)), nothing, sink)
+def _read_notation(notation: Source, model: Source, sink: Sink) -> list[Drawing]:
+    empty: list[Drawing] = []
+    return _read_or_report(lambda: list(papyrus.read_diagrams(notation, model)), empty, sink)
 
 
-def _shapes(model: Source, entry: str, files: Mapping[str, Source], sink: Sink) -> Shapes:
+def _read_shapes(model: Source, entry: str, files: Mapping[str, Source], sink: Sink) -> ShapeReader:
     archive, mark, _ = model.name.partition("!")
     source = files.get(f"{archive}{mark}{entry}")
     if source is None:
-        return Shapes()
-    return _told(lambda: drawings_magicdraw.shapes(source), Shapes(), sink)
+        return ShapeReader()
+    return _read_or_report(lambda: magicdraw.read_shapes(source), ShapeReader(), sink)
 
 
-def _told(read: Callable[[], _T], otherwise: _T, sink: Sink) -> _T:
-    """What could be read, or a finding about what is damaged."""
+def _read_or_report(read: Callable[[], _T], default: _T, sink: Sink) -> _T:
+    """Return the result of *read*, or report a damaged file and return *default*."""
     try:
         return read()
     except SourceError as problem:
-        place = Place(problem.file, offset=problem.offset)
-        subject = Subject(problem.file, place=place)
+        subject = Subject(problem.file, place=Place(problem.file, offset=problem.offset))
         sink.report(UNREADABLE, subject, file=problem.file, problem=problem.message)
-        return otherwise
+        return default

@@ -1,143 +1,210 @@
-"""What Enterprise Architect keeps beside the model: notes, tagged values, stereotypes.
+"""Content of Enterprise Architect's extension that the model itself does not have.
 
-Its extension repeats most of the model. Read are notes (as comments), constraints, tagged values
-without a stereotype, and stereotypes without an application; the rest is notation.
+The extension repeats most of the model. Notes (as comments), constraints, tagged values without a
+stereotype, and stereotypes without an application are read; the rest is notation.
 """
 
 import re
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.enterprise_architect.constraints import constraints
-from sysmlc.frontends.xmi.enterprise_architect.profiles import id_of, qualified
-from sysmlc.frontends.xmi.profiles import mangled
+from sysmlc.frontends.xmi.context import Context, ElementHandler
+from sysmlc.frontends.xmi.enterprise_architect.profiles import (
+    find_id_by_guid,
+    split_stereotype_name,
+)
+from sysmlc.frontends.xmi.namespaces import mangle_name
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.identity import derived_id
 
 _STEREOTYPE = re.compile(r"@STEREO;(.*?)@ENDSTEREO", re.DOTALL)
 _PREFIX = "EAID_"
 _LISTS = ("elements", "connectors", "attributes", "operations", "parameters")
-"""What holds descriptions of elements, by which they are nested."""
+"""Features that contain descriptions of elements, which can be nested."""
+_CONSTRAINT_SUBKINDS = {
+    "pre-condition": "precondition",
+    "post-condition": "postcondition",
+    "invariant": "invariant",
+}
+_CONSTRAINT_TEXTS = ("notes", "description", "documentation")
+"""Attributes that hold the text of a constraint, in different versions of the tool."""
 
 
-def finish(context: Context) -> None:
-    """Read what the extensions say of elements; applications must be in the graph already."""
-    waiting = deque(row for extension in context.extensions for row in _parts(context, extension))
-    while waiting:
-        row = waiting.popleft()
-        _element(context, row)
-        waiting.extend(_parts(context, row))
+def read_extensions(context: Context) -> None:
+    """Add the content of the extensions; applications must be in the graph already."""
+    queue = deque(
+        row for extension in context.extensions for row in _list_descriptions(context, extension)
+    )
+    while queue:
+        row = queue.popleft()
+        _read_description(context, row)
+        queue.extend(_list_descriptions(context, row))
 
 
-def _element(context: Context, row: int) -> None:
+def _list_descriptions(context: Context, row: int) -> Iterator[int]:
     document = context.document
-    id = document.idref(row)
-    _details(context, row, id)
-    for holder, ends in (("source", "src"), ("target", "dst")):
-        for end in document.children(row, holder):
-            # An end has the id of the connector with its first two digits replaced.
-            _details(context, end, f"{_PREFIX}{ends}{id[len(_PREFIX) + 2 :]}")
-
-
-def _parts(context: Context, row: int) -> Iterator[int]:
-    document = context.document
-    for features in _LISTS:
-        for holder in document.children(row, features):
+    for feature in _LISTS:
+        for holder in document.children(row, feature):
             yield from document.children(holder)
 
 
-def _details(context: Context, row: int, id: str) -> None:
-    place = context.unit.find(context.lowered, id, False)
-    element = context.graph.get(place[0].gids[place[1]]) if place else None
-    if element is None or place is None:
+def _read_description(context: Context, row: int) -> None:
+    document = context.document
+    id = document.idref(row)
+    _read_details(context, row, id)
+    for holder, end_prefix in (("source", "src"), ("target", "dst")):
+        for end in document.children(row, holder):
+            # The id of an end is that of the connector with its first two digits replaced.
+            _read_details(context, end, f"{_PREFIX}{end_prefix}{id[len(_PREFIX) + 2 :]}")
+
+
+def _read_details(context: Context, row: int, id: str) -> None:
+    """Read what a description states about the element *id*."""
+    document = context.document
+    target = context.unit.find_target(context.file, id, False)
+    element = context.graph.get(target.element_id) if target else None
+    if element is None or target is None:
         return
-    if not place[0].own[place[1]]:
-        _note_on_part(context, element, row, id)
+    if not target.element:
+        # A note on content of an element, such as an event, is a note on that element.
+        for feature in ("properties", "documentation"):
+            for child in document.children(row, feature):
+                _add_note(context, element, child, id)
         return
-    for child in context.document.children(row):
-        reader = _DETAILS.get(context.document.features[child])
-        if reader is not None:
-            reader(context, element, child)
+    for child in document.children(row):
+        handler = _DETAILS.get(document.features[child])
+        if handler is not None:
+            handler(context, element, child)
 
 
-def _note_on_part(context: Context, element: Element, row: int, id: str) -> None:
-    """A note on what is no element of its own (an event, say) is one on the element around it."""
-    for feature in ("properties", "documentation"):
-        for child in context.document.children(row, feature):
-            _note(context, element, child, id)
+# -- notes -----------------------------------------------------------------------------------------
 
 
-def _note(context: Context, element: Element, row: int, about: str = "") -> None:
+def _read_note(context: Context, element: Element, row: int) -> None:
+    _add_note(context, element, row, element.id)
+
+
+def _add_note(context: Context, element: Element, row: int, origin: str) -> None:
+    """Add a comment unless the model has it; *origin* is the id from which its id is derived."""
     values = context.document.attributes[row]
     text = values.get("value") or values.get("documentation", "")
-    if text:
-        context.verdicts[row] = Verdict.MAPPED
-    if text and not any(_says(one, text) for one in context.graph.owned(element)):
-        id = derived_id(about or element.id, "documentation")
-        note = Element(id, Kind.COMMENT, "", element.id, *_place(context, row))
-        note.attrs["body"] = text
-        context.graph.add(note)
-        context.graph.connect(Edge.REFERENCES, note, element)
+    if not text:
+        return
+    context.verdicts[row] = Verdict.MAPPED
+    if not any(_is_comment(owned, text) for owned in context.graph.owned(element)):
+        id = derived_id(origin, "documentation")
+        comment = Element(id, Kind.COMMENT, "", element.id, *_source(context, row))
+        comment.attrs["body"] = text
+        context.graph.add(comment)
+        context.graph.connect(Edge.REFERENCES, comment, element)
 
 
-def _says(comment: Element, text: str) -> bool:
-    return comment.kind is Kind.COMMENT and comment.attrs.get("body") == text
+def _is_comment(element: Element, text: str) -> bool:
+    return element.kind is Kind.COMMENT and element.attrs.get("body") == text
 
 
-def _tags(context: Context, element: Element, row: int) -> None:
+# -- constraints -----------------------------------------------------------------------------------
+
+
+def _read_constraints(context: Context, element: Element, row: int) -> None:
+    """Add the constraints ``<constraint name= type=>`` that the model does not have."""
+    document = context.document
+    for number, child in enumerate(document.children(row, "constraint")):
+        values = document.attributes[child]
+        body = next((values[name] for name in _CONSTRAINT_TEXTS if values.get(name)), "")
+        name = values.get("name", "")
+        if not name and not body:
+            continue
+        context.verdicts[row] = context.verdicts[child] = Verdict.MAPPED
+        if not any(_is_constraint(owned, name, body) for owned in context.graph.owned(element)):
+            id = derived_id(element.id, f"constraint[{number}]")
+            _add_constraint(context, element, child, id, name, body)
+
+
+def _is_constraint(element: Element, name: str, body: str) -> bool:
+    has_name = bool(name) and element.name == name
+    has_body = element.attrs.get("body") == (body or name)
+    return element.kind is Kind.CONSTRAINT and (has_name or has_body)
+
+
+def _add_constraint(
+    context: Context, element: Element, row: int, id: str, name: str, body: str
+) -> None:
+    constraint = Element(
+        id, Kind.CONSTRAINT, name if body else "", element.id, *_source(context, row)
+    )
+    # Users of Enterprise Architect write formulas in the field that other tools use for the name.
+    constraint.attrs["body"] = body or name
+    type_name = context.document.attributes[row].get("type", "")
+    if type_name.lower() in _CONSTRAINT_SUBKINDS:
+        constraint.attrs["subkind"] = _CONSTRAINT_SUBKINDS[type_name.lower()]
+    elif type_name.upper() == "OCL":
+        constraint.attrs["language"] = "OCL"
+    elif type_name:
+        constraint.attrs["tag.type"] = type_name
+    context.graph.add(constraint)
+
+
+# -- tagged values and stereotypes -----------------------------------------------------------------
+
+
+def _read_tags(context: Context, element: Element, row: int) -> None:
+    """Store the tagged values that no application of a stereotype has."""
     for tag in context.document.children(row):
         values = context.document.attributes[tag]
         name, value = values.get("name", ""), values.get("value", "")
         if name and value:
             context.verdicts[tag] = Verdict.MAPPED
-            if not any(_has_tag(one, name) for one in _applications(context, element)):
+            applications = _list_applications(context, element)
+            if not any(_has_tag(application, name) for application in applications):
                 key = f"tag.{name.rpartition('::')[2]}"
-                element.attrs[key] = id_of(context, value) or value
+                element.attrs[key] = find_id_by_guid(context, value) or value
 
 
 def _has_tag(application: Element, name: str) -> bool:
-    short = mangled(name.rpartition("::")[2])
-    return any(f"tag.{tag}" in application.attrs for tag in (name, mangled(name), short))
+    short = mangle_name(name.rpartition("::")[2])
+    return any(f"tag.{tag}" in application.attrs for tag in (name, mangle_name(name), short))
 
 
-def _references(context: Context, element: Element, row: int) -> None:
+def _read_stereotypes(context: Context, element: Element, row: int) -> None:
+    """Apply the stereotypes that ``xrefs`` lists: ``$DES=@STEREO;Name=..;FQName=..;@ENDSTEREO``."""
     text = context.document.attributes[row].get("value", "")
-    for written in _STEREOTYPE.findall(text):
+    for entry in _STEREOTYPE.findall(text):
         context.verdicts[row] = Verdict.MAPPED
-        facts = dict(fact.partition("=")[::2] for fact in written.split(";"))
-        _apply(context, element, row, facts.get("FQName") or facts.get("Name", ""))
+        fields = dict(field.partition("=")[::2] for field in entry.split(";"))
+        _apply(context, element, row, fields.get("FQName") or fields.get("Name", ""))
 
 
-def _apply(context: Context, element: Element, row: int, whole: str) -> None:
-    name, namespace = qualified(context, whole)
-    known = {mangled(one.name) for one in _applications(context, element)}
-    if not name or mangled(name) in known:
+def _apply(context: Context, element: Element, row: int, qualified_name: str) -> None:
+    name, namespace = split_stereotype_name(context, qualified_name)
+    applied = {mangle_name(app.name) for app in _list_applications(context, element)}
+    if not name or mangle_name(name) in applied:
         return
-    id = derived_id(element.id, f"{mangled(name)}[{context.document.ordinals[row]}]")
-    made = Element(id, Kind.APPLICATION, name, element.id, *_place(context, row))
-    made.attrs["stereotype"], made.attrs["namespace"] = name, namespace
-    context.graph.add(made)
-    context.graph.connect(Edge.SUBJECT, made, element)
-    defined = context.unit.profiles.find(context.graph, namespace, name)
-    if defined is not None:
-        context.graph.connect(Edge.INSTANCE_OF, made, defined)
+    id = derived_id(element.id, f"{mangle_name(name)}[{context.document.ordinals[row]}]")
+    application = Element(id, Kind.APPLICATION, name, element.id, *_source(context, row))
+    application.attrs["stereotype"], application.attrs["namespace"] = name, namespace
+    context.graph.add(application)
+    context.graph.connect(Edge.SUBJECT, application, element)
+    stereotype = context.unit.profiles.find_stereotype(context.graph, namespace, name)
+    if stereotype is not None:
+        context.graph.connect(Edge.INSTANCE_OF, application, stereotype)
 
 
-def _applications(context: Context, element: Element) -> list[Element]:
-    return [one for one in context.graph.owned(element) if one.kind is Kind.APPLICATION]
+def _list_applications(context: Context, element: Element) -> list[Element]:
+    return [owned for owned in context.graph.owned(element) if owned.kind is Kind.APPLICATION]
 
 
-def _place(context: Context, row: int) -> tuple[int, str]:
+def _source(context: Context, row: int) -> tuple[int, str]:
+    """Ordinal and file of the row."""
     return context.document.ordinals[row], context.document.name
 
 
-_DETAILS: dict[str, Callable[[Context, Element, int], None]] = {
-    "constraints": constraints,
-    "properties": _note,
-    "documentation": _note,
-    "tags": _tags,
-    "xrefs": _references,
+_DETAILS: dict[str, ElementHandler] = {
+    "constraints": _read_constraints,
+    "properties": _read_note,
+    "documentation": _read_note,
+    "tags": _read_tags,
+    "xrefs": _read_stereotypes,
 }
-"""Readers of what stands in an element, attribute, operation, parameter, connector or end."""
+"""Handlers of the content of a description, by feature."""

@@ -1,14 +1,14 @@
-"""Enterprise Architect's profiles: names of stereotypes, and what the extension holds of them.
+"""Stereotype names and profiles as Enterprise Architect writes them.
 
-No SysML model that Enterprise Architect exported was there to test with: what is said of its SysML
-here follows the pattern of its other profiles.
+No SysML model exported by Enterprise Architect was available for tests: its SysML is assumed to
+follow the pattern of its other profiles.
 """
 
 import re
 from functools import cache
 
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.unit import Link
+from sysmlc.frontends.xmi.unit import UnresolvedReference
 from sysmlc.ir import Edge
 
 _PRIMITIVE = re.compile(r"EA[A-Za-z#+]*_\w+$")
@@ -17,72 +17,78 @@ _GUID = re.compile(r"\{[0-9A-Fa-f]{8}(-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12}\}")
 _SYSML = re.compile(r"https?://www\.sparxsystems\.com/profiles/SysML")
 
 
-def stereotype_of(context: Context, row: int) -> tuple[str, str]:
-    """Name and namespace of the stereotype that the row applies, whoever wrote the file.
+def read_stereotype_name(context: Context, row: int) -> tuple[str, str]:
+    """Return name and namespace of the stereotype that the row applies, whatever tool wrote it.
 
-    Enterprise Architect mangles names (``EAUML__X``) and keeps the whole one in an attribute;
-    a name with a prefix is of the profile with that prefix. Its SysML begins in lower case.
+    Enterprise Architect mangles the name in the tag (``EAUML__X``) and writes the qualified name in
+    an attribute.
     """
     document = context.document
     name, namespace = document.features[row], document.namespace(row)
-    whole = document.attributes[row].get("__EAStereoName")
-    if whole:
-        return qualified(context, whole, namespace)
-    return _spelt(name, namespace), namespace
+    qualified_name = document.attributes[row].get("__EAStereoName")
+    if qualified_name:
+        return split_stereotype_name(context, qualified_name, namespace)
+    return _capitalise_sysml(name, namespace), namespace
 
 
-def qualified(context: Context, whole: str, namespace: str = "") -> tuple[str, str]:
-    """Name and namespace of a stereotype from ``Prefix::Name``; ``namespace`` if no prefix."""
-    prefix, _, name = whole.rpartition("::")
-    space = _namespace(context, prefix) if prefix else namespace
-    return _spelt(name, space), space
+def split_stereotype_name(
+    context: Context, qualified_name: str, default_namespace: str = ""
+) -> tuple[str, str]:
+    """Return name and namespace of the stereotype ``Prefix::Name``.
+
+    A name without prefix is in *default_namespace*.
+    """
+    prefix, _, name = qualified_name.rpartition("::")
+    namespace = _find_namespace(context, prefix) if prefix else default_namespace
+    return _capitalise_sysml(name, namespace), namespace
 
 
-def _namespace(context: Context, prefix: str) -> str:
-    """Namespace of a profile by its prefix: one that the file has, else as the tool makes them."""
+def _find_namespace(context: Context, prefix: str) -> str:
+    """Return the namespace that the file declares for a profile, else the tool's pattern for it."""
     start = f"http://www.sparxsystems.com/profiles/{prefix}/"
-    return next((uri for uri in context.document.declared if uri.startswith(start)), start)
+    declared = context.document.declared_namespaces
+    return next((uri for uri in declared if uri.startswith(start)), start)
 
 
 @cache
-def _spelt(name: str, namespace: str) -> str:
+def _capitalise_sysml(name: str, namespace: str) -> str:
+    # Enterprise Architect's SysML profile writes ``block``, but ``functionalRequirement``.
     is_lower = _SYSML.match(namespace) and not name.endswith("Requirement")
     return name[:1].upper() + name[1:] if is_lower else name
 
 
-def id_of(context: Context, guid: str) -> str:
-    """Id of the element that a tagged value names by its GUID (``{A059C88E-...}``), or empty."""
+def find_id_by_guid(context: Context, guid: str) -> str:
+    """Return the id of the element with a GUID (``{A059C88E-...}``), or the empty string."""
     if not _GUID.fullmatch(guid):
         return ""
     number = guid[1:-1].replace("-", "_")
-    written = (f"{prefix}_{number}" for prefix in ("EAID", "EAPK"))
-    return next((id for id in written if id in context.document.ids), "")
+    candidates = (f"{prefix}_{number}" for prefix in ("EAID", "EAPK"))
+    return next((id for id in candidates if id in context.document.ids), "")
 
 
-def localise(context: Context) -> None:
-    """Tie references to profiles and primitive types to what the extension holds of them."""
-    if not context.extensions:
-        return
-    context.unit.links[:] = [
-        _localised(context, link) if link.lowered is context.lowered else link
-        for link in context.unit.links
-    ]
+def localise_references(context: Context) -> None:
+    """Redirect references to profiles and primitive types to the copies in the extension."""
+    if context.extensions:
+        context.unit.references[:] = [
+            _localise(context, reference) if reference.file is context.file else reference
+            for reference in context.unit.references
+        ]
 
 
-def _localised(context: Context, link: Link) -> Link:
+def _localise(context: Context, reference: UnresolvedReference) -> UnresolvedReference:
     document = context.document
-    namespace, _, fragment = link.target.partition("#")
-    if link.edge is Edge.APPLIES and link.is_href and fragment in document.ids:
-        context.unit.profiles.add(namespace, context.gids[document.ids[fragment]])
-        return link._replace(target=fragment, is_href=False)
-    at = document.ids.get(link.target, -1)
-    if not link.is_href and at >= 0 and _is_primitive(context, at):
-        name = document.attributes[at].get("name", "")
-        return link._replace(target=f"{_PRIMITIVE_TYPES}{name}", is_href=True)
-    return link
+    namespace, _, fragment = reference.target.partition("#")
+    if reference.edge is Edge.APPLIES and reference.is_href and fragment in document.ids:
+        context.unit.profiles.add(namespace, context.element_ids[document.ids[fragment]])
+        return reference._replace(target=fragment, is_href=False)
+    row = document.ids.get(reference.target, -1)
+    if not reference.is_href and row >= 0 and _is_primitive(context, row):
+        name = document.attributes[row].get("name", "")
+        return reference._replace(target=f"{_PRIMITIVE_TYPES}{name}", is_href=True)
+    return reference
 
 
 def _is_primitive(context: Context, row: int) -> bool:
     document = context.document
-    id = document.id(row)
-    return _PRIMITIVE.match(id) is not None and document.types[row] == "PrimitiveType"
+    is_named_so = _PRIMITIVE.match(document.id(row)) is not None
+    return is_named_so and document.types[row] == "PrimitiveType"

@@ -1,13 +1,14 @@
-"""Snapshots of used projects inside a MagicDraw archive: parts of libraries, by id.
+"""Elements of the snapshots of used projects in a MagicDraw archive: parts of libraries, by id.
 
-The fourth dialect: XMI 2.0 with ``xsi:type``, an ``ID`` for each element, and applications of
-stereotypes inside the elements they are applied to.
+Snapshots are a dialect of their own: XMI 2.0 with ``xsi:type``, an ``ID`` for each element, and
+applications of stereotypes inside the elements to which they are applied.
 """
 
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
+from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
 from sysmlc.sources.xml import parse, parser, too_deep
 
@@ -17,11 +18,17 @@ _ENTRY = re.compile(r"[!/][^!/]*snapshot$")
 _TYPE = "http://www.w3.org/2001/XMLSchema-instance}type"
 
 
+def is_snapshot(source: Source) -> bool:
+    """Whether the source is a snapshot: its name and its namespace occur nowhere else."""
+    is_entry = _ENTRY.search(source.name) is not None
+    return is_entry and _NAMESPACE.search(source.data, 0, _HEAD) is not None
+
+
 class Entry:
     """One element of a snapshot.
 
-    ``references`` are ids by feature; ``values`` the attributes as written. ``size`` counts
-    the elements inside it: a library's own snapshot has more of it than those of others.
+    ``references`` are ids by feature, ``values`` the attributes as written. ``size`` is the number
+    of elements inside.
     """
 
     __slots__ = ("feature", "id", "ordinal", "owner", "references", "size", "source", "values")
@@ -36,154 +43,148 @@ class Entry:
         self.owner = owner
         self.values = values
         self.size = 0
-        self.references = _NO_REFERENCES
+        self.references: dict[str, list[str]] = {}
 
     @property
     def name(self) -> str:
-        """Its name, or the empty string."""
+        """The name, or the empty string."""
         return self.values.get("name", "")
 
     @property
-    def type(self) -> str:
-        """Its metaclass as written (a root's is its tag), or the empty string."""
+    def written_type(self) -> str:
+        """The metaclass as written (a root's is its tag), or the empty string."""
         written = self.values.get(_TYPE)
         if written is None:
             return "" if self.feature[0].islower() else self.feature
         return written.rpartition(":")[2]
 
     @property
-    def written(self) -> str:
-        """Its type as coverage calls it."""
-        return self.feature if self.type in ("", self.feature) else f"uml:{self.type}"
+    def metaclass(self) -> str:
+        """The metaclass as written, else the declared type of the feature."""
+        return self.written_type or DEFAULT_TYPES.get(self.feature, "")
+
+    @property
+    def coverage_type(self) -> str:
+        """The type as coverage reports it."""
+        written = self.written_type
+        return self.feature if written in ("", self.feature) else f"uml:{written}"
+
+    @property
+    def position(self) -> tuple[str, int]:
+        """File and ordinal of the element."""
+        return self.source, self.ordinal
 
     def targets(self, feature: str) -> list[str]:
-        """Ids that the feature refers to, as attribute or as children."""
+        """Return the ids that the feature refers to, as attribute or as children."""
         return self.references.get(feature) or self.values.get(feature, "").split()
 
-    def refer(self, feature: str, href: str) -> None:
-        """Note what a child without ID refers to; the owner of a root is written so too."""
+    def add_reference(self, feature: str, href: str) -> None:
+        """Add the target of a child without ID; a root refers to its owner in this way."""
         target = href.rpartition("#")[2]
         if feature == "owningPackage":
             self.owner = self.owner or target
         elif feature != "packagedElement":
-            if self.references is _NO_REFERENCES:
-                self.references = {}
             self.references.setdefault(feature, []).append(target)
-
-
-_NO_REFERENCES: dict[str, list[str]] = {}
-"""Shared by the many elements that refer to nothing; never changed."""
-
-
-def is_snapshot(source: Source) -> bool:
-    """Whether the source is a snapshot: told by the namespace that only they have."""
-    is_entry = _ENTRY.search(source.name) is not None
-    return is_entry and _NAMESPACE.search(source.data, 0, _HEAD) is not None
 
 
 class Snapshots:
     """The elements of all snapshots of a unit, each once.
 
-    Snapshots overlap: each holds what one used project needs of the others. Of several copies
-    the one with most inside counts, with the references that only the others have. What
-    cannot be read is left out and added to ``problems``; what exceeds the limits raises
-    SourceError.
+    Snapshots overlap: each holds what one used project needs of the others. Of several copies the
+    one with the largest content counts, with the references that only the others have. A damaged
+    snapshot is skipped and added to *problems*; one that exceeds the limits raises SourceError.
     """
 
     def __init__(self, sources: Iterable[Source], problems: list[SourceError]) -> None:
         self.entries: dict[str, Entry] = {}
         self.counts: dict[str, Counter[str]] = {}
-        self.attributes: dict[str, frozenset[str]] = {}
-        """Names of attributes in each snapshot, and some more."""
+        """Number of elements of each type, by snapshot."""
+        self.attribute_names: dict[str, frozenset[str]] = {}
+        """Names of the attributes in each snapshot, and some that are no attributes."""
         self._owned: dict[str, list[Entry]] = {}
-        for source in sorted(sources, key=lambda one: one.name):
+        for source in sorted(sources, key=lambda source: source.name):
             self._read(source, problems)
-        for entry in sorted(self.entries.values(), key=place):
+        for entry in sorted(self.entries.values(), key=lambda entry: entry.position):
             if entry.owner:
                 self._owned.setdefault(entry.owner, []).append(entry)
 
     def owned(self, id: str) -> list[Entry]:
-        """What the element owns, in document order."""
+        """Return the elements that the element owns, in document order."""
         return self._owned.get(id, [])
 
-    def path(self, entry: Entry) -> Iterator[Entry]:
-        """The element and its owners, nearest first."""
-        seen: set[str] = set()
-        at: Entry | None = entry
-        while at is not None and at.id not in seen:
-            seen.add(at.id)
-            yield at
-            at = self.entries.get(at.owner)
+    def iter_owners(self, entry: Entry) -> Iterator[Entry]:
+        """Yield the element and its owners, nearest first."""
+        visited: set[str] = set()
+        ancestor: Entry | None = entry
+        while ancestor is not None and ancestor.id not in visited:
+            visited.add(ancestor.id)
+            yield ancestor
+            ancestor = self.entries.get(ancestor.owner)
 
     def _read(self, source: Source, problems: list[SourceError]) -> None:
         try:
-            found, self.counts[source.name], self.attributes[source.name] = _entries(source)
+            entries, counts, names = _read_entries(source)
         except SourceError as problem:
             if problem.fault is Fault.LIMIT:
                 raise
             problems.append(problem)
             return
-        for entry in found:
+        self.counts[source.name], self.attribute_names[source.name] = counts, names
+        for entry in entries:
             self._add(entry)
 
     def _add(self, entry: Entry) -> None:
-        known = self.entries.get(entry.id)
-        if known is None:
+        copy = self.entries.get(entry.id)
+        if copy is None:
             self.entries[entry.id] = entry
             return
-        best, other = (entry, known) if entry.size > known.size else (known, entry)
+        best, other = (entry, copy) if entry.size > copy.size else (copy, entry)
         best.references = other.references | best.references
         best.values = other.values | best.values
         best.owner = best.owner or other.owner
         self.entries[entry.id] = best
 
 
-def place(entry: Entry) -> tuple[str, int]:
-    """Where the element stands, for ordering."""
-    return entry.source, entry.ordinal
+def _read_entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[str]]:
+    """Return the elements with an ID, the number of elements by type, and names of attributes.
 
-
-def _entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[str]]:
-    """The elements with an ID, owned before owner; the number of all by type; and names.
-
-    The names are those of attributes, as far as no tag has them, as the parser keeps them.
-
-    Raises SourceError.
+    Owned elements come before their owners. The names are all that the parser has met and that are
+    no tags. Raises SourceError.
     """
-    made = parser()
+    xml_parser = parser()
     name, limit = source.name, DEFAULT_LIMITS.depth
-    found: list[Entry] = []
+    entries: list[Entry] = []
     features: list[str] = []
     types: list[str | None] = []
-    local: dict[str, str] = {}
+    local_names: dict[str, str] = {}
     stack: list[Entry | None] = [None]
 
     def start(tag: str, values: dict[str, str]) -> None:
-        above = stack[-1]
-        feature = local.get(tag) or local.setdefault(tag, tag.rpartition("}")[2])
+        parent = stack[-1]
+        feature = local_names.setdefault(tag, tag.rpartition("}")[2])
         id = values.get("ID")
         if id:
-            owner = above.id if above is not None else ""
+            owner = parent.id if parent is not None else ""
             stack.append(Entry(id, feature, len(features), name, owner, values))
         else:
-            if above is not None and "href" in values:
-                above.refer(feature, values["href"])
-            stack.append(above)
+            if parent is not None and "href" in values:
+                parent.add_reference(feature, values["href"])
+            stack.append(parent)
         features.append(feature)
         types.append(values.get(_TYPE))
         if len(stack) > limit:
-            too_deep(source, made)
+            too_deep(source, xml_parser)
 
     def end(_tag: str) -> None:
         entry = stack.pop()
-        above = stack[-1]
-        if entry is not None and entry is not above:
-            if above is not None:
-                above.size += entry.size + 1
-            found.append(entry)
+        parent = stack[-1]
+        if entry is not None and entry is not parent:
+            if parent is not None:
+                parent.size += entry.size + 1
+            entries.append(entry)
 
-    made.StartElementHandler = start
-    made.EndElementHandler = end
-    parse(source, made)
-    counts = Counter(t or f for t, f in zip(types, features, strict=True))
-    return found, counts, frozenset(made.intern.keys() - local.keys())
+    xml_parser.StartElementHandler = start
+    xml_parser.EndElementHandler = end
+    parse(source, xml_parser)
+    counts = Counter(type or feature for type, feature in zip(types, features, strict=True))
+    return entries, counts, frozenset(xml_parser.intern.keys() - local_names.keys())

@@ -1,4 +1,4 @@
-"""What the models of a unit take from the snapshots beside them."""
+"""Adds the parts of used projects that the models of a unit refer to, from their snapshots."""
 
 import re
 from collections import Counter
@@ -6,123 +6,211 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
 from sysmlc.diagnostics.coverage import Loss
-from sysmlc.frontends.xmi import hrefs
+from sysmlc.frontends.xmi import hrefs, rules
 from sysmlc.frontends.xmi.context import Context
-from sysmlc.frontends.xmi.profiles import last_segment, mangled
-from sysmlc.frontends.xmi.snapshot_rules import BROKEN_SNAPSHOT
-from sysmlc.frontends.xmi.snapshots.closure import needed
-from sysmlc.frontends.xmi.snapshots.entries import Snapshots
-from sysmlc.frontends.xmi.snapshots.library_elements import LibraryElements
-from sysmlc.frontends.xmi.snapshots.unknown_attributes import by_file
+from sysmlc.frontends.xmi.namespaces import mangle_name, profile_in_namespace
+from sysmlc.frontends.xmi.snapshots.closure import compute_closure
+from sysmlc.frontends.xmi.snapshots.entries import Snapshots, is_snapshot
+from sysmlc.frontends.xmi.snapshots.library_elements import LibraryLowering
+from sysmlc.frontends.xmi.snapshots.unknown_attributes import report_unknown_attributes
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.sources import Source, SourceError
 
 _HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
-
 _PROJECT = re.compile(r"(PROJECT\$h.+?)_resource_")
 
+_PART_START = re.compile(rb"<filePart\s+name=(?:'([^'<]*)'|\"([^\"<]*)\")[^<>]*(?<!/)>")
+_PART_END = b"</filePart>"
+_UTF8 = re.compile(
+    rb"\s*(\xef\xbb\xbf)?\s*<(?!\?xml[^>]*encoding\s*=\s*[\"'](?!utf-8|us-ascii))", re.I
+)
 
-def read(sources: Sequence[Source], sink: Sink) -> Snapshots:
-    """The snapshots; one that is damaged is reported and left out. Raises SourceError."""
+_UNREAD = "read without attributes that UML does not know"
+_UNUSED = "belongs to a used project, and no model needs it"
+
+
+def add_libraries(
+    unit: Unit,
+    contexts: Sequence[Context],
+    models: Sequence[Source],
+    snapshots: Sequence[Source],
+    sink: Sink,
+    coverage: Coverage,
+) -> None:
+    """Add the library elements that the models need from snapshots, and count the snapshots.
+
+    Snapshots are files beside the models (entries of an archive), or parts of a model file.
+    """
+    models, parts = split_file_parts(models)
+    sources = [*snapshots, *parts]
+    if sources:
+        library = _read_snapshots(sources, sink)
+        _add_needed(unit, contexts, models, library)
+        approximated = report_unknown_attributes(library, sources, unit, sink)
+        _report_coverage(library, snapshots, unit, coverage, approximated)
+
+
+# -- snapshots inside a model file -----------------------------------------------------------------
+
+
+def split_file_parts(models: Sequence[Source]) -> tuple[list[Source], list[Source]]:
+    """Return the models without their file parts, and the parts that are snapshots.
+
+    A project saved as one XML file has the entries of an archive as ``filePart`` of its extension:
+    whole documents without their declarations. A part is named like such an entry. A file that is
+    not in UTF-8 keeps its parts: MagicDraw writes UTF-8 only.
+    """
+    models_without_parts: list[Source] = []
+    snapshots: list[Source] = []
+    for model in models:
+        parts = list(_iter_parts(model)) if b"<filePart" in model.data else []
+        snapshots.extend(part for _, _, part in parts if is_snapshot(part))
+        models_without_parts.append(_cut(model, [(start, end) for start, end, _ in parts]))
+    return models_without_parts, snapshots
+
+
+def _iter_parts(model: Source) -> Iterator[tuple[int, int, Source]]:
+    """Yield start and end of the content of each part, and the part as a source."""
+    data = model.data
+    start = _PART_START.search(data) if _UTF8.match(data) else None
+    while start is not None:
+        end = data.find(_PART_END, start.end())
+        if end < 0:
+            return
+        name = (start[1] or start[2] or b"").decode("utf-8", "replace")
+        yield start.end(), end, Source(f"{model.name}!{name}", data[start.end() : end])
+        start = _PART_START.search(data, end)
+
+
+def _cut(model: Source, ranges: list[tuple[int, int]]) -> Source:
+    """Return the model without these ranges of bytes."""
+    if not ranges:
+        return model
+    starts = [0, *(end for _, end in ranges)]
+    ends = [*(start for start, _ in ranges), len(model.data)]
+    pieces = (model.data[start:end] for start, end in zip(starts, ends, strict=True))
+    return Source(model.name, b"".join(pieces))
+
+
+# -- elements that the models need -----------------------------------------------------------------
+
+
+def _read_snapshots(sources: Sequence[Source], sink: Sink) -> Snapshots:
     problems: list[SourceError] = []
     snapshots = Snapshots(sources, problems)
     for problem in problems:
         subject = Subject(problem.file, place=Place(problem.file, offset=problem.offset))
-        sink.report(BROKEN_SNAPSHOT, subject, file=problem.file, problem=problem.message)
+        sink.report(rules.BROKEN_SNAPSHOT, subject, file=problem.file, problem=problem.message)
     return snapshots
 
 
-def add(
+def _add_needed(
     unit: Unit, contexts: Sequence[Context], models: Sequence[Source], snapshots: Snapshots
 ) -> None:
-    """Add what the models refer to in the snapshots to the graph, and tell the unit its ids."""
-    found = [href for model in models for href in _hrefs(model)]
-    files = _files(found, snapshots)
-    wanted = {id: None for path, id in found if _is_there(snapshots, files, path, id)}
-    wanted.update(dict.fromkeys(_stereotypes(contexts, snapshots)))
-    made = LibraryElements(snapshots, unit.graph, files, unit.has)
-    made.add(needed(snapshots, (id for id in wanted if not unit.has(id))))
-    for id, known in made.ids.items():
-        unit.library[id] = known, files[snapshots.entries[id].source]
+    references = [reference for model in models for reference in _iter_hrefs(model)]
+    files = _name_libraries(references, snapshots)
+    wanted: dict[str, None] = {}
+    for path, id in references:
+        entry = snapshots.entries.get(id)
+        if entry is not None and hrefs.can_lead_into(files[entry.source], path, id):
+            wanted[id] = None
+    wanted.update(dict.fromkeys(_find_applied_stereotypes(contexts, snapshots)))
+    lowering = LibraryLowering(snapshots, unit.graph, files, unit.has_id)
+    ids = (id for id in wanted if not unit.has_id(id))
+    lowering.add_entries(compute_closure(snapshots, ids))
+    for id, graph_id in lowering.ids.items():
+        unit.library_ids[id] = graph_id, files[snapshots.entries[id].source]
 
 
-def _is_there(snapshots: Snapshots, files: Mapping[str, str], path: str, id: str) -> bool:
-    entry = snapshots.entries.get(id)
-    return entry is not None and hrefs.can_lead_into(files[entry.source], path, id)
-
-
-def _hrefs(model: Source) -> Iterator[tuple[str, str]]:
-    for one in _HREF.findall(model.data):
-        path, id = one[:2] if one[1] else one[2:]
+def _iter_hrefs(model: Source) -> Iterator[tuple[str, str]]:
+    """Yield path and id of all hrefs, searched in the bytes."""
+    for match in _HREF.findall(model.data):
+        path, id = match[:2] if match[1] else match[2:]
         yield path.decode("utf-8", "replace"), id.decode("utf-8", "replace")
 
 
-def _stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[str]:
-    """Ids of the custom stereotypes that the models apply.
+def _find_applied_stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[str]:
+    """Yield the ids of the custom stereotypes that the models apply.
 
-    Applications do not refer to them: the profile is named in a namespace that MagicDraw makes.
+    Applications do not refer to them; they are in a namespace that MagicDraw derives from the name
+    of the profile.
     """
     applied = {
-        (mangled(c.document.features[row]), last_segment(c.document.namespace(row)))
-        for c in contexts
-        for row in c.applications
-        if c.document.namespace(row).endswith(".xmi")
+        (mangle_name(document.features[row]), profile_in_namespace(document.namespace(row)))
+        for context in contexts
+        for document in (context.document,)
+        for row in context.applications
+        if document.namespace(row).endswith(".xmi")
     }
     for entry in snapshots.entries.values():
-        if entry.type == "Stereotype":
-            name = mangled(entry.name)
-            if any((name, mangled(one.name)) in applied for one in snapshots.path(entry)):
+        if entry.written_type == "Stereotype":
+            name = mangle_name(entry.name)
+            owners = snapshots.iter_owners(entry)
+            if any((name, mangle_name(owner.name)) in applied for owner in owners):
                 yield entry.id
 
 
-def _files(found: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
-    """Names of the libraries by snapshot."""
+def _name_libraries(references: Iterable[tuple[str, str]], snapshots: Snapshots) -> dict[str, str]:
+    """Return the name of each library by its snapshot.
+
+    The name is the path that most hrefs write, else the project in the name of the entry.
+    """
     written: dict[str, Counter[str]] = {}
-    for path, id in found:
+    for path, id in references:
         entry = snapshots.entries.get(id)
         if entry is not None and path and "?" not in path and "://" not in path:
             written.setdefault(entry.source, Counter())[path] += 1
-    return {source: _name(source, written.get(source, Counter())) for source in snapshots.counts}
+    return {
+        source: _name_library(source, written.get(source, Counter())) for source in snapshots.counts
+    }
 
 
-def _name(source: str, paths: Counter[str]) -> str:
-    """The path that most hrefs write, else the project as the entry's name has it."""
+def _name_library(source: str, paths: Counter[str]) -> str:
     if paths:
         return max(paths, key=lambda path: (paths[path], path))
     project = _PROJECT.search(source)
     return project[1].replace("$h", "-") if project else source
 
 
-def account(
+# -- coverage --------------------------------------------------------------------------------------
+
+
+def _report_coverage(
     snapshots: Snapshots,
     files: Iterable[Source],
     unit: Unit,
     coverage: Coverage,
-    approximated: Iterable[str] = (),
+    approximated: Iterable[str],
 ) -> None:
-    """Count every element of the snapshots once: what no model needs stays outside.
+    """Count every element of the snapshots once; elements that no model needs are external.
 
-    ``files`` are the snapshots that are files; parts of a model are counted there;
-    ``approximated`` are ids of what is read without some of its attributes.
+    *files* are the snapshots that are files: parts of a model are counted with the model.
+    *approximated* are ids of elements that are read without some of their attributes.
     """
-    used, odd = by_file(snapshots, unit.library), by_file(snapshots, approximated)
+    used = _count_by_file(snapshots, unit.library_ids)
+    incomplete = _count_by_file(snapshots, approximated)
     for name in (file.name for file in files if file.name in snapshots.counts):
         for type_name, number in snapshots.counts[name].items():
             read = min(used[name][type_name], number)
-            unread = min(odd[name][type_name], read)
+            unread = min(incomplete[name][type_name], read)
             _count(coverage, name, type_name, Verdict.MAPPED, read - unread)
             _count(coverage, name, type_name, Verdict.APPROXIMATED, unread, _UNREAD)
             _count(coverage, name, type_name, Verdict.EXTERNAL, number - read, _UNUSED)
 
 
+def _count_by_file(snapshots: Snapshots, ids: Iterable[str]) -> Mapping[str, Counter[str]]:
+    """Return the number of elements of each type by snapshot."""
+    counts = {name: Counter[str]() for name in snapshots.counts}
+    for id in ids:
+        entry = snapshots.entries[id]
+        counts[entry.source][entry.coverage_type] += 1
+    return counts
+
+
 def _count(
-    coverage: Coverage, name: str, type_name: str, verdict: Verdict, number: int, why: str = ""
+    coverage: Coverage, name: str, type_name: str, verdict: Verdict, number: int, reason: str = ""
 ) -> None:
     if number:
         coverage.file(name).count(type_name, verdict, number)
-        if why and coverage.is_detailed:
-            coverage.file(name).losses.append(Loss(type_name, verdict, 0, number, reason=why))
-
-
-_UNREAD = "read without attributes that UML does not know"
-_UNUSED = "belongs to a used project, and no model needs it"
+        if reason and coverage.is_detailed:
+            coverage.file(name).losses.append(Loss(type_name, verdict, 0, number, reason=reason))

@@ -1,11 +1,11 @@
-"""From the needed entries of snapshots to elements of the graph, marked as library content."""
+"""Lowers entries of snapshots to elements of the graph that are marked as library content."""
 
 from collections.abc import Callable, Iterable, Mapping
 
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.metaclasses import OWNERS, kind_of
-from sysmlc.frontends.xmi.profiles import mangled
-from sysmlc.frontends.xmi.snapshots.closure import APPLICATION, canonical, type_of
+from sysmlc.frontends.xmi.namespaces import mangle_name
+from sysmlc.frontends.xmi.snapshots.closure import APPLICATION, canonical_href
 from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.identity import derived_id
@@ -14,12 +14,12 @@ _BASE = "base_"
 _PATH = "partWithPort"
 
 
-class LibraryElements:
+class LibraryLowering:
     """Adds entries to a graph.
 
-    ``files`` are the libraries' names as the model writes them, by snapshot; ``taken`` are ids
-    of the models, which hide those of the snapshots. ``ids`` are the graph's ids, or the
-    canonical hrefs, of what was added, by id.
+    *files* are the libraries' names as the model writes them, by snapshot. Elements for which
+    *is_in_model* is true hide those of the snapshots. ``ids`` are the graph's ids, or the canonical
+    hrefs, of the added entries, by id.
     """
 
     def __init__(
@@ -27,44 +27,44 @@ class LibraryElements:
         snapshots: Snapshots,
         graph: Graph,
         files: Mapping[str, str],
-        taken: Callable[[str], bool],
+        is_in_model: Callable[[str], bool],
     ) -> None:
         self._snapshots = snapshots
         self._graph = graph
         self._files = files
-        self._is_taken = taken
+        self._is_in_model = is_in_model
         self.ids: dict[str, str] = {}
 
-    def add(self, entries: Iterable[Entry]) -> None:
+    def add_entries(self, entries: Iterable[Entry]) -> None:
         """Add the entries, with the owners above them and the edges between them."""
-        found = [entry for entry in entries if not self._is_taken(entry.id)]
-        for entry in found:
-            self.ids[entry.id] = canonical(self._snapshots, entry) or entry.id
-        for entry in found:
-            self._add(entry)
-        for entry in found:
+        added = [entry for entry in entries if not self._is_in_model(entry.id)]
+        for entry in added:
+            self.ids[entry.id] = canonical_href(self._snapshots, entry) or entry.id
+        for entry in added:
+            self._add_with_owners(entry)
+        for entry in added:
             self._connect(entry)
 
-    # -- elements ------------------------------------------------------------------------------
+    # -- elements ----------------------------------------------------------------------------------
 
-    def _add(self, entry: Entry) -> None:
+    def _add_with_owners(self, entry: Entry) -> None:
         if entry.owner in self._graph:
-            self._element(entry)
+            self._add_element(entry)
             return
-        path = self._snapshots.path(entry)
-        for one in reversed([one for one in path if one.id in self.ids]):
-            self._element(one)
+        owners = [owner for owner in self._snapshots.iter_owners(entry) if owner.id in self.ids]
+        for owner in reversed(owners):
+            self._add_element(owner)
 
-    def _element(self, entry: Entry) -> None:
+    def _add_element(self, entry: Entry) -> None:
         if self.ids[entry.id] != entry.id or entry.id in self._graph:
             return
-        owner = self._owner(entry)
-        kind, subkind = _kind(entry)
-        if kind is None or _is_root_model(entry) or _is_base(entry, owner):
+        owner = self._find_owner(entry)
+        kind, subkind = _map_kind(entry)
+        if kind is None or _is_root_model(entry) or _is_metaclass_property(entry, owner):
             return
         if kind in OWNERS and (owner is None or owner.kind not in OWNERS[kind]):
             return
-        made = Element(
+        element = Element(
             entry.id,
             kind,
             entry.name,
@@ -72,145 +72,155 @@ class LibraryElements:
             entry.ordinal,
             entry.source,
         )
-        made.attrs.update(self._attributes(entry, subkind))
-        self._graph.add(made)
+        element.attrs.update(self._read_attributes(entry, subkind))
+        self._graph.add(element)
 
-    def _owner(self, entry: Entry) -> Element | None:
-        above = self._snapshots.entries.get(entry.owner)
-        if above is None or self._is_taken(above.id):
+    def _find_owner(self, entry: Entry) -> Element | None:
+        owner = self._snapshots.entries.get(entry.owner)
+        if owner is None or self._is_in_model(owner.id):
             return None
-        return self._graph.get(above.id)
+        return self._graph.get(owner.id)
 
-    def _attributes(self, entry: Entry, subkind: str) -> dict[str, AttrValue]:
-        attrs: dict[str, AttrValue] = {"external": True, "library": True}
-        attrs["href"] = f"{self._files.get(entry.source, '')}#{entry.id}"
+    def _read_attributes(self, entry: Entry, subkind: str) -> dict[str, AttrValue]:
+        attributes: dict[str, AttrValue] = {"external": True, "library": True}
+        attributes["href"] = f"{self._files.get(entry.source, '')}#{entry.id}"
         if subkind:
-            attrs["subkind"] = subkind
+            attributes["subkind"] = subkind
         for name, value in entry.values.items():
             if name in v.FLAGS and value == "true":
-                attrs[v.FLAGS[name]] = True
+                attributes[v.FLAGS[name]] = True
             elif name in v.TEXTS and value != v.TEXTS[name][1]:
-                attrs[v.TEXTS[name][0]] = value
-        return attrs
+                attributes[v.TEXTS[name][0]] = value
+        return attributes
 
-    # -- edges ---------------------------------------------------------------------------------
+    # -- edges -------------------------------------------------------------------------------------
 
     def _connect(self, entry: Entry) -> None:
-        made = self._graph.get(entry.id)
-        if made is None or not made.attrs.get("library"):
-            self._connect_part(entry)
-        elif made.kind is Kind.APPLICATION:
-            self._apply(made, entry)
+        element = self._graph.get(entry.id)
+        if element is None or not element.attrs.get("library"):
+            self._connect_folded(entry)
+        elif element.kind is Kind.APPLICATION:
+            self._apply_stereotypes(element, entry)
         else:
-            self._refer(made, entry)
+            self._connect_element(element, entry)
 
-    def _refer(self, made: Element, entry: Entry) -> None:
+    def _connect_element(self, element: Element, entry: Entry) -> None:
         for feature in (*entry.references, *entry.values):
-            edge = Edge.PATH if feature == _PATH else v.SPECIAL.get((made.kind, feature))
+            edge = Edge.PATH if feature == _PATH else None
+            edge = edge or v.REFERENCES_BY_KIND.get((element.kind, feature))
             edge = edge or v.REFERENCES.get(feature)
             if edge is not None:
-                self._link(edge, made, entry.targets(feature))
-        if made.kind is Kind.CONNECTOR_END and made.owner is not None:
-            self._graph.connect(Edge.END, made.owner, made)
+                self._add_edges(edge, element, entry.targets(feature))
+        if element.kind is Kind.CONNECTOR_END and element.owner is not None:
+            self._graph.connect(Edge.END, element.owner, element)
 
-    def _connect_part(self, entry: Entry) -> None:
-        """What is an edge of its owner: a generalization, or a stereotype's metaclass."""
+    def _connect_folded(self, entry: Entry) -> None:
+        """Add the edges of an entry that is no element: a generalization, a metaclass property."""
         owner = self._graph.get(entry.owner)
         if owner is None or not owner.attrs.get("library"):
             return
         if owner.kind is Kind.STEREOTYPE and entry.name.startswith(_BASE):
-            self._link(Edge.EXTENDS, owner, entry.targets("type"))
+            self._add_edges(Edge.EXTENDS, owner, entry.targets("type"))
         for feature, edge in v.FOLDED_REFERENCES.items():
-            self._link(edge, owner, entry.targets(feature))
+            self._add_edges(edge, owner, entry.targets(feature))
 
-    def _link(self, edge: Edge, source: Element, targets: Iterable[str]) -> None:
+    def _add_edges(self, edge: Edge, source: Element, targets: Iterable[str]) -> None:
         for target in targets:
-            known = self.ids.get(target, target)
-            if known in self._graph:
-                self._graph.connect(edge, source, known)
-            elif known != target:
-                name = known.rpartition("#")[2]
-                self._graph.pending.append(Reference(edge, source.id, known, Kind.CLASS, name))
+            id = self.ids.get(target, target)
+            if id in self._graph:
+                self._graph.connect(edge, source, id)
+            elif id != target:
+                name = id.rpartition("#")[2]
+                self._graph.pending.append(Reference(edge, source.id, id, Kind.CLASS, name))
             else:
                 _note_unresolved(self._graph, source, edge)
 
-    # -- stereotypes ---------------------------------------------------------------------------
+    # -- stereotypes -------------------------------------------------------------------------------
 
-    def _apply(self, made: Element, entry: Entry) -> None:
-        """One instance holds the slots of all stereotypes of an element."""
+    def _apply_stereotypes(self, element: Element, entry: Entry) -> None:
+        """Add an application for each stereotype of an element.
+
+        A snapshot has one instance that holds the slots of all of them.
+        """
         slots = self._snapshots.owned(entry.id)
         for number, id in enumerate(entry.targets("classifier")):
             stereotype = self._snapshots.entries.get(id)
             if stereotype is None:
                 continue
-            application = self._further(made, stereotype) if number else made
+            application = self._copy_application(element, stereotype) if number else element
             self._name_application(application, stereotype)
-            above = _generals(self._snapshots, stereotype)
+            generals = self._find_generals(stereotype)
             for slot in slots:
-                self._tag(application, slot, above)
+                self._store_tag(application, slot, generals)
 
-    def _further(self, made: Element, stereotype: Entry) -> Element:
-        id = derived_id(made.id, stereotype.id)
-        attrs = {key: made.attrs[key] for key in ("external", "library", "href")}
-        again = Element(id, made.kind, "", made.owner, made.ordinal, made.source, attrs)
-        return self._graph.add(again)
+    def _copy_application(self, application: Element, stereotype: Entry) -> Element:
+        id = derived_id(application.id, stereotype.id)
+        attributes = {key: application.attrs[key] for key in ("external", "library", "href")}
+        copy = Element(
+            id,
+            application.kind,
+            "",
+            application.owner,
+            application.ordinal,
+            application.source,
+            attributes,
+        )
+        return self._graph.add(copy)
 
     def _name_application(self, application: Element, stereotype: Entry) -> None:
-        name = mangled(stereotype.name)
+        name = mangle_name(stereotype.name)
         self._graph.rename(application, name)
         self._graph.set(application, stereotype=name, namespace="")
         if application.owner is not None:
             self._graph.connect(Edge.SUBJECT, application, application.owner)
-        self._link(Edge.INSTANCE_OF, application, [stereotype.id])
+        self._add_edges(Edge.INSTANCE_OF, application, [stereotype.id])
 
-    def _tag(self, application: Element, slot: Entry, stereotypes: frozenset[str]) -> None:
-        values = [_value(one, self.ids) for one in self._snapshots.owned(slot.id)]
+    def _store_tag(self, application: Element, slot: Entry, stereotypes: frozenset[str]) -> None:
+        """Store a slot as a tag if its feature belongs to one of the stereotypes."""
+        values = [self._read_value(owned) for owned in self._snapshots.owned(slot.id)]
         for id in slot.targets("definingFeature") if values else ():
             feature = self._snapshots.entries.get(id)
             if feature is not None and feature.owner in stereotypes:
-                name = f"tag.{feature.name}"
-                self._graph.set(
-                    application, **{name: values[0] if len(values) == 1 else tuple(values)}
-                )
+                value = values[0] if len(values) == 1 else tuple(values)
+                self._graph.set(application, **{f"tag.{feature.name}": value})
+
+    def _read_value(self, entry: Entry) -> str:
+        for feature in ("instance", "element"):
+            for target in entry.targets(feature):
+                return self.ids.get(target, target)
+        return entry.values.get("value", "")
+
+    def _find_generals(self, stereotype: Entry) -> frozenset[str]:
+        """Return the ids of the stereotype and of all that it specialises."""
+        generals: set[str] = set()
+        worklist = [stereotype.id]
+        while worklist:
+            id = worklist.pop()
+            if id not in generals:
+                generals.add(id)
+                for owned in self._snapshots.owned(id):
+                    if owned.feature == "generalization":
+                        worklist.extend(owned.targets("general"))
+        return frozenset(generals)
 
 
-def _generals(snapshots: Snapshots, stereotype: Entry) -> frozenset[str]:
-    """Ids of the stereotype and of all that it specialises."""
-    found: set[str] = set()
-    waiting = [stereotype.id]
-    while waiting:
-        id = waiting.pop()
-        if id not in found:
-            found.add(id)
-            parts = [one for one in snapshots.owned(id) if one.feature == "generalization"]
-            waiting.extend(up for one in parts for up in one.targets("general"))
-    return frozenset(found)
-
-
-def _kind(entry: Entry) -> tuple[Kind | None, str]:
+def _map_kind(entry: Entry) -> tuple[Kind | None, str]:
     if entry.feature == APPLICATION:
         return Kind.APPLICATION, ""
-    return kind_of(type_of(entry)) or (None, "")
+    return kind_of(entry.metaclass) or (None, "")
 
 
 def _is_root_model(entry: Entry) -> bool:
-    """The model that holds a used project is not shown by MagicDraw either."""
-    return entry.type == "Model" and not entry.owner
+    # MagicDraw does not show the model element that contains a used project either.
+    return entry.written_type == "Model" and not entry.owner
 
 
-def _is_base(entry: Entry, owner: Element | None) -> bool:
-    is_stereotype = owner is not None and owner.kind is Kind.STEREOTYPE
-    return is_stereotype and entry.name.startswith(_BASE)
-
-
-def _value(entry: Entry, ids: Mapping[str, str]) -> str:
-    for feature in ("instance", "element"):
-        for target in entry.targets(feature):
-            return ids.get(target, target)
-    return entry.values.get("value", "")
+def _is_metaclass_property(entry: Entry, owner: Element | None) -> bool:
+    is_in_stereotype = owner is not None and owner.kind is Kind.STEREOTYPE
+    return is_in_stereotype and entry.name.startswith(_BASE)
 
 
 def _note_unresolved(graph: Graph, source: Element, edge: Edge) -> None:
-    known = source.attrs.get("unresolved")
-    names = {str(name) for name in known} if isinstance(known, tuple) else set()
+    unresolved = source.attrs.get("unresolved")
+    names = {str(name) for name in unresolved} if isinstance(unresolved, tuple) else set()
     graph.set(source, unresolved=tuple(sorted(names | {edge.value})))

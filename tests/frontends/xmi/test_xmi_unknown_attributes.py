@@ -4,7 +4,7 @@ import pytest
 from lxml import etree
 from reading_xmi import magicdraw, papyrus, read, source
 
-from sysmlc.frontends.xmi import feature_names as naming
+from sysmlc.frontends.xmi import uml_features
 from sysmlc.frontends.xmi.uml_features import is_misplaced
 
 CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="{}" name="{}" {}/>'
@@ -108,8 +108,10 @@ def test_every_feature_of_the_metamodel_is_known(corpus):
     tree = etree.parse(corpus / "xmi" / "metamodel" / "uml.ecore")
     features = {found.get("name") for found in tree.iter("eStructuralFeatures")}
     assert len(features) > 400
-    assert features - naming.FEATURES == set()
-    assert {name for name in features if name[:2] == "is" and name[2].isupper()} == naming.FLAGS
+    assert features - uml_features.FEATURES == set()
+    assert {
+        name for name in features if name[:2] == "is" and name[2].isupper()
+    } == uml_features.FLAGS
 
 
 def misplaced(reading):

@@ -1,0 +1,190 @@
+"""Attributes of UML elements: edges, attributes of the graph, or values that need no attribute."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Subject, Verdict
+from sysmlc.frontends.xmi import dangling, metaclasses, rules, uml_features
+from sysmlc.frontends.xmi import vocabulary as v
+from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.document import WrittenReference
+from sysmlc.frontends.xmi.values import parse_bound
+from sysmlc.ir import AttrValue, Element, Kind
+from sysmlc.sources import DEFAULT_LIMITS
+
+_TRUE_OR_ABSENT: Mapping[str, AttrValue] = {**dict.fromkeys(v.TRUE, True), "0": None}
+_FALSE_OR_ABSENT: Mapping[str, AttrValue] = {"false": False, "0": False, "1": None}
+
+
+class _StoredAttribute(NamedTuple):
+    """How the graph stores an attribute of UML."""
+
+    name: str
+    default: str
+    """The text that is not stored."""
+    meanings: Mapping[str, AttrValue] | None = None
+    """The valid texts and their values; None is a value that needs no attribute."""
+
+    def store(self, element: Element, text: str) -> bool:
+        """Set the attribute of the element; return False if *text* is not valid."""
+        if self.meanings is None:
+            element.attrs[self.name] = text
+        elif text in self.meanings:
+            value = self.meanings[text]
+            if value is not None:
+                element.attrs[self.name] = value
+        else:
+            return False
+        return True
+
+
+_VISIBILITIES = {word: word for word in uml_features.WORDS["visibility"][1:]}
+
+_STORED: Mapping[str, _StoredAttribute] = MappingProxyType(
+    {
+        **{name: _StoredAttribute(*stored) for name, stored in v.TEXTS.items()},
+        "visibility": _StoredAttribute("visibility", "public", _VISIBILITIES),
+        **{name: _StoredAttribute(key, "false", _TRUE_OR_ABSENT) for name, key in v.FLAGS.items()},
+        **{
+            name: _StoredAttribute(key, "true", _FALSE_OR_ABSENT)
+            for name, key in v.UNLESS_FALSE.items()
+        },
+    }
+)
+"""Attributes that the graph stores under names of its own."""
+
+_HANDLED = frozenset(
+    {"partWithPort", "guard", "event", "value"}
+    | {"firstEvent", "interactionOperator", "messageKind", "messageSort"}
+)
+"""Attributes that the handlers of single metaclasses read."""
+
+_PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}
+
+_BOUNDS = ("lower", "upper")
+"""Derived attributes, which Enterprise Architect writes."""
+
+_BOOLEANS = {"1": "true", "0": "false"}
+"""The other ways to write an xs:boolean."""
+
+_OWN_KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
+"""Kinds whose attribute ``kind`` is their subkind, and the value that is not stored."""
+
+
+def lower_attributes(context: Context, element: Element, row: int, values: dict[str, str]) -> None:
+    """Lower the attributes of a row that has become *element*."""
+    for name, value in values.items():
+        if name not in _PASSED_OVER and "}" not in name:
+            lower_attribute(context, element, row, name, value)
+        elif name in v.REDUNDANT:
+            context.defer_check(row, name, value)
+
+
+def lower_attribute(context: Context, element: Element, row: int, name: str, value: str) -> None:
+    """Lower one attribute or list of references of UML."""
+    edge = v.REFERENCES.get(name)
+    if edge is not None:
+        if name in v.KIND_DEPENDENT:
+            edge = v.REFERENCES_BY_KIND.get((element.kind, name), edge)
+        for target in _limit_targets(context, row, name, value):
+            context.add_reference(edge, element.id, WrittenReference(target, row), name)
+    elif name in _STORED:
+        stored = _STORED[name]
+        if value != stored.default and not stored.store(element, value):
+            context.unknown_values.append((row, name, value))
+    else:
+        _lower_other(context, element, row, name, value)
+
+
+def _limit_targets(context: Context, row: int, name: str, value: str) -> list[str]:
+    """Return the ids in a list, up to the limit for lists."""
+    targets = context.document.split_ids(value)
+    most = DEFAULT_LIMITS.references
+    if len(targets) > most:
+        subject = Subject(context.qualified_name(row), "", context.locate(row))
+        context.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
+    return targets[:most]
+
+
+def _lower_other(context: Context, element: Element, row: int, name: str, value: str) -> None:
+    reversed_edge = v.REVERSED.get((element.kind, name))
+    if reversed_edge is not None:
+        for target in value.split():
+            reference = WrittenReference(target, row)
+            context.add_reference(reversed_edge, element.id, reference, name, is_reversed=True)
+    elif name in v.CONDITIONS:
+        context.defer_conditions(value.split(), name)
+    elif name in _BOUNDS:
+        context.set_bound(row, _BOUNDS.index(name), parse_bound(value))
+    elif name == "kind" and element.kind in _OWN_KINDS:
+        if value != _OWN_KINDS[element.kind]:
+            element.attrs["subkind"] = metaclasses.to_kebab_case(value)
+    elif name in v.REDUNDANT:
+        context.defer_check(row, name, value)
+    elif name in uml_features.NAMING:
+        context.defer_ids(element, v.to_snake_case(name), context.document.split_ids(value))
+    elif name not in _PASSED_OVER:
+        _lower_unmapped(context, element, row, name, value)
+
+
+def _lower_unmapped(context: Context, element: Element, row: int, name: str, value: str) -> None:
+    """Store an attribute that no table maps, unless it has its default value."""
+    if name in uml_features.FLAGS:
+        value = _BOOLEANS.get(value, value)
+    if value not in uml_features.VALUES.get(name, (value,)):
+        context.unknown_values.append((row, name, value))
+    elif value != v.default_value(name):
+        _store_plain(context, element, v.to_snake_case(name), value)
+
+
+def _store_plain(context: Context, element: Element, key: str, value: str) -> None:
+    """Store ids of elements, a truth value, or text."""
+    tokens = value.split()
+    if tokens and all(token in context.document.ids for token in tokens):
+        context.defer_ids(element, key, tokens)
+    elif value in ("true", "false"):
+        element.attrs[key] = value == "true"
+    elif value:
+        element.attrs[key] = value
+
+
+def lower_text(context: Context, row: int, feature: str) -> None:
+    """Lower a child that contains only text, which stands for an attribute of the same name."""
+    owner = context.find_owner(row)
+    value = context.document.texts.get(row, "")
+    if owner is None:
+        context.verdicts[row] = Verdict.UNSUPPORTED
+        return
+    if feature not in uml_features.FEATURES:
+        _report_stray_text(context, row, feature)
+    if not value:
+        return
+    if feature == "name":
+        context.graph.rename(owner, value)
+    elif feature in ("body", "language") and feature in owner.attrs:
+        context.opaque_elements[owner.id] = (owner, context.document.parents[row])
+    else:
+        lower_attribute(context, owner, row, feature, value)
+
+
+def _report_stray_text(context: Context, row: int, feature: str) -> None:
+    name = context.qualified_name(context.document.parents[row])
+    subject = Subject(name, context.element_ids[row], context.locate(row))
+    context.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
+    context.verdicts[row] = Verdict.APPROXIMATED
+    context.loss_rules[row] = rules.STRAY_TEXT, "kept as text: no feature of UML has its name"
+
+
+def set_deferred_attributes(context: Context) -> None:
+    """Set the attributes that needed the elements of all documents."""
+    for target, subkind in context.deferred_conditions:
+        row = context.document.ids.get(target, -1)
+        if row >= 0 and context.elements[row]:
+            context.graph[context.element_ids[row]].attrs["subkind"] = subkind
+    for element, key, targets, is_href in context.deferred_ids:
+        existing = targets if is_href else dangling.select_existing(context, element, key, targets)
+        ids = [context.unit.find_target_id(context.file, target, is_href) for target in existing]
+        present = tuple(id for id in ids if id is not None)
+        if present:
+            element.attrs[key] = present if len(present) > 1 or key in v.LISTS else present[0]
