@@ -1,3 +1,61 @@
-"""sysmlc: a model transformation compiler for cyber-physical production systems."""
+"""sysmlc: a model transformation compiler for cyber-physical production systems.
+
+The names below are the Python API (docs/python-api.md). They are imported at their first use, so
+that ``sysmlc --version`` and the completion of the shell do not import the compiler.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sysmlc.api import (
+        Compilation,
+        Config,
+        Contract,
+        Diagnostic,
+        Edge,
+        Element,
+        Graph,
+        Kind,
+        Pass,
+        RecipeModel,
+        Request,
+        Rule,
+        Severity,
+        Sink,
+        compile_model,
+        query,
+        rule,
+    )
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Compilation",
+    "Config",
+    "Contract",
+    "Diagnostic",
+    "Edge",
+    "Element",
+    "Graph",
+    "Kind",
+    "Pass",
+    "RecipeModel",
+    "Request",
+    "Rule",
+    "Severity",
+    "Sink",
+    "compile_model",
+    "query",
+    "rule",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module("sysmlc.api"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

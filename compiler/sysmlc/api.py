@@ -1,0 +1,79 @@
+"""The Python API: compile models, read the graph and what is derived from it (docs/python-api.md).
+
+Programs import these names from ``sysmlc``. Everything else in the package may change with any
+version.
+"""
+
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+
+from sysmlc.config import Config, find, load
+from sysmlc.diagnostics import Diagnostic, Rule, Severity, Sink, rule
+from sysmlc.driver import Compilation, Request, registry, select_backends
+from sysmlc.driver import compile_model as compile_request
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.contract import Contract
+from sysmlc.passes import pipeline
+from sysmlc.passes.base import Pass
+from sysmlc.recipe.model import Model as RecipeModel
+
+__all__ = [
+    "Compilation",
+    "Config",
+    "Contract",
+    "Diagnostic",
+    "Edge",
+    "Element",
+    "Graph",
+    "Kind",
+    "Pass",
+    "RecipeModel",
+    "Request",
+    "Rule",
+    "Severity",
+    "Sink",
+    "compile_model",
+    "query",
+    "rule",
+]
+
+
+def compile_model(
+    paths: Request | str | PathLike[str] | Iterable[str | PathLike[str]],
+    *,
+    emit: Iterable[str] = (),
+    passes: Iterable[Pass] = (),
+    config: Config | None = None,
+) -> Compilation:
+    """Compile files or folders as one compile unit, in memory. Write nothing.
+
+    *emit* names back ends as ``--emit`` does; without it the compilation has no artefacts.
+    *passes* run besides those of sysmlc, behind the passes that they name in ``after``. *config*
+    is by default the configuration of the project that holds the first path. A ``Request``
+    instead of paths states everything by itself.
+
+    Faults of the model, missing files among them, are diagnostics of the result. Raise
+    ``ConfigError`` for a configuration that cannot be used and ``BackendError`` for an unknown
+    back end.
+    """
+    if isinstance(paths, Request):
+        return compile_request(paths)
+    inputs = _list_paths(paths)
+    if config is None:
+        config = load(find(inputs[0].absolute())) if inputs else Config()
+    request = Request(
+        inputs=inputs,
+        config=config,
+        backends=tuple(select_backends(list(emit))) if emit else (),
+        passes=tuple(pipeline.ordered([*registry.passes(config.passes), *passes])),
+    )
+    return compile_request(request)
+
+
+def _list_paths(
+    paths: str | PathLike[str] | Iterable[str | PathLike[str]],
+) -> tuple[Path, ...]:
+    if isinstance(paths, str | PathLike):
+        return (Path(paths),)
+    return tuple(Path(path) for path in paths)
