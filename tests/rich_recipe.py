@@ -1,6 +1,6 @@
 """A recipe that has every member of sysmlc-recipe which the examples do not have."""
 
-from sysmlc.recipe import samples
+import recipe_samples as samples
 
 _PROFILE = 'namespace="urn:sysmlc:profile:1"'
 _WAIT = """\

@@ -12,19 +12,36 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.driver import registry
 from sysmlc.ir import Kind
 
+NAMELESS_PAGE = """\
+# SM942 test-nameless-port
+
+## Why
+
+Connectors are drawn to names.
+
+## Wrong
+
+```ir
+Class gate "Gate"
+  Port gate.in
+```
+
+## Right
+
+```ir
+Class gate "Gate"
+  Port gate.in "in"
+```
+"""
 NAMELESS = rule(
     "SM942",
     "test-nameless-port",
     Severity.ERROR,
     "a port of '{owner}' has no name",
-    why="Connectors are drawn to names.",
     help="name the port",
-    wrong='Class gate "Gate"\n  Port gate.in',
-    right='Class gate "Gate"\n  Port gate.in "in"',
+    page=NAMELESS_PAGE,
 )
-UNTYPED = rule(
-    "SM943", "test-untyped-port", Severity.WARNING, "port '{port}' has no type", why="Tests."
-)
+UNTYPED = rule("SM943", "test-untyped-port", Severity.WARNING, "port '{port}' has no type")
 PLANT = """\
 Package pkg "Plant"
   Class gate "Gate"

@@ -15,27 +15,27 @@ def all_passes(monkeypatch):
 
 
 def test_a_contract_that_is_well_is_one_line(here):
-    here.write("lamp.gr1.json", rules.NO_FAIRNESS.right)
+    here.write("lamp.gr1.json", rules.NO_FAIRNESS.read_page().right)
     made = here.sysmlc("contracts", "check", "lamp.gr1.json")
     assert [made.exit_code, made.stdout] == [0, "lamp: realizable\n"]
 
 
 def test_suspicious_contracts_are_told_and_are_no_error(here):
-    here.write("lamp.gr1.json", rules.IDLE.wrong)
+    here.write("lamp.gr1.json", rules.IDLE.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.gr1.json")
     assert made.exit_code == 0
     assert "warning[SM541 vacuous-win]: 'lamp' keeps its contract without ever" in made.stderr
 
 
 def test_an_unrealizable_contract_is_an_error(here):
-    here.write("lamp.gr1.json", rules.NO_FAIRNESS.wrong)
+    here.write("lamp.gr1.json", rules.NO_FAIRNESS.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.gr1.json")
     assert [made.exit_code, made.stdout] == [1, "lamp: unrealizable\n"]
     assert "for instance if 'go' recurred" in made.stderr
 
 
 def test_a_behaviour_that_breaks_a_requirement(here, all_passes):
-    here.write("lamp.ir", check.BREAKS.wrong)
+    here.write("lamp.ir", check.BREAKS.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.ir")
     assert made.exit_code == 1
     assert "Plant::Gate: realizable, breaks its requirements\n" in made.stdout
@@ -44,7 +44,7 @@ def test_a_behaviour_that_breaks_a_requirement(here, all_passes):
 
 
 def test_only_one_component(here, all_passes):
-    here.write("lamp.ir", check.BREAKS.right)
+    here.write("lamp.ir", check.BREAKS.read_page().right)
     made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate.requirements")
     assert made.stdout == "Plant::Gate.requirements: realizable\n"
     made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gat")
@@ -52,7 +52,7 @@ def test_only_one_component(here, all_passes):
 
 
 def test_a_component_alone_is_compared_with_its_requirements_too(here, all_passes):
-    here.write("lamp.ir", check.BREAKS.wrong)
+    here.write("lamp.ir", check.BREAKS.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate")
     assert [made.exit_code, made.stdout] == [
         1,
@@ -61,7 +61,7 @@ def test_a_component_alone_is_compared_with_its_requirements_too(here, all_passe
 
 
 def test_parts_of_a_block_are_put_together_and_runs_are_drawn(here, all_passes):
-    here.write("cell.sysml", together.OPEN.wrong)
+    here.write("cell.sysml", together.OPEN.read_page().wrong)
     made = here.sysmlc("contracts", "check", "cell.sysml", "-c", "Line::Cell", "-o", "out")
     assert made.exit_code == 1
     assert made.stdout == (
@@ -72,7 +72,10 @@ def test_parts_of_a_block_are_put_together_and_runs_are_drawn(here, all_passes):
 
 
 def test_a_model_that_is_wrong_says_why_it_has_no_contracts(here, all_passes):
-    here.write("cell.sysml", together.OPEN.wrong.replace("import ScalarValues::*", "import Units"))
+    here.write(
+        "cell.sysml",
+        together.OPEN.read_page().wrong.replace("import ScalarValues::*", "import Units"),
+    )
     made = here.sysmlc("contracts", "check", "cell.sysml")
     assert made.exit_code == 2
     assert "SM205 unresolved-name" in made.stderr

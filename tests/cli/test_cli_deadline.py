@@ -4,13 +4,13 @@ from sysmlc.synthesis import rules
 
 
 def test_the_bound_is_found(here):
-    here.write("lamp.gr1.json", rules.NO_DEADLINE.right)
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late")
     assert [made.exit_code, made.stdout] == [0, "lamp: late <= 1 can be promised, no less\n"]
 
 
 def test_that_there_is_none_is_an_error_and_exit_code_1(here):
-    here.write("lamp.gr1.json", rules.NO_DEADLINE.wrong)
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late")
     assert made.exit_code == 1
     assert made.stdout == "lamp: late: no bound below the end of the range can be promised\n"
@@ -18,7 +18,7 @@ def test_that_there_is_none_is_an_error_and_exit_code_1(here):
 
 
 def test_an_unknown_timer_is_an_error_and_exit_code_2(here):
-    here.write("lamp.gr1.json", rules.NO_TIMER.wrong)
+    here.write("lamp.gr1.json", rules.NO_TIMER.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "due")
     assert [made.exit_code, made.stdout] == [2, "lamp: due: not decided\n"]
     assert "error[SM575 deadline-of-no-number]" in made.stderr
@@ -26,7 +26,7 @@ def test_an_unknown_timer_is_an_error_and_exit_code_2(here):
 
 
 def test_nothing_is_written_with_a_deadline(here):
-    here.write("lamp.gr1.json", rules.NO_DEADLINE.right)
+    here.write("lamp.gr1.json", rules.NO_DEADLINE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late", "-o", "out")
     assert made.exit_code == 2
     assert "--deadline decides only" in made.stderr

@@ -18,10 +18,10 @@ OPEN = rule(
     "test-open-end",
     Severity.ERROR,
     "connector '{name}' has an open end",
-    why="Something must be at both ends.",
     help="connect '{name}'",
+    page="# SM944 test-open-end\n\n## Why\n\nSomething must be at both ends.\n",
 )
-ODD = rule("SM945", "test-odd-name", Severity.INFO, "'{name}' is odd", why="Tests.")
+ODD = rule("SM945", "test-odd-name", Severity.INFO, "'{name}' is odd")
 MODEL = """\
 <uml:Model xmlns:uml="u">
   <ownedConnector name="belt"/>

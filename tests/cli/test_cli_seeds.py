@@ -22,11 +22,11 @@ GRANTS = """\
 """
 MODELS = {
     "grants.gr1.json": GRANTS,
-    "dark.gr1.json": rules.UNREALIZABLE.wrong,
-    "gate.ir": check.BREAKS.wrong,
-    "open.sysml": together_rules.OPEN.wrong,
-    "circle.sysml": together_rules.CIRCLE.wrong,
-    "lost.sysml": together_rules.LOST.wrong,
+    "dark.gr1.json": rules.UNREALIZABLE.read_page().wrong,
+    "gate.ir": check.BREAKS.read_page().wrong,
+    "open.sysml": together_rules.OPEN.read_page().wrong,
+    "circle.sysml": together_rules.CIRCLE.read_page().wrong,
+    "lost.sysml": together_rules.LOST.read_page().wrong,
 }
 # One process does them all: a process each would take most of its time to start.
 COMMANDS = """\

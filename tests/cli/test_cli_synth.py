@@ -20,7 +20,7 @@ StateMachine gate "Gate"
 
 
 def test_a_contract_is_decided_with_figures(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert made.exit_code == 0
     figures = r"lamp: realizable \(2 variables, 2 bits, 1 conjuncts; .* nodes, .* s\)\n"
@@ -28,7 +28,7 @@ def test_a_contract_is_decided_with_figures(here):
 
 
 def test_unrealizable_is_an_error_and_exit_code_1(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert made.exit_code == 1
     assert "error[SM532 contract-unrealizable]: no system can keep the contract" in made.stderr
@@ -36,7 +36,7 @@ def test_unrealizable_is_an_error_and_exit_code_1(here):
 
 
 def test_what_is_outside_gr1_has_its_place_and_exit_code_2(here):
-    here.write("lamp.gr1.json", rules.OUTSIDE_GR1.wrong)
+    here.write("lamp.gr1.json", rules.OUTSIDE_GR1.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert [made.exit_code, made.stdout] == [2, "lamp: not decided\n"]
     assert "error[SM530 conjunct-outside-gr1]: '!lamp' of 'lamp' is outside" in made.stderr
@@ -52,7 +52,7 @@ def test_all_that_is_outside_gr1_is_named(here):
 
 def test_the_right_example_of_each_rule_is_decided(here):
     for rule in (rules.OUTSIDE_GR1, rules.UNREALIZABLE):
-        here.write("right.gr1.json", rule.right)
+        here.write("right.gr1.json", rule.read_page().right)
         assert here.sysmlc("synth", "right.gr1.json", "--realizable").exit_code == 0
 
 
@@ -104,7 +104,7 @@ def test_contracts_of_a_model_are_decided_by_component(here, monkeypatch):
 
 
 def test_what_history_bits_can_say_is_decided(here):
-    text = rules.UNREALIZABLE.right.replace(
+    text = rules.UNREALIZABLE.read_page().right.replace(
         '"safety": ["lamp\' <-> go\'"]', '"liveness": ["go -> lamp\'"]'
     )
     here.write("lamp.gr1.json", text)
@@ -128,20 +128,20 @@ def test_what_cannot_be_done_is_a_sentence_and_exit_code_2(here, args, words):
 
 
 def test_findings_as_json_leave_standard_output_to_them(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable", "--format", "json")
     assert [one["code"] for one in json.loads(made.stdout)["diagnostics"]] == ["SM532"]
 
 
 def test_the_engine_can_be_chosen(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     assert (
         here.sysmlc("synth", "lamp.gr1.json", "--realizable", "--engine", "autoref").exit_code == 0
     )
 
 
 def test_machines_are_written_when_asked_for(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert made.exit_code == 0
     assert made.stdout.endswith("; machine: 2 states, 3 moves, checked\n")
@@ -149,7 +149,7 @@ def test_machines_are_written_when_asked_for(here):
 
 
 def test_no_machine_is_written_of_what_cannot_be_kept_and_the_core_is_named(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert made.exit_code == 1
     assert not any(name.endswith(".machine.json") for name in here.files())
@@ -157,7 +157,7 @@ def test_no_machine_is_written_of_what_cannot_be_kept_and_the_core_is_named(here
 
 
 def test_what_defeats_a_contract_is_written(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert made.exit_code == 1
     assert here.files("out") == ["lamp.counter-run.puml", "lamp.counter.puml", "lamp.counter.sysml"]
@@ -165,7 +165,7 @@ def test_what_defeats_a_contract_is_written(here):
 
 
 def test_the_reader_plays_the_component(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--play", text="lamp=true\nlamp=false\n\n")
     assert made.exit_code == 1
     assert made.stdout.startswith("You are 'lamp'.")
@@ -173,14 +173,14 @@ def test_the_reader_plays_the_component(here):
 
 
 def test_there_is_nothing_to_play_when_a_contract_can_be_kept(here):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "--play")
     assert [made.exit_code, made.stdout] == [0, "lamp: realizable, nothing defeats it\n"]
 
 
 def test_what_is_too_large_to_be_listed_is_told(here, monkeypatch):
     monkeypatch.setattr(machine.counter, "__defaults__", (0,))
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.wrong)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert "warning[SM549 counter-strategy-not-written]" in made.stderr
     assert not (here.folder / "out").exists()
@@ -207,7 +207,7 @@ COUNTER = {
     ],
 )
 def test_machines_have_the_form_that_is_asked_for(here, form, name, start):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out", "--machine", form)
     assert made.exit_code == 0
     assert here.read(f"out/{name}").startswith(start)
@@ -274,7 +274,7 @@ def test_a_formula_that_was_reduced_to_gr1_is_shown_as_it_was_written(here):
     "word", ["--time-limit=-1", "--memory-limit=-1", "--memory-limit=inf", "--nodes=-1"]
 )
 def test_limits_are_amounts(here, word):
-    here.write("lamp.gr1.json", rules.UNREALIZABLE.right)
+    here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     made = here.sysmlc("synth", "lamp.gr1.json", word)
     assert made.exit_code == 2
     assert "Error: Invalid value for '--" in made.stderr

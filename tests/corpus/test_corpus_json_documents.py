@@ -69,7 +69,11 @@ def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
     (folder / "commands").mkdir()
     yield from command_documents(folder / "commands")
     texts = [rich_recipe()]
-    texts += [text for rule in full_catalogue().values() for text in (rule.wrong, rule.right)]
+    texts += [
+        text
+        for rule in full_catalogue().values()
+        for text in (rule.read_page().wrong, rule.read_page().right)
+    ]
     # The rules about comments with JSON show comments that somebody damaged.
     graphs = [text for text in texts if _is_graph(text) and "sysmlc-kept" not in text]
     for number, text in enumerate(graphs):

@@ -12,14 +12,12 @@ UNNAMED_PORT = rule(
     "test-unnamed-port",
     Severity.ERROR,
     "a port of '{owner}' has no name",
-    why="Only tests use this rule.",
 )
 PLAIN_PORT = rule(
     "SM941",
     "test-plain-port",
     Severity.WARNING,
     "port '{port}' has no type",
-    why="Only tests use this rule.",
 )
 PLANT = """\
 Package pkg "Plant"

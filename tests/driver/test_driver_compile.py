@@ -150,7 +150,7 @@ def test_a_folder_without_a_model_is_an_error(tmp_path):
     assert (codes(made), made.exit_code()) == (["SM173"], 1)
     (found,) = made.diagnostics
     assert found.message == f"'{tmp_path.name}' holds no model"
-    named = set(re.findall(r"\.\w+", faults.NOTHING_TO_COMPILE.why))
+    named = set(re.findall(r"\.\w+", faults.NOTHING_TO_COMPILE.read_page().why))
     assert named == set(inputs.SUFFIXES)
 
 

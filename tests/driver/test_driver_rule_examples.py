@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from sysmlc.driver import Request, backend_names, compile_model, full_catalogue, load_backends
-from sysmlc.ir import Kind, parse_text
 
 TESTS = Path(__file__).parents[1]
 RULES = [rule for rule in full_catalogue().values() if not rule.name.startswith("test-")]
@@ -27,15 +26,11 @@ OURS = {"SM900", "SM901", "SM902", "SM903"}
 """Faults of the compiler and of its settings, not of a model."""
 
 
-def is_graph(rule) -> bool:
-    try:
-        graphs = [parse_text(text) for text in (rule.wrong, rule.right)]
-    except ValueError:
-        return False
-    return all(len(graph) for graph in graphs) and all(e.kind in Kind for g in graphs for e in g)
-
-
-GRAPHS = [rule for rule in RULES if is_graph(rule) and rule.code not in OF_CIRCUMSTANCES]
+GRAPHS = [
+    rule
+    for rule in RULES
+    if rule.read_page().language == "ir" and rule.code not in OF_CIRCUMSTANCES
+]
 
 
 def found(text: str, folder: Path) -> set[str]:
@@ -47,8 +42,8 @@ def found(text: str, folder: Path) -> set[str]:
 
 @pytest.mark.parametrize("rule", GRAPHS, ids=lambda rule: rule.code)
 def test_the_wrong_model_has_it_and_the_right_one_has_not(rule, tmp_path):
-    assert rule.code in found(rule.wrong, tmp_path)
-    assert rule.code not in found(rule.right, tmp_path)
+    assert rule.code in found(rule.read_page().wrong, tmp_path)
+    assert rule.code not in found(rule.read_page().right, tmp_path)
 
 
 TESTED_AS = {

@@ -42,8 +42,8 @@ def test_every_rule_of_the_families_has_examples_here():
 def test_the_wrong_model_has_it_and_the_right_one_has_nothing(code):
     language = "kerml" if code in KERML else "sysml"
     rule = catalogue()[code]
-    assert codes(rule.wrong, language) == {code}
-    assert codes(rule.right, language) == set()
+    assert codes(rule.read_page().wrong, language) == {code}
+    assert codes(rule.read_page().right, language) == set()
 
 
 def test_metadata_is_for_what_its_definition_says():

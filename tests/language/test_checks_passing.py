@@ -18,8 +18,8 @@ def found(text):
     ("rule", "code"), [(passing.TOO_MANY, "SM248"), (passing.NO_PARAMETER, "SM249")]
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
-    assert [one[:5] for one in found(rule.wrong)] == [code]
-    assert found(rule.right) == []
+    assert [one[:5] for one in found(rule.read_page().wrong)] == [code]
+    assert found(rule.read_page().right) == []
 
 
 FEED = """

@@ -46,8 +46,8 @@ def codes(text):
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
     assert rule.code == code
-    assert codes(rule.wrong) == {code}
-    assert codes(rule.right) == set()
+    assert codes(rule.read_page().wrong) == {code}
+    assert codes(rule.read_page().right) == set()
 
 
 def test_a_usage_is_no_type_and_a_subset_brings_its_types():

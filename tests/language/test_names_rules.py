@@ -20,8 +20,8 @@ def codes(text):
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
     assert rule.code == code
-    assert code in codes(rule.wrong)
-    assert code not in codes(rule.right)
+    assert code in codes(rule.read_page().wrong)
+    assert code not in codes(rule.read_page().right)
 
 
 def test_names_behind_thousands_of_names_are_told():

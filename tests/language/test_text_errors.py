@@ -21,8 +21,8 @@ EXAMPLES = [
 
 @pytest.mark.parametrize("rule", EXAMPLES, ids=lambda rule: rule.code)
 def test_the_wrong_text_has_it_and_the_right_one_nothing(rule):
-    assert [line.split()[1] for line in said(rule.wrong)] == [rule.code]
-    assert said(rule.right) == []
+    assert [line.split()[1] for line in said(rule.read_page().wrong)] == [rule.code]
+    assert said(rule.read_page().right) == []
 
 
 def test_sm190_says_what_was_found_and_what_was_expected():

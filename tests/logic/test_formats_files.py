@@ -47,8 +47,8 @@ def test_the_rules_are_those_of_this_module():
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
 def test_the_wrong_example_has_the_fault_and_the_right_one_nearly(rule):
-    assert rule.code in [code for code, *_ in read(rule.wrong)[1]]
-    assert rule.code not in [code for code, *_ in read(rule.right)[1]]
+    assert rule.code in [code for code, *_ in read(rule.read_page().wrong)[1]]
+    assert rule.code not in [code for code, *_ in read(rule.read_page().right)[1]]
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import pytest
 from activity_models import activity, tokens_of
 
+from activity_sketch import sketch
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.derivation import derive
@@ -11,7 +12,6 @@ from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activities.sketch import sketch
 
 spot = pytest.importorskip("spot")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import sysmlc.diagnostics
+from sysmlc.diagnostics import rule_page
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -16,14 +16,15 @@ TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 def block(title: str) -> str:
     """The code below the comment with this title."""
-    found = re.search(rf"<!-- {re.escape(title)} -->\n```python\n(.*?)```", TEXT, re.DOTALL)
+    pattern = rf"<!-- {re.escape(title)} -->\n(```+)\w+\n(.*?)\1\n"
+    found = re.search(pattern, TEXT, re.DOTALL)
     assert found, title
-    return found[1]
+    return found[2]
 
 
 def test_the_back_end_shown_is_the_one_that_is_tested():
-    shown = block("tests/plugin/sysmlc_outline.py")
-    assert shown == (ROOT / "tests/plugin/sysmlc_outline.py").read_text(encoding="utf-8")
+    for path in ("tests/plugin/sysmlc_outline/__init__.py", "tests/plugin/sysmlc_outline/SM949.md"):
+        assert block(path) == (ROOT / path).read_text(encoding="utf-8")
     project = (ROOT / "tests/plugin/pyproject.toml").read_text(encoding="utf-8")
     assert 'outline = "sysmlc_outline:BACKEND"' in project
     assert 'outline = "sysmlc_outline:BACKEND"' in TEXT
@@ -58,11 +59,12 @@ def test_the_back_end_is_listed_emitted_and_explained(plugin, tmp_path):
     )
     explained = sysmlc(plugin, tmp_path, "explain", "outline-without-ports")
     assert explained.stdout.startswith("SM949 outline-without-ports (warning)")
+    assert "Why:\n  An outline without ports says nothing" in explained.stdout
 
 
 @pytest.mark.slow
 def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
-    broken = Path(plugin["PYTHONPATH"]) / "sysmlc_outline.py"
+    broken = Path(plugin["PYTHONPATH"]) / "sysmlc_outline/__init__.py"
     whole = broken.read_text()
     broken.write_text("import no_such_module\n")
     try:
@@ -74,7 +76,9 @@ def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch):
+def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch, tmp_path):
+    (tmp_path / "SM948.md").write_text(block("rule page"), encoding="utf-8")
+    monkeypatch.setattr(rule_page, "FOLDER", tmp_path)
     catalogue = sys.modules["sysmlc.diagnostics.rule"]
     monkeypatch.setattr(catalogue, "_rules", dict(catalogue._rules))
     names: dict[str, object] = {"__name__": "contributing"}

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+_PAGES = {path.name for path in (ROOT / "compiler/sysmlc/diagnostics/rules").glob("*.md")}
 pytestmark = pytest.mark.slow
 
 
@@ -22,6 +23,7 @@ def test_the_wheel_carries_data_licence_and_types(dist):
     assert "sysmlc/py.typed" in names
     for language in ("kerml", "sysml"):
         assert f"sysmlc/language/text/generated/{language}.tables" in names
+    assert {name.removeprefix("sysmlc/diagnostics/rules/") for name in names} >= _PAGES
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not [name for name in names if name.startswith(("tests", "compiler"))]
     assert not [name for name in names if name.endswith(".pth")]
@@ -33,6 +35,7 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
         names = {name.partition("/")[2] for name in opened.getnames()}
     assert {"LICENSE", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile"} <= names
     assert {"compiler/hatch_build.py", "grammars/sysml.lark"} <= names
+    assert {name.removeprefix("compiler/sysmlc/diagnostics/rules/") for name in names} >= _PAGES
     assert {"tests/conftest.py", "examples/lego-recipe/lego-recipe.uml"} <= names
 
 

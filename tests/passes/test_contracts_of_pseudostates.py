@@ -2,11 +2,11 @@
 
 import pytest
 
+from machine_samples import arrow, choice, machine_of, region, state
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.samples import arrow, choice, machine_of, region, state
 from sysmlc.passes import pipeline
 
 

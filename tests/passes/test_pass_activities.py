@@ -2,13 +2,13 @@
 
 import pytest
 
+from activity_sketch import sketch
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
 from sysmlc.logic.activities.interpreter import State, is_complete
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.passes.activities import Activities
-from sysmlc.passes.activities.sketch import sketch
 
 LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """What the models of rules about limits are over."""
@@ -38,24 +38,24 @@ def codes(sink: Sink) -> list[str]:
 @pytest.mark.parametrize("code", sorted(RULES))
 def test_each_rule_is_found_in_its_wrong_model_and_not_in_its_right_one(code):
     options = LIMITS.get(code, {})
-    _, sink = tokens(RULES[code].wrong, **options)
+    _, sink = tokens(RULES[code].read_page().wrong, **options)
     assert code in codes(sink)
     found = next(d for d in sink if d.rule.code == code)
-    assert found.subject.id in parse_text(RULES[code].wrong)
+    assert found.subject.id in parse_text(RULES[code].read_page().wrong)
     assert "{" not in found.message + found.help
-    _, sink = tokens(RULES[code].right, **options)
+    _, sink = tokens(RULES[code].read_page().right, **options)
     assert code not in codes(sink)
 
 
 @pytest.mark.parametrize("code", sorted(RULES))
 def test_an_activity_without_token_graph_is_always_reported(code):
-    for text in (RULES[code].wrong, RULES[code].right):
+    for text in (RULES[code].read_page().wrong, RULES[code].read_page().right):
         found, sink = tokens(text)
         assert found or len(sink)
 
 
 def test_the_graph_stays_as_it_is_and_twice_equals_once():
-    graph = parse_text(RULES["SM453"].right)
+    graph = parse_text(RULES["SM453"].read_page().right)
     before = print_text(graph)
     Activities().run(graph, Sink())
     once = graph.derived(TokenGraph)
@@ -408,7 +408,7 @@ Activity a "a"
 
 
 def test_a_structured_node_without_flows_is_a_group_that_nobody_has_to_be_told_of():
-    graph, sink = tokens(RULES["SM471"].right)
+    graph, sink = tokens(RULES["SM471"].read_page().right)
     assert [node.kind for node in graph[0].nodes].count("structured") == 0
     assert "SM471" not in codes(sink)
 
@@ -451,7 +451,7 @@ def test_a_fork_between_the_actions_of_a_test_belongs_to_the_test():
 
 
 def test_an_iterative_expansion_region_is_a_loop_that_the_environment_decides():
-    graph = only(RULES["SM477"].right)
+    graph = only(RULES["SM477"].read_page().right)
     assert [v.name for v in graph.inputs] == ["input_more_e", "done_x"]
     guards = [edge.guard.text for edge in graph.edges if edge.guard]
     assert guards == ["there is another element", "else"]
@@ -582,7 +582,7 @@ def test_handlers_for_several_types_are_told_apart_by_an_input():
 
 
 def test_an_exception_that_nobody_catches_ends_the_activity():
-    graph = only(RULES["SM475"].wrong)
+    graph = only(RULES["SM475"].read_page().wrong)
     (end,) = graph.outgoing(graph.node("stop"))
     assert graph.node(end.target).kind == "final"
 
@@ -615,7 +615,7 @@ def test_a_call_of_what_catches_its_exceptions_ends_by_itself():
 
 def test_an_activity_ends_when_nothing_in_it_can_move():
     """A join that waits in vain is no reason to go on (fUML 1.5, 8.10.1)."""
-    graph, sink = tokens(RULES["SM453"].wrong)
+    graph, sink = tokens(RULES["SM453"].read_page().wrong)
     assert graph[0].finishes
     assert "SM453" in codes(sink)
 

@@ -2,11 +2,11 @@
 
 import pytest
 
+from machine_samples import arrow, choice, machine, machine_of, region, state
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.samples import arrow, choice, machine, machine_of, region, state
 from sysmlc.passes import pipeline
 
 pipeline.load("contracts")
@@ -33,8 +33,8 @@ def formulas(contract, *classes):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in codes(derived(rule.wrong)[2])
-    assert rule.code not in codes(derived(rule.right)[2])
+    assert rule.code in codes(derived(rule.read_page().wrong)[2])
+    assert rule.code not in codes(derived(rule.read_page().right)[2])
 
 
 def test_every_rule_is_there():

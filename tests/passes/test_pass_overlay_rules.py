@@ -12,19 +12,19 @@ RULES = [rule for rule in full_catalogue().values() if int(rule.code[2:]) in COD
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_overlay_and_not_its_right_one(rule):
-    assert rule.code in codes(laid_over(rule.wrong)[1])
-    assert rule.code not in codes(laid_over(rule.right)[1])
+    assert rule.code in codes(laid_over(rule.read_page().wrong)[1])
+    assert rule.code not in codes(laid_over(rule.read_page().right)[1])
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_right_overlay_is_right_in_every_way(rule):
-    found = [one for one in laid_over(rule.right)[1] if one.severity != "info"]
+    found = [one for one in laid_over(rule.read_page().right)[1] if one.severity != "info"]
     assert found == []
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_finding_has_file_line_and_column(rule):
-    found = next(one for one in laid_over(rule.wrong)[1] if one.rule is rule)
+    found = next(one for one in laid_over(rule.read_page().wrong)[1] if one.rule is rule)
     place = found.subject.place
     is_of_model = rule.name.startswith("call-")
     assert place.file == ("gate.uml" if is_of_model else "0.overlay.yaml")

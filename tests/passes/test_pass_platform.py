@@ -25,8 +25,8 @@ def run(text):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert [found.rule.code for found in run(rule.wrong)[1]] == [rule.code]
-    assert list(run(rule.right)[1]) == []
+    assert [found.rule.code for found in run(rule.read_page().wrong)[1]] == [rule.code]
+    assert list(run(rule.read_page().right)[1]) == []
 
 
 def test_all_rules_are_there():

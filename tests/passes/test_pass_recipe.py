@@ -2,12 +2,12 @@
 
 import pytest
 
+import recipe_samples as samples
 from sysmlc.diagnostics import Severity, Sink
 from sysmlc.driver import full_catalogue
 from sysmlc.ir import Graph, parse_text, verify
 from sysmlc.ir.text import print_text
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe import samples
 from sysmlc.recipe.expression import Apply, Lit, Var
 from sysmlc.recipe.model import MaterialUse, Mode, Model, Range
 
@@ -44,8 +44,8 @@ def profiled(of: str, stereotype: str, tags: str = "") -> str:
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in run(rule.wrong)[1]
-    assert run(rule.right)[1] == []
+    assert rule.code in run(rule.read_page().wrong)[1]
+    assert run(rule.read_page().right)[1] == []
 
 
 def test_all_rules_are_there():
@@ -115,7 +115,7 @@ def test_a_stereotype_that_specialises_the_profile_counts_and_a_namesake_does_no
 
 def test_an_equal_name_only_suggests():
     rule = full_catalogue()["SM619"]
-    found = model(rule.wrong)
+    found = model(rule.read_page().wrong)
     assert {task.implementation for task in found.recipe.tasks} == {""}
 
 

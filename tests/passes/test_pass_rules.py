@@ -28,13 +28,13 @@ RULES = [
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_rule_reports_its_wrong_model_and_not_its_right_one(pass_name, rule):
-    assert rule.code in codes(refined(rule.wrong, pass_name)[1])
-    assert rule.code not in codes(refined(rule.right, pass_name)[1])
+    assert rule.code in codes(refined(rule.read_page().wrong, pass_name)[1])
+    assert rule.code not in codes(refined(rule.read_page().right, pass_name)[1])
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_right_model_is_right_in_every_way(pass_name, rule):
-    found = [one for one in refined(rule.right, pass_name)[1] if one.severity != "info"]
+    found = [one for one in refined(rule.read_page().right, pass_name)[1] if one.severity != "info"]
     assert found == []
 
 

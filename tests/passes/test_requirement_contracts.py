@@ -48,8 +48,8 @@ def lines(conjuncts):
 @pytest.mark.parametrize("code", ["SM522", "SM523"])
 def test_rules_report_their_wrong_model_and_not_their_right_one(code):
     rule = catalogue()[code]
-    assert code in [one.rule.code for one in derived(rule.wrong)[1]]
-    assert code not in [one.rule.code for one in derived(rule.right)[1]]
+    assert code in [one.rule.code for one in derived(rule.read_page().wrong)[1]]
+    assert code not in [one.rule.code for one in derived(rule.read_page().right)[1]]
 
 
 def test_assumptions_and_demands_of_a_requirement_are_a_contract():

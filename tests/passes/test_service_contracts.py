@@ -159,8 +159,8 @@ def test_an_action_that_no_operation_performs_is_a_service_itself():
 
 def test_rule_reports_its_wrong_model_and_not_its_right_one():
     rule = catalogue()["SM505"]
-    assert [one.rule.code for one in derived(rule.wrong)[1]] == ["SM505"]
-    assert [one.rule.code for one in derived(rule.right)[1]] == []
+    assert [one.rule.code for one in derived(rule.read_page().wrong)[1]] == ["SM505"]
+    assert [one.rule.code for one in derived(rule.read_page().right)[1]] == []
 
 
 @pytest.mark.parametrize("kind", ["time", "invariant"])

@@ -157,7 +157,7 @@ def test_damaged_entries_are_misses(store):
         assert store.get(KEY) is None
 
 
-RULE = Rule("SM999", "made-up", Severity.ERROR, "phrase", "why", "help", "wrong", "right")
+RULE = Rule("SM999", "made-up", Severity.ERROR, "phrase", "help", "page")
 ERROR = Diagnostic(
     RULE, Severity.ERROR, "message", Subject("A::B", "b", Place("a.uml", 3)), ("note",), "help"
 )

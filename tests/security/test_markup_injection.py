@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.backends.reqtable.table import Cell, Table
@@ -13,7 +14,6 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.formats import write
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.passes import pipeline
 from sysmlc.support import plantuml_text as plantuml
 from sysmlc.support.escapes import escape_code, escape_markdown

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND as CONTRACTS
 from sysmlc.backends.plantuml import BACKEND as PLANTUML
@@ -14,7 +15,6 @@ from sysmlc.backends.templates import files, process
 from sysmlc.cli import group
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.passes import pipeline
 from sysmlc.support.output import Output
 

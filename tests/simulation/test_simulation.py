@@ -231,8 +231,8 @@ def test_what_is_wrong_with_a_scenario_is_reported_at_its_line(text, code, messa
 )
 def test_each_rule_about_scenarios_has_a_wrong_and_a_right_example(rule):
     model = GATE.replace('Class gate "Gate"', 'Class gate "Gate"\n  -> classifier-behavior pass')
-    _, sink = simulate(rule.wrong, model)
+    _, sink = simulate(rule.read_page().wrong, model)
     assert [found.rule.code for found in sink] == [rule.code]
-    report, sink = simulate(rule.right, model)
+    report, sink = simulate(rule.read_page().right, model)
     assert list(sink) == []
     assert report.results

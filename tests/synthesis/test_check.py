@@ -25,14 +25,14 @@ def checked(text):
 @pytest.mark.parametrize("code", CODES)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     rule = catalogue()[code]
-    assert code in [one.rule.code for one in checked(rule.wrong)[1]]
-    assert code not in [one.rule.code for one in checked(rule.right)[1]]
+    assert code in [one.rule.code for one in checked(rule.read_page().wrong)[1]]
+    assert code not in [one.rule.code for one in checked(rule.read_page().right)[1]]
 
 
 def test_a_behaviour_keeps_its_requirements_or_a_run_shows_where_not():
-    results, _ = checked(BREAKS.right)
+    results, _ = checked(BREAKS.read_page().right)
     assert results["Plant::Gate"].is_implemented is True
-    results, found = checked(BREAKS.wrong)
+    results, found = checked(BREAKS.read_page().wrong)
     assert results["Plant::Gate"].is_implemented is False
     assert results["Plant::Gate.requirements"].is_implemented is None
     (broken,) = [one for one in found if one.rule is BREAKS]
@@ -50,7 +50,7 @@ def test_questions_that_take_too_long_are_told(monkeypatch):
         raise LimitError("of CPU time", "1 s")
 
     monkeypatch.setattr("sysmlc.synthesis.check.lint", give_up)
-    results, found = checked(BREAKS.right)
+    results, found = checked(BREAKS.read_page().right)
     assert results["Plant::Gate"].verdict.is_realizable
     assert next(one.message for one in found if one.rule.code == "SM563") == (
         "not everything that may be suspicious in 'Plant::Gate' was looked for: "

@@ -92,7 +92,7 @@ def test_the_examples_of_the_rules(rule):
     timer = "late" if rule is rules.NO_DEADLINE else "later"
     wrong, right = (
         found(formats.read(text, "x.gr1.json", Sink())[0], name)
-        for text, name in ((rule.wrong, timer), (rule.right, "late"))
+        for text, name in ((rule.read_page().wrong, timer), (rule.read_page().right, "late"))
     )
     assert [[one.rule.code for one in wrong[1]], right[1]] == [[rule.code], []]
 

@@ -30,8 +30,8 @@ def read_one(text):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_contract_and_says_nothing_of_its_right_one(rule):
-    assert rule.code in [code for code, _ in found(read_one(rule.wrong))]
-    assert found(read_one(rule.right)) == []
+    assert rule.code in [code for code, _ in found(read_one(rule.read_page().wrong))]
+    assert found(read_one(rule.read_page().right)) == []
 
 
 def test_every_rule_is_there():
@@ -41,7 +41,7 @@ def test_every_rule_is_there():
 
 @pytest.mark.parametrize("code", ["SM537", "SM539", "SM540"])
 def test_what_is_wrong_with_a_conjunct_is_told_at_its_place(code):
-    text, sink = catalogue()[code].wrong, Sink()
+    text, sink = catalogue()[code].read_page().wrong, Sink()
     lint(read_one(text), lambda origin: Subject(origin), sink, Manager)
     (told,) = [one for one in sink if one.rule.code == code]
     line, column = map(int, told.subject.name.split(":")[1:])

@@ -15,36 +15,13 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.output import Output
 
-_LAMP = """\
-Class c "Lamp"
-  -> classifier-behavior m
-  StateMachine m "M"
-    Region r
-      Pseudostate i subkind="initial"
-      State a "Off"
-      State b "On"
-      Transition t0
-        -> flow-source i
-        -> flow-target a
-      Transition t1
-        -> flow-source a
-        -> flow-target b
-        -> trigger g
-        Trigger g subkind="signal"
-          -> typed-by s
-  Constraint k "Lit" language="LTL" body="{body}"
-Signal s "start"
-"""
 NOT_EXPRESSIBLE = rule(
     "SM590",
     "contract-not-expressible",
     Severity.WARNING,
     "the contract of '{component}' is not written for {form}: it has no words for "
     "{what}, since {reason}",
-    why="A file without that part would say something else.",
     help="take a form for general LTL (contracts, spot, tlsf), or demand it as a property pattern",
-    wrong=_LAMP.replace("{body}", "<>[](state=On)"),
-    right=_LAMP.replace("{body}", "[](<>(state=On))"),
 )
 
 Split = Callable[[str], dict[str, str]]

@@ -48,11 +48,13 @@ def _explanation(rule: "Rule") -> Iterator[str]:
     yield f"{rule.code} {rule.name} ({rule.severity.value})"
     yield ""
     yield f"  {_shown(rule.phrase)}"
+    page = rule.read_page()
     for title, text in (
-        ("Why", rule.why),
+        ("Why", page.why),
         ("What to do", _shown(rule.help)),
-        ("Wrong", rule.wrong),
-        ("Right", rule.right),
+        ("Wrong", page.wrong),
+        ("Right", page.right),
+        ("In Papyrus", page.papyrus),
     ):
         if text:
             yield ""

@@ -4,6 +4,8 @@ from enum import StrEnum
 
 from msgspec import Struct
 
+from sysmlc.diagnostics.rule_page import RulePage, parse_page, read_shipped_page
+
 
 class Severity(StrEnum):
     """How much a finding matters."""
@@ -19,18 +21,25 @@ class Severity(StrEnum):
 class Rule(Struct, frozen=True):
     """One kind of finding.
 
-    ``phrase`` is a format string filled by the facts given to ``Sink.report``. ``wrong`` and
-    ``right`` are small models (IR text, or source text) that have and nearly have the fault.
+    ``phrase`` and ``help`` are format strings filled by the facts given to ``Sink.report``.
+    ``page`` is the text of the rule's page if the rule is not sysmlc's own (see ``rule_page``).
     """
 
     code: str
     name: str
     severity: Severity
     phrase: str
-    why: str
     help: str = ""
-    wrong: str = ""
-    right: str = ""
+    page: str = ""
+
+    def read_page(self) -> RulePage:
+        """Return why the rule exists and its examples; the page is empty if nobody wrote one."""
+        if self.page:
+            return parse_page(self.page)
+        try:
+            return read_shipped_page(self.code)
+        except OSError:
+            return RulePage()
 
 
 _rules: dict[str, Rule] = {}
@@ -38,17 +47,10 @@ _names: set[str] = set()
 
 
 def rule(
-    code: str,
-    name: str,
-    severity: Severity,
-    phrase: str,
-    why: str,
-    help: str = "",
-    wrong: str = "",
-    right: str = "",
+    code: str, name: str, severity: Severity, phrase: str, help: str = "", page: str = ""
 ) -> Rule:
     """Make a rule and enter it in the catalogue; codes and names are never used twice."""
-    made = Rule(code, name, severity, phrase, why, help, wrong, right)
+    made = Rule(code, name, severity, phrase, help, page)
     if code in _rules or name in _names:
         raise ValueError(f"rule {code} {name}: the code or the name is taken")
     _rules[code] = made

@@ -18,31 +18,20 @@ VIOLATION = rule(
     "schema-violation",
     Severity.WARNING,
     "'{element}' is not as {schema} wants it: {problem}",
-    why="Other tools may refuse the file. sysmlc reads what is well-formed all the same.",
     help="write the file again with a tool that follows the schema",
-    wrong='<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0">'
-    "<InstanceHierarchy/></CAEXFile>",
-    right='<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="a.aml">'
-    '<SourceDocumentInformation .../><InstanceHierarchy Name="Plant"/></CAEXFile>',
 )
 NO_SCHEMA = rule(
     "SM187",
     "no-schema-for-file",
     Severity.WARNING,
     "'{file}' was not validated: no schema in '{folder}' is for {what}",
-    why="A schema is chosen by the namespace and name of the root element, and by SchemaVersion.",
     help="put the schema of that language into the folder, or leave --schema out",
-    wrong="sysmlc check plant.uml --schema caex/",
-    right="sysmlc check plant.aml --schema caex/",
 )
 MORE = rule(
     "SM188",
     "more-schema-violations",
     Severity.WARNING,
     "'{file}' is not as {schema} wants it in {count} more places",
-    why=f"Of one file {_MOST} violations are told each.",
-    wrong="a file written by a tool that knows another version of the schema",
-    right="the same file, written again by a tool that follows the schema",
 )
 
 

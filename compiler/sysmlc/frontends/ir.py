@@ -17,10 +17,7 @@ IR_SYNTAX = rule(
     "ir-syntax",
     Severity.ERROR,
     "'{path}' is no graph in text form: {reason}",
-    why="The text form is read strictly: a graph that is silently cut short gives wrong outputs.",
     help="docs/ir.md shows the form; --emit ir writes it",
-    wrong='Klass gate "Gate"',
-    right='Class gate "Gate"',
 )
 _FIRST = re.compile(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
 _KINDS = frozenset(kind.value.encode() for kind in Kind)

@@ -15,11 +15,7 @@ UNREADABLE = rule(
     "kept-comment",
     Severity.WARNING,
     "the comment that keeps what UML cannot say was changed: it is not used",
-    why="A plant of AutomationML that is saved as UML has such a comment. Without it units, roles "
-    "and documents of AutomationML are lost on the way back.",
     help="restore the comment, or remove it and save the plant again",
-    wrong='Package p "Plant"\n  Comment c "" body="sysmlc-kept/1 {"\n',
-    right='Package p "Plant"\n  Comment c "" body="a note"\n',
 )
 
 

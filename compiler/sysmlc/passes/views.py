@@ -15,11 +15,7 @@ MISSING = rule(
     "diagram-shows-unknown",
     Severity.INFO,
     "{missing} of the {all} elements that diagram '{name}' shows are in no file of the unit",
-    why="The author drew elements of another project, or elements that were deleted since; the "
-    "diagram is made without them.",
     help="give the other project as a further input",
-    wrong="<usedElements>_id_of_another_project</usedElements>",
-    right="<usedElements>_id_of_this_project</usedElements>",
 )
 
 SUBKIND = "diagram"

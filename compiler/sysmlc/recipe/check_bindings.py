@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import Function, Model, OpcUa, Service, Task
@@ -14,22 +13,14 @@ MATERIAL_MISSING = rule(
     "material-not-listed",
     Severity.ERROR,
     "the services of task '{task}' consume {needed} of '{material}', but the task lists {listed}",
-    "The scheduler reserves the materials of the task; what its services need beyond that would "
-    "be missing.",
-    "give the task an object flow from '{material}' with that quantity",
-    samples.task(need="2"),
-    samples.task(need="2", have="2"),
+    help="give the task an object flow from '{material}' with that quantity",
 )
 NODE_ID = rule(
     "SM612",
     "opc-ua-node-id-unstable",
     Severity.WARNING,
     "the OPC UA call on '{element}' {problem}",
-    "The index of a namespace can change when a server starts again; only its URI stays "
-    "(OPC 10000-3, 8.2.2).",
-    "state namespaceUri, or write the node id with nsu=",
-    samples.task(uri=""),
-    samples.task(),
+    help="state namespaceUri, or write the node id with nsu=",
 )
 
 _NODE_ID = re.compile(r"(?:(ns)=\d+;|nsu=[^;]+;)?[isgb]=.+", re.DOTALL)

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import in_topological_order
-from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, declared, graphs
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.expression import Expr, unreadable, variables
@@ -30,47 +29,31 @@ from sysmlc.recipe.model import (
     ValueType,
 )
 
-_EARLY = ("s g", "g d", "d a ok", "d b else", "a m", "b m", "m l", "l e")
-
-
-def _guarded(first: str, second: str) -> str:
-    return samples.task(
-        steps=("s g", "g l", "l d", f"d a {first}", f"d b {second}", "a m", "b m", "m e")
-    )
-
-
 GUARDS = rule(
     "SM605",
     "recipe-decision-unclear",
     Severity.WARNING,
     "the guards of '{decision}' {problem}",
-    "A decision must lead to exactly one way: with two ways the executor chooses, with none it "
-    "stops there.",
-    "write guards that exclude one another, and 'else' on one edge",
-    _guarded("n > 1", "n < 5"),
-    _guarded("n > 1", "n <= 1"),
+    help="write guards that exclude one another, and 'else' on one edge",
 )
 UNDECLARED = rule(
     "SM606",
     "recipe-variable-undeclared",
     Severity.ERROR,
     "in '{graph}', {problem}",
-    "The executor keeps the variables of a graph: parameters, attributes, and results of services "
-    "that are done already.",
-    "give the activity an attribute of that name, with a default value when it is read before "
-    "it is set",
-    samples.task(steps=_EARLY),
-    samples.task(steps=_EARLY, ok=" default=false"),
+    help=(
+        "give the activity an attribute of that name, with a default value when it is read before "
+        "it is set"
+    ),
 )
 UNREADABLE = rule(
     "SM616",
     "recipe-expression-unreadable",
     Severity.WARNING,
     "'{text}' at '{element}' is no expression that an executor can evaluate",
-    "Guards and values go into the recipe as typed trees; other text stays text.",
-    "write it in the expression grammar: names, literals, and, or, not, comparisons, arithmetic",
-    _guarded("if it is good", "else"),
-    samples.task(),
+    help=(
+        "write it in the expression grammar: names, literals, and, or, not, comparisons, arithmetic"
+    ),
 )
 
 

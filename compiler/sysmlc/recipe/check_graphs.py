@@ -3,37 +3,25 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding, graphs
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.flow import STEPS, cycles, forward_edges, reachable
 from sysmlc.recipe.model import FlowGraph, Model, Node
-
-_FORK = samples.NODES.replace('"good?" subkind="decision"', '"both" subkind="fork"')
-_FORKED = ("s g", "g l", "l d", "d a", "d b", "a m", "b m", "m e")
 
 NO_WAY = rule(
     "SM603",
     "recipe-graph-without-way",
     Severity.ERROR,
     "in '{graph}', {problem}",
-    "A task or service is executed from its initial node to a final node; what lies on no such "
-    "way is never executed, or never done.",
-    "connect the node, or delete it",
-    samples.task(steps=tuple(step for step in samples.STEPS if step != "a m")),
-    samples.task(),
+    help="connect the node, or delete it",
 )
 BAD_NESTING = rule(
     "SM604",
     "recipe-graph-ill-nested",
     Severity.ERROR,
     "in '{graph}', {problem}",
-    "A cycle needs a decision that can leave it, and a join closes the branches of one fork: "
-    "otherwise execution never ends or waits for ever.",
-    "let a decision leave the cycle; join all branches of a fork, and merge those of a decision",
-    samples.task(nodes=_FORK, steps=_FORKED),
-    samples.task(
-        nodes=_FORK.replace('"after" subkind="merge"', '"after" subkind="join"'), steps=_FORKED
+    help=(
+        "let a decision leave the cycle; join all branches of a fork, and merge those of a decision"
     ),
 )
 

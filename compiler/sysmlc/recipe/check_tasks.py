@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import Tables, providers_of
 from sysmlc.recipe.flow import cycles
@@ -14,44 +13,31 @@ BROKEN_REFERENCE = rule(
     "recipe-broken-reference",
     Severity.ERROR,
     "'{user}' needs '{missing}', which is no {level}",
-    "Levels of a recipe refer to one another by name; a reference that leads nowhere cannot be "
-    "scheduled or executed.",
-    "apply the stereotype for a {level} to '{missing}', or relate '{user}' to another element",
-    samples.recipe(supplier="mill"),
-    samples.recipe(),
+    help="apply the stereotype for a {level} to '{missing}', or relate '{user}' to another element",
 )
 CYCLIC_TASKS = rule(
     "SM602",
     "recipe-cyclic-tasks",
     Severity.ERROR,
     "the tasks {tasks} of recipe '{recipe}' wait for one another",
-    "The tasks of a recipe are ordered by control flow and by flow of material; in a circle no "
-    "task can be the first.",
-    "repetition belongs inside a task, as a loop of services",
-    samples.recipe("r.i r.a", "r.a r.b", "r.b r.a", "r.b r.f"),
-    samples.recipe(),
+    help="repetition belongs inside a task, as a loop of services",
 )
 NO_MACHINE = rule(
     "SM607",
     "task-without-machine",
     Severity.ERROR,
     "task '{task}' cannot be done: {problem}",
-    "The machines of a task must be those on which its machine services can run (thesis 3.5.1: "
-    "a machine is associated with a task if it provides the functionalities that it requires).",
-    "relate the task to machines that offer its services («Capability»), or the service to those "
-    "machines",
-    samples.task(supplier="camera"),
-    samples.task(),
+    help=(
+        "relate the task to machines that offer its services («Capability»), or the service to "
+        "those machines"
+    ),
 )
 PROVIDER_OUTSIDE = rule(
     "SM613",
     "provider-outside-equipment",
     Severity.WARNING,
     "service '{service}' could run on '{machine}', but task '{task}' is not related to it",
-    "The scheduler uses only the machines of the task; the offer of another machine is lost.",
-    "relate the task to '{machine}' as well, if that is meant",
-    samples.task(supplier="robot", place="robot camera"),
-    samples.task(supplier="robot camera", place="robot camera"),
+    help="relate the task to '{machine}' as well, if that is meant",
 )
 
 

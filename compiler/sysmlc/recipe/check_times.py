@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe import samples
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import (
     Tables,
@@ -21,51 +20,37 @@ TASK_TIME = rule(
     "task-takes-too-long",
     Severity.WARNING,
     "task '{task}' takes {derived} ms by its services, but {declared}",
-    "Two levels of the recipe disagree; a schedule made from either would be wrong for the other.",
-    "correct the duration of the task or of a service, or bound a loop",
-    samples.task(mount="500"),
-    samples.task(mount="600"),
+    help="correct the duration of the task or of a service, or bound a loop",
 )
 SERVICE_TIME = rule(
     "SM609",
     "service-time-differs",
     Severity.WARNING,
     "service '{service}' takes {derived} ms by its functions, but {declared} ms on '{machine}'",
-    "The functions of a service tell when its parts happen; their sum should be its duration.",
-    "correct the duration of a function or of the «Capability»",
-    samples.task(close="600"),
-    samples.task(close="290"),
+    help="correct the duration of a function or of the «Capability»",
 )
 STALE_GROUPS = rule(
     "SM610",
     "same-machine-differs",
     Severity.ERROR,
     "task '{task}': {problem}",
-    "Services between the taking and the giving back of a resource must run on one machine "
-    "(thesis 6.5.2), so that machine must exist, and a recipe file must say the same.",
-    "let one machine offer all services of the group, or correct who takes the resource",
-    samples.task(place="camera", supplier="robot camera"),
-    samples.task(place="robot", supplier="robot"),
+    help="let one machine offer all services of the group, or correct who takes the resource",
 )
 UNRELEASED = rule(
     "SM618",
     "resource-never-released",
     Severity.WARNING,
     "task '{task}' can end while '{resource}', taken at '{node}', is not given back",
-    "Whatever comes next on that machine would wait for the resource for ever.",
-    "call a service that releases it on every way to the end, or mark the function's use of it",
-    samples.task(release="clamp"),
-    samples.task(),
+    help=(
+        "call a service that releases it on every way to the end, or mark the function's use of it"
+    ),
 )
 UNBOUNDED = rule(
     "SM620",
     "loop-without-bound",
     Severity.INFO,
     "nothing bounds the loop at '{loop}'",
-    "Without a bound the longest duration of the task is not known.",
-    "apply «Loop» with maxIterations to the decision",
-    samples.task(steps=("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")),
-    samples.task(),
+    help="apply «Loop» with maxIterations to the decision",
 )
 
 

@@ -34,53 +34,36 @@ SHARED_CELL = rule(
     Severity.INFO,
     "no environment can keep C_E of '{floor}' as the thesis has it: '{one}' and '{other}' are both "
     "told that a cell is free, and go there; it is offered to one of them",
-    why="Each sensor tells one robot what is free. Two robots next to one free cell may both go "
-    "there, which the environment has promised will not happen.",
-    wrong="sysmlc robots hall.sysml (a floor with two robots)",
-    right="sysmlc robots hall.sysml (a floor with one robot)",
 )
 NOT_VALIDATED = rule(
     "SM571",
     "mission-fails",
     Severity.ERROR,
     "the mission of '{floor}' fails: {reason}",
-    why="Robots are synthesised as if others were never long in their way, and targets are given "
-    "as if nobody waited. All of it together is simulated from every admissible start.",
-    help="give more time, move obstacles or starts, or order fewer targets; the run shows one that "
-    "fails, of the last allocation that was tried",
-    wrong="sysmlc robots corridor.sysml (two robots that cannot pass one another)",
-    right="sysmlc robots hall.sysml (a floor on which they can)",
+    help=(
+        "give more time, move obstacles or starts, or order fewer targets; the run shows one that "
+        "fails, of the last allocation that was tried"
+    ),
 )
 NO_ALLOCATION = rule(
     "SM572",
     "no-allocation",
     Severity.ERROR,
     "no allocation of the targets of '{floor}' keeps the deadlines: {reason}",
-    why="Before anything is simulated together, the time that each robot travels alone must do.",
     help="give more time, another robot, or fewer targets",
-    wrong="sysmlc robots hall.sysml (a deadline of 2 steps)",
-    right="sysmlc robots hall.sysml (a deadline of 60 steps)",
 )
 NO_RELATION = rule(
     "SM573",
     "claim-does-not-hold",
     Severity.INFO,
     "on '{floor}' it does not hold that {claim}: {reason}",
-    why="The thesis claims relations between its contracts so that what is composed of robots, "
-    "environment and mission keeps the contract of the whole. Where one does not hold, the "
-    "simulation of all starts stands in for it.",
-    wrong="sysmlc robots hall.sysml (C_R assumes that all ways are free)",
-    right="sysmlc robots hall.sysml --no-relations",
 )
 NOT_DECIDED = rule(
     "SM574",
     "study-not-decided",
     Severity.INFO,
     "on '{floor}' it is not decided whether {claim}: {reason}",
-    why="Contracts of all robots together grow with the number of cells to the power of robots.",
     help="give more time (--question-limit), or study a smaller floor",
-    wrong="sysmlc robots large.sysml --question-limit 1",
-    right="sysmlc robots large.sysml --question-limit 600",
 )
 
 

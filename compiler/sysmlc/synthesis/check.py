@@ -7,7 +7,6 @@ from msgspec import Struct
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.reduction.reduce import reduced
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.synthesis.algebra.relations import Failure, refinement_failures
 from sysmlc.synthesis.algebra.systems import DomainError
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -22,50 +21,25 @@ SUFFIX = ".requirements"
 """What the contract of a component's requirements has behind the name of its behaviour's."""
 
 
-def _lamp(demand: str, *moves: str, constraint: str = "") -> str:
-    """A state machine with a requirement that its owner satisfies, in IR text."""
-    owner = "    -> classifier-behavior m\n"
-    told = f'    Constraint g language="LTL" body="{constraint}"\n' if constraint else ""
-    text = machine(arrow("a", "b", "start"), *moves)
-    return text.replace(owner, f"{owner}    -> satisfies q\n{told}", 1) + (
-        '  Class q "Stays on" role="requirement" req_id="R1"\n'
-        + "".join(
-            f'    Constraint f{at} language="LTL" body="{body}"\n'
-            for at, body in enumerate(demand.split("; "))
-        )
-    )
-
-
-_OFF = arrow("b", "a", "stop")
 BREAKS = rule(
     "SM560",
     "behaviour-breaks-requirement",
     Severity.ERROR,
     "the behaviour of '{component}' does not keep '{formula}'{said}",
-    why="A behaviour implements the requirements of its component: in every environment that they "
-    "assume it keeps what they demand.",
     help="change the behaviour, or the requirement; the run shows what happens",
-    wrong=_lamp("G (state=B -> X state=B)", _OFF),
-    right=_lamp("G (state=B -> X state=B)"),
 )
 ASSUMES = rule(
     "SM561",
     "behaviour-assumes-more",
     Severity.ERROR,
     "the behaviour of '{component}' assumes '{formula}', which its requirements do not{said}",
-    why="A behaviour may rely on no more than the requirements of its component do.",
     help="add it to the assumptions of the requirement, or let the behaviour do without it",
-    wrong=_lamp("G F state=B", constraint="G F event=start"),
-    right=_lamp("G F state=B; G F event=start", constraint="G F event=start"),
 )
 NOT_COMPARED = rule(
     "SM562",
     "behaviour-not-compared",
     Severity.WARNING,
     "the behaviour of '{component}' is not compared with its requirements: {reason}",
-    why="Only contracts in GR(1), or that history bits bring there, are compared.",
-    wrong=_lamp("G (F G state=B -> F state=A)", _OFF),
-    right=_lamp("G (state=A -> F state=A)", _OFF),
 )
 
 
@@ -74,10 +48,7 @@ GIVEN_UP = rule(
     "check-given-up",
     Severity.INFO,
     "not everything that may be suspicious in '{component}' was looked for: {reached}",
-    why="Some questions about a contract take longer than its verdict.",
     help="give more time (--question-limit), or check the contracts of parts",
-    wrong="sysmlc contracts check large.uml --question-limit 1",
-    right="sysmlc contracts check large.uml --question-limit 600",
 )
 
 

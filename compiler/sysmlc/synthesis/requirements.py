@@ -11,41 +11,13 @@ from sysmlc.synthesis.decide import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
 
-
-def _lamp(other: str) -> str:
-    """Two requirements of a lamp in SysML v2, one of which assumes something."""
-    return f"""\
-package Plant {{
-    private import ScalarValues::*;
-    part def Lamp {{
-        in attribute power : Boolean;
-        out attribute lit : Boolean;
-    }}
-    requirement def Powered {{
-        subject lamp : Lamp;
-        assume constraint {{ lamp.power }}
-        require constraint {{ language "ltl" /* G (lit -> power) */ }}
-    }}
-    requirement def Shines {{
-        subject lamp : Lamp;
-        require constraint {{ language "ltl" /* {other} */ }}
-        require constraint {{ language "ltl" /* G (lit -> power) */ }}
-    }}
-}}
-"""
-
-
 LEANS = rule(
     "SM599",
     "requirements-lean-on-one-another",
     Severity.WARNING,
     "the requirements of '{component}' can be kept together only where all that any of them "
     "assumes holds",
-    why="Each requirement is a viewpoint: what it demands is owed where its own assumptions hold, "
-    "whatever becomes of those of the others.",
     help="let each requirement assume what it needs itself",
-    wrong=_lamp("G F lit"),
-    right=_lamp("G F !lit"),
 )
 
 

@@ -5,6 +5,7 @@ import json
 import jsonschema
 import pytest
 
+from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.diagnostics import Sink
@@ -16,7 +17,6 @@ from sysmlc.logic.contract import (
     IntegerDomain,
 )
 from sysmlc.logic.ltl import parse_formula
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.passes import pipeline
 from sysmlc.support import resources
 from sysmlc.support.output import Output

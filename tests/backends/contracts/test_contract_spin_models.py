@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from long_runs import quick_first
+from machine_samples import arrow, choice, machine, machine_of, region, state
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir.text import parse_text
@@ -19,7 +20,6 @@ from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.domains import values
 from sysmlc.logic.formats.spin_text import spin, spin_conjunct
 from sysmlc.logic.formula import Apply, Const, Op, Var, variables
-from sysmlc.logic.samples import arrow, choice, machine, machine_of, region, state
 from sysmlc.passes import pipeline
 
 spot = pytest.importorskip("spot")

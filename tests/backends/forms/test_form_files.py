@@ -3,6 +3,7 @@
 import pytest
 import spot
 
+from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.forms import NOT_EXPRESSIBLE
 from sysmlc.diagnostics import Sink
@@ -10,7 +11,6 @@ from sysmlc.driver.registry import load_backends
 from sysmlc.ir.text import parse_text
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.passes import pipeline
 from sysmlc.support.output import Output
 
@@ -58,7 +58,7 @@ def test_spot_gets_a_formula_and_who_decides():
 
 @pytest.mark.parametrize(("name", "count"), [("gr1c", 1), ("slugs", 2), ("tlsf", 0), ("spot", 0)])
 def test_what_a_tool_has_no_words_for_is_told_at_the_constraint(name, count):
-    _graph, files, sink = emitted(NOT_EXPRESSIBLE.wrong, name)
+    _graph, files, sink = emitted(NOT_EXPRESSIBLE.read_page().wrong, name)
     told = [one for one in sink if one.rule is NOT_EXPRESSIBLE]
     assert [one.subject.name for one in told] == ["Lamp::Lit"] * count
     assert len(files) == (len(ENDINGS[name]) if not count else 0)

@@ -76,12 +76,12 @@ def test_a_wrong_template_is_reported(tmp_path, text):
 
 
 def test_what_no_diagram_shows_is_reported():
-    _, sink = emitted(parse_text(NOT_DRAWN.wrong))
+    _, sink = emitted(parse_text(NOT_DRAWN.read_page().wrong))
     assert [found.message for found in sink] == ["1 Unit of 'Plant' in no diagram: second"]
 
 
 def test_what_a_diagram_shows_is_not_reported():
-    files, sink = emitted(parse_text(NOT_DRAWN.right))
+    files, sink = emitted(parse_text(NOT_DRAWN.read_page().right))
     assert len(files) == 1
     assert list(sink) == []
 
@@ -196,12 +196,12 @@ StateMachine outer "Outer"
 
 
 def test_a_message_that_another_overtakes_is_reported():
-    _, sink = emitted(parse_text(OVERTAKEN.wrong))
+    _, sink = emitted(parse_text(OVERTAKEN.read_page().wrong))
     assert [found.message for found in sink] == [
         "message 'slow' of 'Feed' is drawn where it is sent, though 'quick' comes first on "
         "lifeline 'belt'"
     ]
-    _, sink = emitted(parse_text(OVERTAKEN.right))
+    _, sink = emitted(parse_text(OVERTAKEN.read_page().right))
     assert list(sink) == []
 
 

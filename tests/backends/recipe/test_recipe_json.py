@@ -6,13 +6,13 @@ import json
 import pytest
 from jsonschema import Draft202012Validator
 
+import recipe_samples as samples
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import full_catalogue
 from sysmlc.ir import parse_text
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe import samples
 from sysmlc.support import resources
 from sysmlc.support.output import Output
 
@@ -46,7 +46,9 @@ def test_the_schema_is_a_schema():
 
 
 RIGHT = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
-RIGHT += [rule.right for rule in full_catalogue().values() if "SM601" <= rule.code <= "SM622"]
+RIGHT += [
+    rule.read_page().right for rule in full_catalogue().values() if "SM601" <= rule.code <= "SM622"
+]
 
 
 @pytest.mark.parametrize("text", dict.fromkeys(RIGHT), ids=lambda text: str(len(text)))
@@ -63,8 +65,8 @@ def test_the_file_has_the_name_of_the_recipe_and_its_sources_in_order():
 
 def test_a_recipe_without_tasks_is_told_and_not_written():
     rule = full_catalogue()["SM621"]
-    assert emit(rule.wrong) == ({}, ["SM621"])
-    assert emit(rule.right)[1] == []
+    assert emit(rule.read_page().wrong) == ({}, ["SM621"])
+    assert emit(rule.read_page().right)[1] == []
 
 
 def test_an_opc_ua_call_that_nobody_can_make_is_left_out():

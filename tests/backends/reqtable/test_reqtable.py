@@ -190,8 +190,8 @@ def test_the_same_name_twice_gives_two_files():
 
 @pytest.mark.parametrize("rule", [rules.UNSATISFIED, rules.UNVERIFIED], ids=lambda r: r.name)
 def test_open_requirements_are_reported(rule):
-    assert rule in [found.rule for found in emitted(rule.wrong)[1]]
-    assert [found.rule for found in emitted(rule.right)[1]] == []
+    assert rule in [found.rule for found in emitted(rule.read_page().wrong)[1]]
+    assert [found.rule for found in emitted(rule.read_page().right)[1]] == []
 
 
 def open_ones(text):
@@ -226,11 +226,15 @@ def test_derivations_in_a_circle_do_not_hang():
 
 
 def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
-    (tmp_path / "requirements.md.j2").write_text(rules.BAD_TEMPLATE.wrong, encoding="utf-8")
+    (tmp_path / "requirements.md.j2").write_text(
+        rules.BAD_TEMPLATE.read_page().wrong, encoding="utf-8"
+    )
     files, found = emitted(PLANT_MODEL, tmp_path)
     assert [one.rule for one in found if one.is_error] == [rules.BAD_TEMPLATE]
     assert list(files) == ["requirements/Plant.requirements.csv"]
-    (tmp_path / "requirements.md.j2").write_text(rules.BAD_TEMPLATE.right, encoding="utf-8")
+    (tmp_path / "requirements.md.j2").write_text(
+        rules.BAD_TEMPLATE.read_page().right, encoding="utf-8"
+    )
     assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant"
 
 

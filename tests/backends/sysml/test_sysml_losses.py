@@ -22,8 +22,8 @@ RULES = (
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in [one[:5] for one in written(refined(rule.wrong))[1]]
-    assert written(refined(rule.right))[1] == []
+    assert rule.code in [one[:5] for one in written(refined(rule.read_page().wrong))[1]]
+    assert written(refined(rule.read_page().right))[1] == []
 
 
 def test_a_loss_is_counted_and_told_once():
@@ -71,7 +71,13 @@ def test_every_small_model_of_our_rules_can_be_loaded():
 
 
 def texts():
-    return sorted({text for rule in full_catalogue().values() for text in (rule.wrong, rule.right)})
+    return sorted(
+        {
+            text
+            for rule in full_catalogue().values()
+            for text in (rule.read_page().wrong, rule.read_page().right)
+        }
+    )
 
 
 def graph_of(text):

@@ -21,8 +21,8 @@ RULES = (
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in [one[:5] for one in saved(refined(rule.wrong))[1]]
-    assert saved(refined(rule.right))[1] == []
+    assert rule.code in [one[:5] for one in saved(refined(rule.read_page().wrong))[1]]
+    assert saved(refined(rule.read_page().right))[1] == []
 
 
 def test_a_loss_is_counted_and_told_once():

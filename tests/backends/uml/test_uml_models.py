@@ -22,7 +22,13 @@ def test_models_of_rules_can_be_saved_and_read():
 
 
 def texts():
-    return sorted({text for rule in full_catalogue().values() for text in (rule.wrong, rule.right)})
+    return sorted(
+        {
+            text
+            for rule in full_catalogue().values()
+            for text in (rule.read_page().wrong, rule.read_page().right)
+        }
+    )
 
 
 def graph_of(text):

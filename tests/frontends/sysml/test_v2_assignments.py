@@ -189,7 +189,7 @@ def test_a_structural_feature_gets_the_value_of_its_pin():
 
 def test_the_rule_reports_its_wrong_model_and_not_its_right_one():
     rule = catalogue()["SM544"]
-    for text, expected in ((rule.wrong, True), (rule.right, False)):
+    for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         graph, sink = parse_text(text), Sink()
         pipeline.run(graph, sink, verify_each=True)
         assert ("SM544" in [one.rule.code for one in sink]) is expected

@@ -147,7 +147,7 @@ def test_a_part_without_a_contract_is_opened():
 @pytest.mark.parametrize("code", ["SM508", "SM524", "SM525", "SM526"])
 def test_rules_report_their_wrong_model_and_not_their_right_one(code):
     rule = catalogue()[code]
-    for text, expected in ((rule.wrong, True), (rule.right, False)):
+    for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         sink = Sink()
         graph = parse_text(text)
         pipeline.run(graph, sink, verify_each=True)

@@ -15,8 +15,8 @@ RULES = (rules.UNSUPPORTED, rules.APPROXIMATED, rules.NOT_IN_GRAPH)
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
 def test_the_wrong_model_has_the_finding_and_the_right_one_has_not(rule):
     assert rule.code in CODES
-    assert rule.code in read(rule.wrong).codes()
-    assert rule.code not in read(rule.right).codes()
+    assert rule.code in read(rule.read_page().wrong).codes()
+    assert rule.code not in read(rule.read_page().right).codes()
 
 
 def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():

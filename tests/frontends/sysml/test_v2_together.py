@@ -27,12 +27,12 @@ def checked(text, limits=None):
 @pytest.mark.parametrize("code", CODES)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     rule = catalogue()[code]
-    assert code in [one.rule.code for one in checked(rule.wrong)[1]]
-    assert checked(rule.right)[1] == []
+    assert code in [one.rule.code for one in checked(rule.read_page().wrong)[1]]
+    assert checked(rule.read_page().right)[1] == []
 
 
 def test_what_nothing_promises_is_told_with_a_run():
-    (result,), found = checked(together_rules.OPEN.wrong)
+    (result,), found = checked(together_rules.OPEN.read_page().wrong)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.rule.code for one in found] == ["SM595", "SM597"]
     assert found[0].message == (
@@ -50,15 +50,20 @@ def test_what_nothing_promises_is_told_with_a_run():
 
 def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
     for rule, words in ((together_rules.OPEN, "do not fit"), (together_rules.BREAK, "fit")):
-        silent = rule.wrong.replace("subject cell : Cell", "subject cell : Other").replace(
-            "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
+        silent = (
+            rule.read_page()
+            .wrong.replace("subject cell : Cell", "subject cell : Other")
+            .replace(
+                "part def Cell",
+                "part def Other { out attribute taken : Boolean; }\n    part def Cell",
+            )
         )
         (result,), _ = checked(silent)
         assert result.text() == f"Line::Cell: its 2 parts {words} together"
 
 
 def test_what_takes_too_long_is_not_decided():
-    (result,), (told,) = checked(together_rules.BREAK.right, Limits(nodes=1))
+    (result,), (told,) = checked(together_rules.BREAK.read_page().right, Limits(nodes=1))
     assert result.text() == "Line::Cell: its parts are not put together"
     assert told.message == (
         "the parts of 'Line::Cell' are not put together: the limit of 1 nodes was reached"
@@ -76,12 +81,12 @@ def told_of_requirements(text):
 
 def test_requirements_that_lean_on_one_another():
     rule = catalogue()["SM599"]
-    told = told_of_requirements(rule.wrong)["SM599"]
+    told = told_of_requirements(rule.read_page().wrong)["SM599"]
     assert told.notes == ("'Shines' demands 'lit'", "'Shines' demands 'lit -> power'")
-    assert "SM599" not in told_of_requirements(rule.right)
+    assert "SM599" not in told_of_requirements(rule.read_page().right)
 
 
-APART = together_rules.OPEN.right.replace("bind feeder.ready = picker.ready;", "")
+APART = together_rules.OPEN.read_page().right.replace("bind feeder.ready = picker.ready;", "")
 
 
 def test_parts_that_share_nothing_are_not_said_to_fit():
@@ -101,7 +106,7 @@ def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter
 
 
 def test_what_no_part_speaks_of_is_not_kept():
-    nobody = together_rules.OPEN.right.replace("bind picker.taken = taken;", "")
+    nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
     (result,), found = checked(nobody)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.message for one in found] == [
@@ -110,7 +115,7 @@ def test_what_no_part_speaks_of_is_not_kept():
 
 
 def test_two_that_send_the_same_lose_one_of_it():
-    wrong = together_rules.LOST.wrong.replace("do send off()", "do send on()")
+    wrong = together_rules.LOST.read_page().wrong.replace("do send off()", "do send on()")
     _, found = checked(wrong)
     assert [one.message for one in found] == [
         "in 'Room::Room' two things are sent in one step, and one of them is lost ('on' by 'one' "

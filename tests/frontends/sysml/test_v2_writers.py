@@ -109,7 +109,7 @@ def test_machines_that_write_the_same_promise_nothing_of_it():
 
 def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
     rule = catalogue()["SM546"]
-    for text, expected in ((rule.wrong, True), (rule.right, False)):
+    for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         graph, sink = parse_text(text), Sink()
         pipeline.run(graph, sink, verify_each=True)
         assert ("SM546" in [one.rule.code for one in sink]) is expected

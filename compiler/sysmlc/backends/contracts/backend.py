@@ -21,20 +21,14 @@ TOO_LARGE = rule(
     Severity.WARNING,
     "the contract of '{component}' compares more values than a SPIN formula can list; "
     "'{file}' is not written",
-    why="SPIN's formulas know no arithmetic: every comparison is written out over all values.",
     help="give the properties smaller ranges",
-    wrong="guard [actual < target], both in 0..100000",
-    right="guard [actual < target], both in 0..15",
 )
 BAD_TEMPLATE = rule(
     "SM521",
     "contract-template-fault",
     Severity.ERROR,
     "template contract.md.j2 cannot be used: {fault}",
-    why="The template of the folder given by --templates replaces ours.",
     help="correct it, or start from the shipped templates/contracts/contract.md.j2",
-    wrong="{% for row in %}",
-    right="{% for row in rows %} ... {% endfor %}",
 )
 
 

@@ -36,21 +36,14 @@ NOT_DRAWN = rule(
     "author-diagram-not-drawn",
     Severity.INFO,
     "diagram '{name}' of its author is not drawn: {reason}",
-    why="Diagrams that list or compare (tables, matrices) and those of other languages have no "
-    "place among the drawings; neither has a diagram that shows nothing of the model.",
     help="requirements as tables: --emit +reqtable",
-    wrong='View v "Requirements" diagram="table" diagram_type="Requirement Table"',
-    right='View v "Requirements" diagram="req" diagram_type="Requirement Diagram"',
 )
 LEFT_OUT = rule(
     "SM703",
     "left-out-of-author-diagram",
     Severity.INFO,
     "{count} of the {all} elements that diagram '{name}' shows are not drawn: {names}",
-    why="The diagram was made with what its notation has a place for.",
     help="the element is still in the graph (--emit graph) and in the other outputs",
-    wrong='View v "Use cases" diagram="uc"\n  -> references pump\nUnit pump "l/s"',
-    right='View v "Use cases" diagram="uc"\n  -> references start\nUseCase start "Start"',
 )
 
 FOLDER = "author/"

@@ -33,10 +33,7 @@ BAD_TEMPLATE = rule(
     "bad-diagram-template",
     Severity.ERROR,
     "the template for {kind} diagrams cannot be used: {fault}",
-    why="A template of yours replaces the shipped one of the same name; it has a fault.",
     help="compare it with templates/plantuml of sysmlc; docs/diagrams.md lists the names",
-    wrong="bdd.puml.j2: {{ view.boxs }}",
-    right="bdd.puml.j2: {{ view.boxes }}",
 )
 
 KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (

@@ -10,11 +10,7 @@ NOT_DRAWN = rule(
     "in-no-diagram",
     Severity.INFO,
     "{count} {kind} of '{owner}' in no diagram: {names}",
-    why="Some kinds have no place in the diagrams, and neither has a connection without both "
-    "ends, a message without lifelines or an interaction without lifelines.",
     help="the element is still in the graph (--emit graph) and in the other outputs",
-    wrong='Package p "Plant"\n  Unit u "second"',
-    right='Package p "Plant"\n  Class b "Line" role="block"',
 )
 
 DRAWN_KINDS = (

@@ -10,54 +10,6 @@ OVERTAKEN = rule(
     Severity.INFO,
     "message '{message}' of '{interaction}' is drawn where it is sent, though '{other}' comes "
     "first on lifeline '{lifeline}'",
-    why="PlantUML draws a message as one level line, so the diagram shows that it arrives before "
-    "what the model puts between sending and receiving. The graph has the order of the model.",
-    wrong="""\
-Interaction feed "Feed"
-  Lifeline g "gate"
-  Lifeline b "belt"
-  Occurrence s1
-    -> covers g
-  Occurrence s2
-    -> covers g
-  Occurrence r2
-    -> covers b
-  Occurrence r1
-    -> covers b
-  Message m1 "slow" subkind="asynch-call"
-    -> send-event s1
-    -> receive-event r1
-    -> flow-source g
-    -> flow-target b
-  Message m2 "quick" subkind="asynch-call"
-    -> send-event s2
-    -> receive-event r2
-    -> flow-source g
-    -> flow-target b
-""",
-    right="""\
-Interaction feed "Feed"
-  Lifeline g "gate"
-  Lifeline b "belt"
-  Occurrence s1
-    -> covers g
-  Occurrence s2
-    -> covers g
-  Occurrence r1
-    -> covers b
-  Occurrence r2
-    -> covers b
-  Message m1 "slow" subkind="asynch-call"
-    -> send-event s1
-    -> receive-event r1
-    -> flow-source g
-    -> flow-target b
-  Message m2 "quick" subkind="asynch-call"
-    -> send-event s2
-    -> receive-event r2
-    -> flow-source g
-    -> flow-target b
-""",
 )
 
 

@@ -8,7 +8,6 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.recipe import samples
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.json_text import encode_json
 from sysmlc.support.output import Output
@@ -21,10 +20,7 @@ EMPTY_RECIPE = rule(
     "recipe-without-tasks",
     Severity.WARNING,
     "recipe '{recipe}' has no tasks; no file is written for it",
-    "A recipe file holds at least one task (thesis 3.5.1).",
-    "call tasks from the activity, or type its object nodes by tasks",
-    'Activity r "Build" level="recipe"\n',
-    samples.recipe(),
+    help="call tasks from the activity, or type its object nodes by tasks",
 )
 
 

@@ -6,88 +6,60 @@ from sysmlc.backends.uml.kept import Kept
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 
-_GATE = 'Package p "Plant"\n  Class gate "Gate"\n'
-
 UNSAID_KIND = rule(
     "SM720",
     "uml-without-kind",
     Severity.WARNING,
     "UML has no place for {kind} ({count} left out of the saved model)",
-    why="The saved model holds what UML and SysML v1 can say; this they cannot.",
     help="--emit +ir or +ecore saves the whole graph",
-    wrong=_GATE + '    Facet f "Control"\n',
-    right=_GATE,
 )
 UNSAID_EDGE = rule(
     "SM721",
     "uml-without-relation",
     Severity.WARNING,
     "UML has no '{edge}' from {kind} to {target} ({count} left out of the saved model)",
-    why="The saved model holds what UML and SysML v1 can say; this relation they cannot.",
     help="--emit +ir or +ecore saves the whole graph",
-    wrong=_GATE + '  Class other "Other"\n    -> mirrors gate\n',
-    right=_GATE + '  Class other "Other"\n    -> specializes gate\n',
 )
 UNSAID_ATTRIBUTE = rule(
     "SM722",
     "uml-without-attribute",
     Severity.WARNING,
     "UML has no '{attribute}' of {kind} ({count} left out of the saved model)",
-    why="The saved model holds what UML and SysML v1 can say; this attribute they cannot.",
     help="--emit +ir or +ecore saves the whole graph",
-    wrong='Package p "Plant"\n  Class gate "Gate" change_mode="create"\n',
-    right='Package p "Plant"\n  Class gate "Gate" abstract=true\n',
 )
 MOVED = rule(
     "SM723",
     "uml-moved",
     Severity.INFO,
     "UML lets no {owner} own {kind}: saved with the nearest owner that may ({count})",
-    why="Papyrus opens only what stands where UML allows it.",
-    wrong='Package p "Plant"\n  Class gate "Gate"\n    Instance one "Gate 1"\n',
-    right='Package p "Plant"\n  Class gate "Gate"\n  Instance one "Gate 1"\n',
 )
 APPROXIMATED = rule(
     "SM724",
     "uml-approximated",
     Severity.INFO,
     "{said} is saved as {written} ({count})",
-    why="UML and SysML v1 say it in another way; a compiler that reads the saved model sees that.",
-    wrong='Package p "Plant"\n  Requirement r "No jam" text="It never jams."\n',
-    right='Package p "Plant"\n  Class r "No jam" role="requirement" text="It never jams."\n',
 )
 ILLEGAL = rule(
     "SM725",
     "uml-illegal-character",
     Severity.WARNING,
     "{count} characters that XML cannot hold were replaced in the saved model",
-    why="XML 1.0 holds no control characters (clause 2.2).",
-    wrong='Package p "Pl\\u0001ant"\n',
-    right='Package p "Plant"\n',
 )
 KEPT = rule(
     "SM726",
     "uml-kept",
     Severity.INFO,
     "UML has no words for {count} facts of the plant: a comment keeps them for the way back",
-    why="AutomationML has units, roles, facets, documents and ids of its own. Tools show the "
-    "comment and leave it alone; sysmlc reads it, so that the plant comes back whole.",
-    wrong='Document "a.aml#" "a.aml" subkind="caex"\nPackage p "Plant"\n  Facet f "Control"\n',
-    right=_GATE,
 )
 RESPELT_ID = rule(
     "SM747",
     "uml-value-names-respelt-id",
     Severity.WARNING,
     "{count} values name elements by IDs that are no names of XML: the saved elements have others",
-    why="An xmi:id may not start with a digit, nor hold blanks or braces. Such an ID gets another "
-    "spelling, and a value that names it as text leads nowhere in the saved model.",
-    help="let the plant's tool give IDs that start with a letter, or follow these values in the "
-    "plant and not in the saved model",
-    wrong='Class a "A" role="block"\n  Property a.r "r" role="value" default="7x"\n'
-    'Class 7x "B" role="block"\n',
-    right='Class a "A" role="block"\n  Property a.r "r" role="value" default="x7"\n'
-    'Class x7 "B" role="block"\n',
+    help=(
+        "let the plant's tool give IDs that start with a letter, or follow these values in the "
+        "plant and not in the saved model"
+    ),
 )
 _UNSAID = frozenset({UNSAID_KIND, UNSAID_EDGE, UNSAID_ATTRIBUTE})
 

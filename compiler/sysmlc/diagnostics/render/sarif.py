@@ -39,7 +39,7 @@ def _driver(rules: list[Rule]) -> dict[str, object]:
                 "id": rule.code,
                 "name": rule.name,
                 "shortDescription": {"text": rule.name.replace("-", " ")},
-                "fullDescription": {"text": rule.why},
+                "fullDescription": {"text": rule.read_page().why},
                 "defaultConfiguration": {"level": _LEVELS[rule.severity]},
             }
             for rule in rules

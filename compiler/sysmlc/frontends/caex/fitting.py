@@ -12,21 +12,13 @@ UNFIT = rule(
     "value-not-of-data-type",
     Severity.WARNING,
     "the value '{value}' of '{element}'{more} is no {data_type}",
-    why="The attribute promises values of its data type. One that is none counts as text: nothing "
-    "can be calculated or compared with it.",
     help="{hint}",
-    wrong='<Attribute Name="length" AttributeDataType="xs:double"><Value>two</Value></Attribute>',
-    right='<Attribute Name="length" AttributeDataType="xs:double"><Value>2.0</Value></Attribute>',
 )
 UNKNOWN_TYPE = rule(
     "SM632",
     "unknown-data-type",
     Severity.WARNING,
     "the data type '{data_type}' of '{element}' is none of XML Schema; {hint}",
-    why="CAEX takes its data types from XML Schema. Values of any other type count as text, and "
-    "nobody can say whether they are right.",
-    wrong='<Attribute Name="made" AttributeDataType="xs:datetime"/>',
-    right='<Attribute Name="made" AttributeDataType="xs:dateTime"/>',
 )
 
 _HINTS = {

@@ -20,11 +20,7 @@ DESCRIBED_MIRROR = rule(
     "described-mirror",
     Severity.WARNING,
     "the description of '{element}' is left out: in '{holder}' it only shows another element",
-    why="What a facet or group holds is no element of its own. Its name and ID are kept.",
     help="describe the element that it shows, or the facet or group",
-    wrong='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c">'
-    "<Description>the left one</Description></InternalElement>\nin a group",
-    right='<InternalElement Name="m" RefBaseSystemUnitPath="6f1c"/>\nin a group',
 )
 
 UNKNOWN_FACET = rule(
@@ -32,11 +28,6 @@ UNKNOWN_FACET = rule(
     "group-of-unknown-facet",
     Severity.WARNING,
     "the group '{element}' is for facets called '{facet}', and none is; {hint}",
-    why="The value of AssociatedFacet is the name of facets of the elements that the group shows: "
-    "only these facets are of interest there. Of a name that none has nobody knows what is meant.",
-    wrong='<Attribute Name="AssociatedFacet"><Value>PLCFacte</Value></Attribute>\n'
-    "in a group, where the facet is called PLCFacet",
-    right='<Attribute Name="AssociatedFacet"><Value>PLCFacet</Value></Attribute>',
 )
 
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}

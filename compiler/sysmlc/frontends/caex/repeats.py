@@ -13,23 +13,14 @@ REPEATED_NAME = rule(
     "repeated-caex-name",
     Severity.WARNING,
     "{owner} has two of '{tag}' named '{name}'",
-    why="Class paths, mappings and the attributes that an instance repeats are found by name: of "
-    "two with one name they mean the first.",
     help="rename or remove one of them",
-    wrong='<Attribute Name="length"/><Attribute Name="length"/>',
-    right='<Attribute Name="length"/><Attribute Name="width"/>',
 )
 REPEATED_ALIAS = rule(
     "SM636",
     "repeated-alias",
     Severity.WARNING,
     "the alias '{alias}' stands for '{path}' here, and for '{first}' before",
-    why="An alias means one file. The first ExternalReference that declares it counts.",
     help="give one of them another alias",
-    wrong='<ExternalReference Path="libs/roles.aml" Alias="Roles"/>\n'
-    '<ExternalReference Path="libs/more.aml" Alias="Roles"/>',
-    right='<ExternalReference Path="libs/roles.aml" Alias="Roles"/>\n'
-    '<ExternalReference Path="libs/more.aml" Alias="More"/>',
 )
 
 _NAMED = frozenset({*CLASS_TAGS, *LIBRARIES, "Attribute"})

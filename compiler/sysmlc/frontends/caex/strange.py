@@ -16,20 +16,13 @@ UNKNOWN_ATTRIBUTE = rule(
     "unknown-caex-attribute",
     Severity.WARNING,
     "{element} has an attribute '{attribute}', which CAEX does not have at '{tag}'{more}; {hint}",
-    why="Nothing is made of what it says. Attributes in namespaces of other languages are not "
-    "meant; what else a tool has to say belongs into AdditionalInformation.",
-    wrong='<InternalElement Name="sw" RefBaseClassPath="Gate Lib/Switch"/>',
-    right='<InternalElement Name="sw" RefBaseSystemUnitPath="Gate Lib/Switch"/>',
 )
 STRAY_TEXT = rule(
     "SM634",
     "stray-caex-text",
     Severity.WARNING,
     "{element} holds the text '{text}'{more}; CAEX has none at '{tag}'",
-    why="Nothing is made of it. Something was pasted into the file, or a tag is missing.",
     help="remove it, or put it into a Description",
-    wrong='<Attribute Name="length">2.5</Attribute>',
-    right='<Attribute Name="length"><Value>2.5</Value></Attribute>',
 )
 
 _Shape = tuple[str, tuple[str, ...]]

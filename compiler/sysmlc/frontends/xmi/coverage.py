@@ -14,12 +14,7 @@ EXTERNAL = rule(
     "external-element",
     Severity.INFO,
     "{reason}",
-    why="The element stands for something in a file that is not part of the compile unit; the "
-    "graph knows its kind and its name, but not its content. Only 'sysmlc coverage' lists them, "
-    "one by one; 'missing-library' tells of each file once.",
     help="give the other file as a further input",
-    wrong='<type xmi:type="uml:Class" href="Other.uml#_pallet"/>',
-    right='<type xmi:idref="_pallet"/>',
 )
 
 

@@ -14,11 +14,7 @@ UNLIKE = rule(
     "bound-unlike",
     Severity.WARNING,
     "'{one}' is bound to '{other}', and no value can be both: {types}",
-    why="Bound features have the same values, so one of their types specialises the other (KerML "
-    "1.0, validateBindingConnectorTypeConformance).",
     help="bind features of types that conform",
-    wrong="part def A;\npart def B;\npart p { part a : A; part b : B; bind a = b; }\n",
-    right="part def A;\npart def B :> A;\npart p { part a : A; part b : B; bind a = b; }\n",
 )
 
 

@@ -3,43 +3,32 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.values import cannot_be, value
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node
 
-NOT_NATURAL = error(
+NOT_NATURAL = rule(
     "SM260",
     "bound-not-natural",
+    Severity.ERROR,
     "the multiplicity of '{name}' has a bound that is {found}",
-    "How many there are is 0, 1, 2 and so on (KerML 1.0, "
-    "validateMultiplicityRangeBoundResultTypes).",
-    "write a whole number that is not negative, or *",
-    'part wheels["four"];\n',
-    "part wheels[4];\n",
+    help="write a whole number that is not negative, or *",
 )
-NOT_BOOLEAN = error(
+NOT_BOOLEAN = rule(
     "SM262",
     "condition-not-boolean",
+    Severity.ERROR,
     "the {role} of '{name}' is neither true nor false",
-    "It decides whether something is so (KerML 1.0, "
-    "validateElementFilterMembershipConditionIsBoolean; SysML 2.0, "
-    "validateTransitionFeatureMembershipGuardExpression).",
-    "write a comparison, or something of the type Boolean",
-    'state def Running {\n    state a;\n    state b;\n    transition first a if "x" then b;\n}\n',
-    "state def Running {\n    state a;\n    state b;\n    transition first a if 2 > 1 then b;\n}\n",
+    help="write a comparison, or something of the type Boolean",
 )
 BOUND_EXPRESSION = rule(
     "SM253",
     "bound-is-expression",
     Severity.WARNING,
     "the multiplicity of '{name}' has an expression as a bound",
-    why="The notation has numbers, '*' and names between the brackets (KerML 1.0, 8.2.5.11, "
-    "MultiplicityExpressionMember): other tools may refuse the file. sysmlc reads it all the same.",
     help="give the expression a name: attribute n = ...; and write [n]",
-    wrong="attribute axles = 2;\npart wheels[2 * axles];\n",
-    right="attribute axles = 2;\nattribute count = 2 * axles;\npart wheels[count];\n",
 )
 
 _OPERATED = kinds_of("InstantiationExpression")

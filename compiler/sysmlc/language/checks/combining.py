@@ -2,61 +2,46 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import DECLARED_TYPES, Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of, written
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node, Relation
 
-ALONE = error(
+ALONE = rule(
     "SM254",
     "one-operand",
+    Severity.ERROR,
     "'{name}' is {made} '{general}' alone",
-    "It takes two to make something of several (KerML 1.0, validateTypeUnioningTypesNotSelf, "
-    "validateFeatureChainingFeatureNotOne and alike).",
-    "name a second one, or specialise '{general}'",
-    "classifier Gate;\nclassifier Barrier unions Gate;\n",
-    "classifier Gate;\nclassifier Fence;\nclassifier Barrier unions Gate, Fence;\n",
+    help="name a second one, or specialise '{general}'",
 )
-ITSELF = error(
+ITSELF = rule(
     "SM255",
     "operand-itself",
+    Severity.ERROR,
     "'{name}' is {made} itself",
-    "What something is made of cannot be the thing itself (KerML 1.0, "
-    "validateTypeUnioningTypesNotSelf, validateFeatureChainingFeaturesNotSelf and alike).",
-    "take '{name}' out of its own definition",
-    "classifier Gate;\nclassifier Barrier unions Gate, Barrier;\n",
-    "classifier Gate;\nclassifier Fence;\nclassifier Barrier unions Gate, Fence;\n",
+    help="take '{name}' out of its own definition",
 )
-SECOND_REFERENCE = error(
+SECOND_REFERENCE = rule(
     "SM256",
     "several-references",
+    Severity.ERROR,
     "'{name}' references '{general}' too",
-    "A reference stands for one feature (KerML 1.0, validateFeatureOwnedReferenceSubsetting).",
-    "keep one 'references', and write 'subsets' for the others",
-    "feature one;\nfeature other;\nfeature both references one references other;\n",
-    "feature one;\nfeature other;\nfeature both references one subsets other;\n",
+    help="keep one 'references', and write 'subsets' for the others",
 )
-SECOND_MULTIPLICITY = error(
+SECOND_MULTIPLICITY = rule(
     "SM257",
     "several-multiplicities",
+    Severity.ERROR,
     "'{name}' has a second multiplicity",
-    "How many there are is said once (KerML 1.0, validateTypeOwnedMultiplicity).",
-    "keep one of them",
-    "classifier Gate {\n    multiplicity subsets Base::zeroOrOne;\n"
-    "    multiplicity subsets Base::zeroToMany;\n}\n",
-    "classifier Gate {\n    multiplicity subsets Base::zeroOrOne;\n}\n",
+    help="keep one of them",
 )
-CONJUGATED = error(
+CONJUGATED = rule(
     "SM258",
     "conjugate-specialises",
+    Severity.ERROR,
     "'{name}' is the conjugate of another type, and specialises '{general}' too",
-    "A conjugate has all that its original has and nothing else (KerML 1.0, "
-    "validateSpecializationSpecificNotConjugated).",
-    "let a type that specialises both have what is needed",
-    "classifier Plug;\nclassifier Other;\n"
-    "classifier Socket conjugates Plug;\nsubtype Socket specializes Other;\n",
-    "classifier Plug;\nclassifier Other;\n"
-    "classifier Socket conjugates Plug;\nsubtype Plug specializes Other;\n",
+    help="let a type that specialises both have what is needed",
 )
 
 _MADE = {

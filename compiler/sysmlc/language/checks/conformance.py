@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import DECLARED_FEATURES, Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import DECLARED_FEATURES, Found, name_of, written
 from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
 from sysmlc.language.metaclasses import USAGES, is_end, kinds_of
 from sysmlc.language.names import Model
@@ -10,58 +11,40 @@ from sysmlc.language.names.generals import GENERAL
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node
 
-NONUNIQUE = error(
+NONUNIQUE = rule(
     "SM250",
     "nonunique-subset",
+    Severity.ERROR,
     "'{name}' may have a value twice, and '{general}' may not",
-    "The values of a feature are among those of what it subsets or redefines, and those are "
-    "different from each other (KerML 1.0, validateSubsettingUniquenessConformance).",
-    "leave 'nonunique' out, or write it for '{general}' too",
-    "part def Axle {\n    part wheels[4];\n    part left[2] nonunique :> wheels;\n}\n",
-    "part def Axle {\n    part wheels[4] nonunique;\n    part left[2] nonunique :> wheels;\n}\n",
+    help="leave 'nonunique' out, or write it for '{general}' too",
 )
-NOT_CONSTANT = error(
+NOT_CONSTANT = rule(
     "SM251",
     "variable-subset",
+    Severity.ERROR,
     "'{name}' may change, and '{general}' is constant",
-    "What is among the values of a constant feature cannot change either (KerML 1.0, "
-    "validateSubsettingConstantConformance).",
-    "write 'const' for 'var'",
-    "class Gate {\n    const feature height;\n    var feature opening subsets height;\n}\n",
-    "class Gate {\n    const feature height;\n    const feature opening subsets height;\n}\n",
+    help="write 'const' for 'var'",
 )
-NO_END = error(
+NO_END = rule(
     "SM252",
     "redefined-end",
+    Severity.ERROR,
     "'{name}' is no end, and '{general}', which it redefines, is one",
-    "An end stays an end where it is redefined (KerML 1.0, validateRedefinitionEndConformance).",
-    "write 'end' before it",
-    "assoc Link {\n    end feature source;\n    end feature target;\n}\n"
-    "assoc Wire specializes Link {\n    feature redefines source;\n}\n",
-    "assoc Link {\n    end feature source;\n    end feature target;\n}\n"
-    "assoc Wire specializes Link {\n    end feature redefines source;\n}\n",
+    help="write 'end' before it",
 )
-OF_PACKAGE = error(
+OF_PACKAGE = rule(
     "SM278",
     "redefines-package-feature",
+    Severity.ERROR,
     "'{general}' is a member of no type, so '{name}' cannot redefine it",
-    "A feature is redefined in a type that would inherit it (KerML 1.0, "
-    "validateRedefinitionFeaturingTypes).",
-    "subset it: ':>' for ':>>'",
-    "part wheel;\npart spare redefines wheel;\n",
-    "part wheel;\npart spare subsets wheel;\n",
+    help="subset it: ':>' for ':>>'",
 )
-OF_SAME_OWNER = error(
+OF_SAME_OWNER = rule(
     "SM279",
     "redefines-own-feature",
+    Severity.ERROR,
     "'{name}' redefines '{general}' of the same owner",
-    "A feature is redefined in a type that would inherit it (KerML 1.0, "
-    "validateRedefinitionFeaturingTypes).",
-    "subset it: ':>' for ':>>'",
-    "part def Thing { alias drive for Car::engine; }\n"
-    "part def Car :> Thing {\n    part engine;\n    part small redefines drive;\n}\n",
-    "part def Thing { alias drive for Car::engine; }\n"
-    "part def Car :> Thing {\n    part engine;\n    part small subsets drive;\n}\n",
+    help="subset it: ':>' for ':>>'",
 )
 
 _REDEFINITION = frozenset({"Redefinition"})
@@ -81,10 +64,10 @@ def check(model: Model, node: Node) -> Iterator[Found]:
             (OF_SAME_OWNER, relation.kind == "Redefinition" and _are_of_one(node, target)),
             (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
         )
-        for rule, is_broken in rules:
+        for broken_rule, is_broken in rules:
             if is_broken:
                 facts = {"name": name_of(model, node), "general": name_of(model, target)}
-                yield Found(rule, relation.reference.start, facts)
+                yield Found(broken_rule, relation.reference.start, facts)
 
 
 def _is_unique(feature: Node) -> bool:

@@ -2,64 +2,40 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.metaclasses import is_end
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node, Reference
 
-_RIGHT = (
-    "class Gate { feature locks : Lock; }\nclass Lock { feature gate : Gate; }\n"
-    "assoc Holds {\n    end feature holder : Gate crosses held.gate;\n"
-    "    end feature held : Lock crosses holder.locks;\n}\n"
-)
-NOT_OPPOSITE = error(
+NOT_OPPOSITE = rule(
     "SM285",
     "crosses-own-end",
+    Severity.ERROR,
     "'{name}' does not lead through the opposite end of '{owner}'",
-    "What an end crosses is a feature of what is at the other end (KerML 1.0, "
-    "validateCrossSubsettingCrossedFeature).",
-    "name the other end, a dot, and its feature",
-    _RIGHT.replace("crosses holder.locks", "crosses held.key").replace(
-        "class Lock {", "class Lock { feature key : Lock;"
-    ),
-    _RIGHT,
+    help="name the other end, a dot, and its feature",
 )
-OTHER_TYPE = error(
+OTHER_TYPE = rule(
     "SM286",
     "crosses-other-type",
+    Severity.ERROR,
     "'{name}' has another type than the end that crosses it",
-    "The cross feature gives what is at the end (KerML 1.0, validateFeatureCrossFeatureType).",
-    "let the end and the feature have one type",
-    _RIGHT.replace("feature locks : Lock", "feature locks : Gate"),
-    _RIGHT,
+    help="let the end and the feature have one type",
 )
-NOT_SPECIAL = error(
+NOT_SPECIAL = rule(
     "SM287",
     "crosses-unrelated",
+    Severity.ERROR,
     "'{name}' does not specialise '{general}', which the redefined end crosses",
-    "What an end gives is among what the end gives that it redefines (KerML 1.0, "
-    "validateFeatureCrossFeatureSpecialization).",
-    "cross a feature that subsets '{general}'",
-    _RIGHT.replace("class Gate {", "class Gate { feature keys : Lock;")
-    + "assoc Owns specializes Holds {\n    end feature holder : Gate crosses held.gate;\n"
-    "    end feature held : Lock crosses holder.keys;\n}\n",
-    _RIGHT.replace("class Gate {", "class Gate { feature keys : Lock subsets locks;")
-    + "assoc Owns specializes Holds {\n    end feature holder : Gate crosses held.gate;\n"
-    "    end feature held : Lock crosses holder.keys;\n}\n",
+    help="cross a feature that subsets '{general}'",
 )
-OTHER_OWN = error(
+OTHER_OWN = rule(
     "SM288",
     "crosses-past-own",
+    Severity.ERROR,
     "'{owner}' has the cross feature '{name}' and crosses another one",
-    "A cross feature that an end owns is the one that it crosses (KerML 1.0, "
-    "validateFeatureOwnedCrossFeature).",
-    "cross '{name}', or leave it out",
-    "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
-    "    end mine [0..1] feature holder : Gate crosses held.gate;\n"
-    "    end feature held : Lock;\n}\n",
-    "class Gate;\nclass Lock { feature gate : Gate; }\nassoc Holds {\n"
-    "    end mine [0..1] feature holder : Gate;\n    end feature held : Lock;\n}\n",
+    help="cross '{name}', or leave it out",
 )
 
 _CROSSES = frozenset({"CrossSubsetting"})

@@ -15,22 +15,14 @@ DUPLICATE = rule(
     "same-name",
     Severity.WARNING,
     "'{owner}' has {count} members with the name '{name}'",
-    why="A name leads to one member, so the others cannot be referred to (KerML 1.0, "
-    "validateNamespaceDistinguishability).",
     help="give them different names, or leave one out",
-    wrong="package Plant {\n    part gate;\n    action gate;\n}\n",
-    right="package Plant {\n    part gate;\n    action openGate;\n}\n",
 )
 HIDING = rule(
     "SM284",
     "hides-inherited",
     Severity.WARNING,
     "'{name}' of '{owner}' is not the '{name}' that it inherits from '{general}', and hides it",
-    why="What is inherited under this name cannot be referred to by it any more, though '{owner}' "
-    "has both (KerML 1.0, validateNamespaceDistinguishability).",
     help="redefine it (':>> {name}') if it is meant, else give the new one another name",
-    wrong="part def Gate { part motor; }\npart def Big :> Gate { part motor; }\n",
-    right="part def Gate { part motor; }\npart def Big :> Gate { part :>> motor; }\n",
 )
 
 

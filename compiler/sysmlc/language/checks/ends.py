@@ -2,47 +2,34 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.member_rules import TOO_MANY_ENDS
 from sysmlc.language.metaclasses import is_a, is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.tree import Node, Relation
 
-END_TYPE = error(
+END_TYPE = rule(
     "SM269",
     "end-types",
+    Severity.ERROR,
     "the end '{name}' of '{owner}' has {count} types and needs one",
-    "What is linked at an end is of the one type of that end (KerML 1.0, "
-    "validateAssociationEndTypes); an end redefines that of the general at its position and has "
-    "its type too.",
-    "keep one type, or let it specialise the inherited one",
-    "part def Plug;\npart def Lamp;\n"
-    "connection def Wire { end part a : Plug, Lamp; end part b : Lamp; }\n",
-    "part def Plug;\npart def Lamp;\n"
-    "connection def Wire { end part a : Plug; end part b : Lamp; }\n",
+    help="keep one type, or let it specialise the inherited one",
 )
-TOO_FEW = error(
+TOO_FEW = rule(
     "SM270",
     "connects-too-few",
+    Severity.ERROR,
     "'{name}' connects {count} element{s}",
-    "What connects has at least two related elements, unless it is abstract (KerML 1.0, "
-    "validateConnectorRelatedFeatures).",
-    "name what it connects at two ends at least",
-    "part gate;\nconnection { end ::> gate; }\n",
-    "part gate;\npart wall;\nconnection { end ::> gate; end ::> wall; }\n",
+    help="name what it connects at two ends at least",
 )
-NO_FLOW_END = error(
+NO_FLOW_END = rule(
     "SM271",
     "flow-end-without-dot",
+    Severity.ERROR,
     "'{name}' does not say what of the flow's end it belongs to",
-    "A flow goes from a feature of one element to a feature of another (SysML 2.0, "
-    "validateFlowEndImplicitSubsetting).",
-    "name the element, a dot, and its feature",
-    "part def A { out item x; }\npart def B { in item y; }\n"
-    "part plant { part a : A; part b : B; flow from A::x to b.y; }\n",
-    "part def A { out item x; }\npart def B { in item y; }\n"
-    "part plant { part a : A; part b : B; flow from a.x to b.y; }\n",
+    help="name the element, a dot, and its feature",
 )
 
 _ASSOCIATIONS = kinds_of("Association")

@@ -2,22 +2,19 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.expression_results import named
 from sysmlc.language.tree import Node
 
-NOT_EVALUABLE = error(
+NOT_EVALUABLE = rule(
     "SM261",
     "not-evaluable",
+    Severity.ERROR,
     "{what} needs '{called}', which says nothing without a running system",
-    "Filters and metadata are about the model: their values come from literals, metadata, "
-    "features and basic functions of the library (KerML 1.0, "
-    "validateElementFilterMembershipConditionIsModelLevelEvaluable, validateMetadataFeatureBody).",
-    "use operators and what the metadata says itself",
-    "calc def IsSafe { in x; }\npackage Safe {\n    filter IsSafe(3);\n}\n",
-    "package Safe {\n    filter 3 > 2;\n}\n",
+    help="use operators and what the metadata says itself",
 )
 
 _METADATA = kinds_of("MetadataFeature")

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
@@ -12,26 +13,19 @@ from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
-NO_FEATURE = error(
+NO_FEATURE = rule(
     "SM272",
     "value-no-feature",
+    Severity.ERROR,
     "'{name}' is {found} and has no value",
-    "An expression gives the values of features (KerML 1.0, "
-    "validateFeatureReferenceExpressionReferentIsFeature, "
-    "validateFeatureChainExpressionConformance).",
-    "name a feature; 'all {name}' gives everything of a type",
-    "attribute def Speed;\nattribute limit = Speed;\n",
-    "attribute def Speed;\nattribute usual : Speed;\nattribute limit = usual;\n",
+    help="name a feature; 'all {name}' gives everything of a type",
 )
-OTHER_OWNER = error(
+OTHER_OWNER = rule(
     "SM273",
     "chained-elsewhere",
+    Severity.ERROR,
     "'{name}' is a feature of '{owner}', not of what stands before the dot",
-    "After a dot stands a feature of what is before it (KerML 1.0, "
-    "validateFeatureChainExpressionConformance).",
-    "write a dot for every step",
-    "part plant { part gate { attribute width; } attribute w = plant.gate::width; }\n",
-    "part plant { part gate { attribute width; } attribute w = plant.gate.width; }\n",
+    help="write a dot for every step",
 )
 
 _MEMBERSHIP = frozenset({"Membership"})

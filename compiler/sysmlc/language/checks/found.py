@@ -1,9 +1,9 @@
-"""What a check finds, and how a rule about the tree is made."""
+"""What a check finds."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.diagnostics import Rule
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.symbols import FEATURES, TYPES
@@ -28,11 +28,6 @@ DECLARED_FEATURES = FEATURES - _WITHOUT_DECLARATION
 """Types and features that somebody declares: not those that only make up an expression."""
 Check = Callable[[Model, Node], Iterable[Found]]
 """What is broken by one node; a check is called for the metaclasses that it is entered for."""
-
-
-def error(code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str) -> Rule:
-    """A rule whose examples are models in the textual notation."""
-    return rule(code, name, Severity.ERROR, phrase, why=why, help=help, wrong=wrong, right=right)
 
 
 def written(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:

@@ -3,23 +3,20 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.checks.member_rules import VARIATION_OF_VARIATION
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
-OTHER_KIND = error(
+OTHER_KIND = rule(
     "SM259",
     "specialises-other-kind",
+    Severity.ERROR,
     "'{name}', {kind}, cannot specialise '{general}', {found}",
-    "Values are no occurrences, things are no behaviours, and only links are links: no instance "
-    "could be both (KerML 1.0, validateDataTypeSpecialization, validateClassSpecialization, "
-    "validateStructureSpecialization, validateBehaviorSpecialization).",
-    "specialise {wanted}, or have a feature of that type",
-    "attribute def Speed;\npart def Drive :> Speed;\n",
-    "attribute def Speed;\npart def Drive { attribute speed : Speed; }\n",
+    help="specialise {wanted}, or have a feature of that type",
 )
 
 _DATA = kinds_of("DataType")

@@ -1,98 +1,74 @@
 """Constraints of the specification about what may be a member of what."""
 
-from sysmlc.language.checks.found import error
+from sysmlc.diagnostics import Severity, rule
 
-VARIANT_ELSEWHERE = error(
+VARIANT_ELSEWHERE = rule(
     "SM226",
     "variant-elsewhere",
+    Severity.ERROR,
     "'{name}' is a variant, and '{owner}' is no variation",
-    "Variants are the choices of a variation (validateVariantMembershipOwningNamespace).",
-    "write 'variation' before '{owner}', or leave 'variant' out",
-    "part def Engine { variant part small; }\n",
-    "variation part def Engine { variant part small; }\n",
+    help="write 'variation' before '{owner}', or leave 'variant' out",
 )
-NO_VARIANT = error(
+NO_VARIANT = rule(
     "SM227",
     "variation-member",
+    Severity.ERROR,
     "'{name}' is a member of the variation '{owner}' and no variant",
-    "All usages in a variation are its variants (SysML 2.0, "
-    "validateUsageVariationOwnedFeatureMembership).",
-    "write 'variant' before '{name}'",
-    "variation part def Engine { part small; }\n",
-    "variation part def Engine { variant part small; }\n",
+    help="write 'variant' before '{name}'",
 )
-VARIATION_OF_VARIATION = error(
+VARIATION_OF_VARIATION = rule(
     "SM228",
     "variation-of-variation",
+    Severity.ERROR,
     "the variation '{name}' specialises another variation",
-    "The choices of a variation are closed (SysML 2.0, validateUsageVariationSpecialization).",
-    "specialise what is no variation",
-    "variation part def Engine;\nvariation part def Big :> Engine;\n",
-    "part def Engine;\nvariation part def Big :> Engine;\n",
+    help="specialise what is no variation",
 )
-VERIFY_ELSEWHERE = error(
+VERIFY_ELSEWHERE = rule(
     "SM229",
     "verify-elsewhere",
+    Severity.ERROR,
     "'{owner}' is not the objective of a verification, so it cannot verify '{name}'",
-    "What a verification case verifies stands in its objective (SysML 2.0, "
-    "validateRequirementVerificationMembershipOwningType).",
-    "move 'verify' into the objective of a verification case",
-    "requirement r;\nverification v { requirement o { verify r; } }\n",
-    "requirement r;\nverification v { objective o { verify r; } }\n",
+    help="move 'verify' into the objective of a verification case",
 )
-PARALLEL = error(
+PARALLEL = rule(
     "SM230",
     "parallel-succession",
+    Severity.ERROR,
     "'{owner}' is parallel: its states have no order",
-    "The states of a parallel state are active together (SysML 2.0, "
-    "validateStateUsageParallelSubactions).",
-    "remove 'parallel', or the succession or transition",
-    "state def Running parallel { state a; state b; transition first a then b; }\n",
-    "state def Running { state a; state b; transition first a then b; }\n",
+    help="remove 'parallel', or the succession or transition",
 )
-PORTION_ELSEWHERE = error(
+PORTION_ELSEWHERE = rule(
     "SM231",
     "portion-elsewhere",
+    Severity.ERROR,
     "'{name}' is a portion of no occurrence",
-    "Snapshots and time slices are portions of the occurrence that has them (SysML 2.0, "
-    "validateOccurrenceUsageIsPortion).",
-    "move it into an occurrence, item or part",
-    "snapshot part broken;\n",
-    "part gate { snapshot part broken; }\n",
+    help="move it into an occurrence, item or part",
 )
-END_NO_PORT = error(
+END_NO_PORT = rule(
     "SM232",
     "interface-end-no-port",
+    Severity.ERROR,
     "'{name}' is an end of the interface '{owner}' and no port",
-    "Interfaces connect ports (SysML 2.0, validateInterfaceDefinitionEnd and ...UsageEnd).",
-    "make it a port, or use a connection",
-    "interface def Plug { end part a; end port b; }\n",
-    "interface def Plug { end port a; end port b; }\n",
+    help="make it a port, or use a connection",
 )
-TOO_MANY_ENDS = error(
+TOO_MANY_ENDS = rule(
     "SM233",
     "flow-ends",
+    Severity.ERROR,
     "'{name}' is the third end of the flow '{owner}'",
-    "A flow goes from one end to another (SysML 2.0, validateFlowDefinitionFlowEnds).",
-    "keep two ends",
-    "flow def Supply { end a; end b; end c; }\n",
-    "flow def Supply { end a; end b; }\n",
+    help="keep two ends",
 )
-ABSTRACT_METADATA = error(
+ABSTRACT_METADATA = rule(
     "SM234",
     "abstract-metadata",
+    Severity.ERROR,
     "metadata '{name}' has an abstract type",
-    "Metadata is an instance of its type (KerML 1.0, validateMetadataFeatureMetaclassNotAbstract).",
-    "use a metadata definition that is not abstract",
-    "abstract metadata def M;\npart def P { @M; }\n",
-    "metadata def M;\npart def P { @M; }\n",
+    help="use a metadata definition that is not abstract",
 )
-ENUMERATION_AND_MORE = error(
+ENUMERATION_AND_MORE = rule(
     "SM235",
     "enumeration-and-more",
+    Severity.ERROR,
     "attribute '{name}' has an enumeration and another type",
-    "The values of an enumeration are closed (SysML 2.0, validateAttributeUsageEnumerationType).",
-    "keep one type",
-    "enum def E { a; }\nattribute def A;\nattribute x : E, A;\n",
-    "enum def E { a; }\nattribute def A;\nattribute x : E;\n",
+    help="keep one type",
 )

@@ -2,32 +2,27 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
 from sysmlc.language.metaclasses import ALL_GENERALS, is_a, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
-OTHER_ELEMENT = error(
+OTHER_ELEMENT = rule(
     "SM263",
     "metadata-of-other-element",
+    Severity.ERROR,
     "metadata '{name}' is not for {found}",
-    "The feature 'annotatedElement' of its definition says what elements it is for (KerML 1.0, "
-    "validateMetadataFeatureAnnotatedElement).",
-    "annotate {wanted}",
-    "metadata def Safe { ref :>> annotatedElement : SysML::PortUsage; }\npart gate { @Safe; }\n",
-    "metadata def Safe { ref :>> annotatedElement : SysML::PartUsage; }\npart gate { @Safe; }\n",
+    help="annotate {wanted}",
 )
-OTHER_FEATURE = error(
+OTHER_FEATURE = rule(
     "SM264",
     "metadata-body",
+    Severity.ERROR,
     "'{name}' is no feature of the metadata '{owner}'",
-    "In metadata the features of its definition get their values, and nothing else (KerML 1.0, "
-    "validateMetadataFeatureBody).",
-    "name a feature of the definition of '{owner}', or add one there",
-    "attribute level;\nmetadata def Safe;\npart gate { @Safe { level = 3; } }\n",
-    "metadata def Safe { attribute level; }\npart gate { @Safe { level = 3; } }\n",
+    help="name a feature of the definition of '{owner}', or add one there",
 )
 
 _METADATA = kinds_of("MetadataFeature")

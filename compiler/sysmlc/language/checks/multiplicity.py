@@ -16,23 +16,14 @@ MORE = rule(
     "more-than-general",
     Severity.WARNING,
     "'{name}' may have {own} values, and '{general}' has at most {most}",
-    why="Values of what subsets or redefines are among those of the general feature (KerML 1.0, "
-    "validateSubsettingMultiplicityConformance).",
     help="lower the bound, or raise that of '{general}'",
-    wrong="part def Axle {\n    part wheels[2];\n    part left[3] :> wheels;\n}\n",
-    right="part def Axle {\n    part wheels[2];\n    part left[1] :> wheels;\n}\n",
 )
 FEWER = rule(
     "SM282",
     "fewer-than-redefined",
     Severity.WARNING,
     "'{name}' may have {own} values only, and '{general}', which it redefines, at least {least}",
-    why="What redefines a feature stands for it, and who relies on it counts on so many (KerML "
-    "1.0, validateRedefinitionMultiplicityConformance).",
     help="raise the bound, or lower that of '{general}'",
-    wrong="part def Axle { part wheels[2..4]; }\n"
-    "part def Small :> Axle { part :>> wheels[1..4]; }\n",
-    right="part def Axle { part wheels[2..4]; }\npart def Small :> Axle { part :>> wheels[3]; }\n",
 )
 
 _SUBSETTING = frozenset({"Subsetting", "Redefinition"})

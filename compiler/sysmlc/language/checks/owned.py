@@ -2,51 +2,40 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import DECLARED_FEATURES, DECLARED_TYPES, Found, error, name_of
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import DECLARED_FEATURES, DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import owning_type
 from sysmlc.language.tree import Node
 
-SECOND_RESULT = error(
+SECOND_RESULT = rule(
     "SM265",
     "several-results",
+    Severity.ERROR,
     "'{name}' has {count} result expressions, {whose}",
-    "What a calculation gives is said by one expression, which may be inherited (KerML 1.0, "
-    "validateFunctionResultExpressionMembership, validateExpressionResultExpressionMembership).",
-    "keep one of them",
-    "calc def One { 1 }\ncalc def Two :> One { 2 }\n",
-    "calc def One;\ncalc def Two :> One { 2 }\n",
+    help="keep one of them",
 )
-VARIABLE_PORTION = error(
+VARIABLE_PORTION = rule(
     "SM266",
     "variable-portion",
+    Severity.ERROR,
     "'{name}' is a portion and cannot change",
-    "A portion is the same occurrence in part of its life (KerML 1.0, "
-    "validateFeaturePortionNotVariable).",
-    "leave 'var' or 'portion' out",
-    "class Gate {\n    portion var feature night;\n}\n",
-    "class Gate {\n    portion feature night;\n}\n",
+    help="leave 'var' or 'portion' out",
 )
-VARIABLE_ELSEWHERE = error(
+VARIABLE_ELSEWHERE = rule(
     "SM267",
     "variable-elsewhere",
+    Severity.ERROR,
     "'{name}' may change, and '{owner}' has no time in which it could",
-    "Only what happens or exists in time has features that change (KerML 1.0, "
-    "validateFeatureIsVariable).",
-    "leave 'var' out",
-    "datatype Speed {\n    var feature limit;\n}\n",
-    "class Speed {\n    var feature limit;\n}\n",
+    help="leave 'var' out",
 )
-ROOT_IMPORT = error(
+ROOT_IMPORT = rule(
     "SM268",
     "public-root-import",
+    Severity.ERROR,
     "the import of '{name}' stands in no package and is not private",
-    "What a file imports at its top is for that file (KerML 1.0, "
-    "validateImportTopLevelVisibility).",
-    "write 'private' before 'import'",
-    "package Plant { part gate; }\npublic import Plant::*;\n",
-    "package Plant { part gate; }\nprivate import Plant::*;\n",
+    help="write 'private' before 'import'",
 )
 
 _FUNCTIONS = kinds_of("Function") | (kinds_of("Expression") & DECLARED_TYPES)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
@@ -11,34 +11,19 @@ from sysmlc.language.names.expression_results import named
 from sysmlc.language.names.positional_redefinition import own
 from sysmlc.language.tree import Node
 
-
-def _warning(
-    code: str, name: str, phrase: str, why: str, help: str, wrong: str, right: str
-) -> Rule:
-    return rule(code, name, Severity.WARNING, phrase, why=why, help=help, wrong=wrong, right=right)
-
-
-TOO_MANY = _warning(
+TOO_MANY = rule(
     "SM248",
     "extra-argument",
+    Severity.WARNING,
     "'{called}' takes {takes}, and {given} values are given",
-    "Arguments by position are for the parameters in their order (KerML 1.0, 8.4.4.9.4): those "
-    "that are left over go nowhere.",
-    "leave the argument out, or give the definition another parameter",
-    "calc def Half { in x; return y; }\npart gate { attribute a = Half(3, 4); }\n",
-    "calc def Half { in x; return y; }\npart gate { attribute a = Half(3); }\n",
+    help="leave the argument out, or give the definition another parameter",
 )
-NO_PARAMETER = _warning(
+NO_PARAMETER = rule(
     "SM249",
     "extra-parameter",
+    Severity.WARNING,
     "'{name}' of '{step}' is no parameter of '{called}'",
-    "A step may have parameters that its definition has not (KerML 1.0, 8.4.4.7), but what is "
-    "given to them goes nowhere, and what they give comes from nowhere.",
-    "give it the name of the parameter that is meant, or declare it in the definition",
-    "action def Move { in speed; }\n"
-    "part belt { action move : Move { in speed = 1; in way = 2; } }\n",
-    "action def Move { in speed; in way; }\n"
-    "part belt { action move : Move { in speed = 1; in way = 2; } }\n",
+    help="give it the name of the parameter that is meant, or declare it in the definition",
 )
 
 _TYPES = frozenset({"FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition"})

@@ -2,30 +2,25 @@
 
 from collections.abc import Iterator
 
-from sysmlc.language.checks.found import Found, error, name_of, written
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.metaclasses import is_composite, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node
 
-NO_STATE = error(
+NO_STATE = rule(
     "SM276",
     "accepts-outside-state",
+    Severity.ERROR,
     "'{name}' is no state, so nothing waits in it to accept",
-    "A transition that accepts something is taken while its source state is active (SysML 2.0, "
-    "validateTransitionUsageTriggerActions).",
-    "let the transition begin in a state",
-    "item def Go;\nstate def Run { action a; state b; transition first a accept Go then b; }\n",
-    "item def Go;\nstate def Run { state a; state b; transition first a accept Go then b; }\n",
+    help="let the transition begin in a state",
 )
-UNCHANGING = error(
+UNCHANGING = rule(
     "SM277",
     "assigns-unchanging",
+    Severity.ERROR,
     "'{name}' is part of what happens, and nothing can be assigned to it",
-    "What is assigned varies in time; a composite action is there as long as its owner (SysML "
-    "2.0, validateAssignmentActionUsageReferent).",
-    "assign to an attribute, item or reference",
-    "item gate { action open; }\naction def Do { assign gate.open := null; }\n",
-    "item gate { ref item lock; }\naction def Do { assign gate.lock := null; }\n",
+    help="assign to an attribute, item or reference",
 )
 
 _MEMBERSHIP = frozenset({"Membership"})

@@ -17,58 +17,12 @@ from sysmlc.logic.composition.structure import drawn_of, tells, unclear_flows
 from sysmlc.logic.contract import Composite, Contract, Owner, Part
 from sysmlc.logic.domains import describe
 
-_LINE = """\
-Package p "Line"
-  Class s "Sensor" role="block"
-    Property s.level "level" direction="out" role="flow property"
-      -> typed-by int
-    Property s.high "high" direction="out" role="flow property"
-      -> typed-by bool
-    Constraint s.r body="0 <= level <= 7"
-  Class d "Display" role="block"
-    Property d.shown "shown" direction="in" role="flow property"
-      -> typed-by int
-    Property d.lamp "lamp" direction="out" role="flow property"
-      -> typed-by bool
-    Constraint d.r body="0 <= shown <= 7"
-  Class l "Panel" role="block"
-    Property l.s "sensor" role="part" aggregation="composite"
-      -> typed-by s
-    Property l.d "display" role="part" aggregation="composite"
-      -> typed-by d
-    Property l.b "spare" role="part" aggregation="composite"
-      -> typed-by {spare}
-    {joins}
-  Class q "Measured" role="requirement" req_id="R1"
-    -> subject s
-    Constraint q.c language="LTL" body="G F level=0 & G F !high"
-  Class r "Shown" role="requirement" req_id="R2"
-    -> subject d
-    Constraint r.c language="LTL" body="G (shown=0 -> X lamp)"
-  DataType bool "Boolean"
-  DataType int "Integer"
-"""
-
-
-def _line(*ends: tuple[str, str], spare: str = "int") -> str:
-    """A panel in which features of parts are joined, in IR text."""
-    text = "Connector k"
-    for number, (part, feature) in enumerate(ends):
-        text += f"\n      -> end k{number}\n      ConnectorEnd k{number}"
-        text += f"\n        -> path l.{part}\n        -> role {feature}"
-    return _LINE.format(joins=text, spare=spare)
-
-
 TWO_DRIVERS = rule(
     "SM524",
     "joined-outputs",
     Severity.ERROR,
     "'{first}' and '{second}' of '{block}' both decide '{variable}'",
-    why="What connectors join is one value, and one part decides it: the others have it as an "
-    "input. The parts of the block are not composed.",
     help="give one of the two ends direction 'in', or join another feature",
-    wrong=_line(("s", "s.high"), ("d", "d.lamp")),
-    right=_line(("s", "s.level"), ("d", "d.shown")),
 )
 OTHER_VALUES = rule(
     "SM525",
@@ -76,23 +30,15 @@ OTHER_VALUES = rule(
     Severity.ERROR,
     "'{first}' and '{second}' of '{block}' are joined, and have values of different kinds: "
     "{domains}",
-    why="What connectors join is one value. The parts of the block are not composed.",
     help="give both ends one type",
-    wrong=_line(("s", "s.high"), ("d", "d.shown")),
-    right=_line(("s", "s.level"), ("d", "d.shown")),
 )
-_FLOWS = "ItemFlow f\n      -> flow-source s.level\n      -> flow-target d.shown"
 UNCLEAR_FLOW = rule(
     "SM526",
     "flow-between-unclear-parts",
     Severity.WARNING,
     "the flow from '{source}' to '{target}' joins no parts of '{block}': {count} of them have "
     "'{feature}'",
-    why="A flow names features of definitions; which parts it leads between is clear when one "
-    "part has them, or when it follows a connector.",
     help="draw a connector between the parts, and let the flow be realised by it",
-    wrong=_LINE.format(joins=_FLOWS, spare="d"),
-    right=_LINE.format(joins=_FLOWS, spare="int"),
 )
 
 
@@ -245,40 +191,16 @@ def _report_flows(block: Block, sink: Sink) -> None:
         )
 
 
-_CELL = """\
-Package p "Cells"
-  Activity i "Fetch" abstract=true
-    Control ii subkind="initial"
-    Action ia "grip" subkind="opaque"
-    ControlFlow if
-      -> flow-source ii
-      -> flow-target ia
-  Activity u "Shift" abstract=true
-    Control ui subkind="initial"
-    Action ub "first" subkind="call"
-      -> calls {called}
-    ControlFlow uf
-      -> flow-source ui
-      -> flow-target ub
-  Activity w "Wait" subkind="opaque" body="wait()"
-  Class c "Cell" role="block"
-    Operation c.u "shift"
-      -> method u
-    Operation c.i "fetch"
-      -> method i
-"""
 OPEN_STEP = rule(
     "SM508",
     "nested-operation-without-end",
     Severity.INFO,
     "nothing in '{block}' says when step '{step}' of '{operation}' is over; whoever is around "
     "the block decides it",
-    why="'{called}' is an operation with steps of its own, and has no output 'executed' that the "
-    "step could wait for.",
-    help="give '{called}' an output 'executed' that says when its steps are done, or put its steps "
-    "into '{operation}'",
-    wrong=_CELL.format(called="i"),
-    right=_CELL.format(called="w"),
+    help=(
+        "give '{called}' an output 'executed' that says when its steps are done, or put its steps "
+        "into '{operation}'"
+    ),
 )
 
 

@@ -12,7 +12,6 @@ from sysmlc.logic.expressions.context_objects import of_objects, of_ports
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.enumerations import Enumerations
 from sysmlc.logic.expressions.features import Features, variables
-from sysmlc.logic.samples import arrow, machine
 
 VALUES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
 """Kinds of what has a value in a context."""
@@ -22,10 +21,7 @@ ASSUMED_RANGE = rule(
     "assumed-range",
     Severity.INFO,
     "property '{name}' has no range; {range} is assumed",
-    why="Contracts have finite domains: an Integer needs a least and a greatest value.",
     help="constrain it ({name} >= {low} and {name} <= {high}) or give it a value type with a range",
-    wrong=machine(arrow("a", "b", "start", "size > 2")),
-    right=machine(arrow("a", "b", "start", "level > 2")),
 )
 
 DEFAULT_OUTSIDE = rule(
@@ -33,10 +29,7 @@ DEFAULT_OUTSIDE = rule(
     "default-out-of-range",
     Severity.ERROR,
     "default value '{default}' of property '{name}' is none of {domain}",
-    why="The property cannot start with it.",
     help="correct the default value or the range",
-    wrong=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=33", 1),
-    right=machine(arrow("a", "b", "start", "level > 2")).replace("default=0", "default=3", 1),
 )
 
 

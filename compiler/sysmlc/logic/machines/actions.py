@@ -36,16 +36,7 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.machines.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.logic.writers import Writers, called
-
-
-def _beside(body: str) -> str:
-    """A machine that sets ``ready``, and what else its owner does."""
-    made = machine(arrow("a", "b", "start", effect="ready := true"))
-    beside = f'    Activity w "fill" subkind="opaque" body="{body}"\n'
-    return made.replace("    StateMachine", f"{beside}    StateMachine", 1)
-
 
 SHARED = rule(
     "SM546",
@@ -53,11 +44,7 @@ SHARED = rule(
     Severity.INFO,
     "the contract of '{machine}' leaves '{name}' to the environment and shows '{text}' as output "
     "'{variable}': '{writer}' writes it too",
-    why="A contract says of what a component writes that it keeps its value else. That is not so "
-    "where another behaviour writes it: two such contracts would contradict each other.",
     help="let one behaviour alone write it, or say in a requirement what becomes of it",
-    wrong=_beside("ready := false"),
-    right=_beside("openGate()"),
 )
 
 
@@ -74,72 +61,45 @@ class Sharing(Struct, frozen=True):
         return None if self.writers is None else self.writers.beside(feature, self.machine)
 
 
-def _guarded(guard: str) -> str:
-    return machine(arrow("a", "b", "start", guard))
-
-
-def _doing(effect: str) -> str:
-    return machine(arrow("a", "b", "start", effect=effect))
-
-
 NOT_UNDERSTOOD = rule(
     "SM411",
     "opaque-condition",
     Severity.WARNING,
     "{what} '{text}' is not understood: {reason}; the environment decides it as '{variable}'",
-    why="Only expressions over properties with finite domains can be part of a contract.",
     help="write an expression over the properties of the owner",
-    wrong=_guarded("when it is ready"),
-    right=_guarded("ready"),
 )
 UNKNOWN_NAME = rule(
     "SM412",
     "unknown-name",
     Severity.ERROR,
     "{what} '{text}' names '{name}', which is no property of {context}",
-    why="A name in an expression is a property of the classifier that owns the behaviour.",
     help="correct the name or add the property",
-    wrong=_guarded("redy"),
-    right=_guarded("ready"),
 )
 TYPE_MISMATCH = rule(
     "SM413",
     "type-mismatch",
     Severity.ERROR,
     "{what} '{text}': {reason}",
-    why="A condition, a number and an enumeration literal cannot stand for one another.",
-    wrong=_guarded("level and ready"),
-    right=_guarded("level > 1 and ready"),
 )
 OUT_OF_DOMAIN = rule(
     "SM414",
     "value-out-of-domain",
     Severity.ERROR,
     "{what} '{text}': {reason}",
-    why="The value can never be taken, so that the expression does not say what was meant.",
     help="correct the value or the range of the property",
-    wrong=_guarded("level == 99"),
-    right=_guarded("level == 9"),
 )
 NOT_ASSIGNABLE = rule(
     "SM415",
     "not-assignable",
     Severity.ERROR,
     "'{text}' assigns to '{name}', which is no changeable property with finite values of {context}",
-    why="A state machine changes properties of the classifier that owns it.",
     help="correct the name, give the property a finite type, or make it changeable",
-    wrong=_doing("fixed := 4"),
-    right=_doing("level := 4"),
 )
 OPAQUE_EFFECT = rule(
     "SM416",
     "opaque-effect",
     Severity.INFO,
     "'{text}' is no assignment, call or send; the contract shows it as output '{variable}'",
-    why="What is not written in the expression grammar is done by the component in a way that "
-    "the contract cannot see.",
-    wrong=_doing("open the gate"),
-    right=_doing("openGate()"),
 )
 RULE_OF = {
     Fault.UNKNOWN: UNKNOWN_NAME,

@@ -11,7 +11,7 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic import domains, samples
+from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import evaluation
@@ -30,7 +30,6 @@ from sysmlc.logic.machines.machine import (
     element_id,
 )
 from sysmlc.logic.machines.well_formedness import common_state, segments
-from sysmlc.logic.samples import arrow, machine_of
 
 _LIMIT = 4096
 """Valuations tried to see whether two guards exclude one another; more count as possible."""
@@ -149,39 +148,13 @@ def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domai
             yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
 
 
-def _two_regions(first: str, second: str) -> str:
-    return machine_of(
-        samples.region(
-            "r", samples.state("a"), arrow("i", "a"), arrow("a", "a", first, effect="level := 1")
-        ),
-        samples.region(
-            "q", samples.state("b"), arrow("qi", "b"), arrow("b", "b", second, effect="level := 2")
-        ),
-    )
-
-
-def _leaving(on: str) -> str:
-    inner = (
-        samples.region("s", samples.state("d"), arrow("si", "d"), arrow("d", "b", on)),
-        samples.region(
-            "t", samples.state("e"), arrow("ti", "e"), arrow("e", "e", "start", "ready")
-        ),
-    )
-    return machine_of(
-        samples.region("r", samples.state("a", *inner), samples.state("b"), arrow("i", "a"))
-    )
-
-
 RACE = rule(
     "SM426",
     "race",
     Severity.WARNING,
     "'{first}' and '{second}' of orthogonal regions can both assign '{variable}' in one step; "
     "the component gets no contract",
-    why="Nothing in the diagram orders the two assignments.",
     help="assign the property in one region only, or on different events",
-    wrong=_two_regions("start", "start"),
-    right=_two_regions("start", "stop"),
 )
 CROSSING = rule(
     "SM427",
@@ -189,10 +162,7 @@ CROSSING = rule(
     Severity.WARNING,
     "'{first}' leaves an orthogonal state while '{second}' can be taken in another of its "
     "regions; the component gets no contract",
-    why="Nothing in the diagram says which of the two is taken.",
     help="draw the transition from the border of the orthogonal state, or use another event",
-    wrong=_leaving("start"),
-    right=_leaving("stop"),
 )
 
 
@@ -277,26 +247,17 @@ def _leaves(machine: Machine, transition: Transition, state: str) -> bool:
     )
 
 
-def _nested(inner: str) -> str:
-    inside = samples.region("s", samples.state("d"), samples.state("e"), arrow("si", "d"), inner)
-    states = (samples.state("a", inside), samples.state("b"))
-    return machine_of(samples.region("r", *states, arrow("i", "a"), arrow("a", "b", "stop")))
-
-
 OVERRIDDEN = rule(
     "SM434",
     "event-can-be-lost",
     Severity.WARNING,
     "the event of transition {transition} is lost when it comes in the step in which {inner} "
     "is taken",
-    why="One step takes one transition from nested states, the innermost. What time, a change or "
-    "a completion triggers can come with an event or with one another, and nothing is kept for "
-    "later: a time-out of the outer state that comes in such a step does not come again.",
-    help="if the event must never be lost, let it be repeated until it is answered (a change that "
-    "lasts as a guard, a time-out as a transition of the inner states), or trigger the inner "
-    "transition by an event as well",
-    wrong=_nested(arrow("d", "e", after="after 2 s")),
-    right=_nested(arrow("d", "e", "start")),
+    help=(
+        "if the event must never be lost, let it be repeated until it is answered (a change that "
+        "lasts as a guard, a time-out as a transition of the inner states), or trigger the inner "
+        "transition by an event as well"
+    ),
 )
 
 

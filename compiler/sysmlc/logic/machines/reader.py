@@ -22,7 +22,6 @@ from sysmlc.logic.machines.transitions import join_up, read_transitions
 from sysmlc.logic.machines.vertices import Parts, read_regions, remember
 from sysmlc.logic.machines.well_formedness import has_ends, is_well_formed
 from sysmlc.logic.names import Names
-from sysmlc.logic.samples import arrow, machine
 from sysmlc.logic.writers import Writers
 
 NONDETERMINISTIC = rule(
@@ -30,11 +29,7 @@ NONDETERMINISTIC = rule(
     "competing-transitions",
     Severity.WARNING,
     "transitions {transitions} that leave '{vertex}' can be enabled at once",
-    why="The diagram leaves open which one is taken; the contract keeps that open, and "
-    "output '{pick}' says what was chosen.",
     help="make the guards exclude one another",
-    wrong=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "level > 2")),
-    right=machine(arrow("a", "b", "start", "ready"), arrow("a", "a", "start", "not ready")),
 )
 TOO_MANY_GUARDS = rule(
     "SM485",
@@ -42,22 +37,13 @@ TOO_MANY_GUARDS = rule(
     Severity.WARNING,
     "the guards of '{machine}' have too many combinations of values to be compared; the component "
     "gets no contract",
-    why="Guards of transitions that can be taken in one step are compared for all values of their "
-    "variables. A machine with hundreds of them, on variables of wide ranges, would take hours.",
     help="make the ranges of the variables smaller, use different events, or split the machine",
-    wrong="400 transitions on one event in 20 regions, with guards such as 'x == 7 and y == 12' on "
-    "two properties of the range 0..60",
-    right="the same transitions on 20 events",
 )
 COINCIDING = rule(
     "SM432",
     "coinciding-triggers",
     Severity.INFO,
     "transitions {transitions} that leave '{vertex}' have triggers that can occur in one step",
-    why="Nothing orders what happens within a step; the contract keeps open which transition is "
-    "taken, and output '{pick}' says what was chosen.",
-    wrong=machine(arrow("a", "b", "start"), arrow("a", "a", after="after 2 s")),
-    right=machine(arrow("a", "b", "start"), arrow("a", "a", "stop")),
 )
 
 

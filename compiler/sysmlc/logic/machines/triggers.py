@@ -24,7 +24,6 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.vertices import Parts
 from sysmlc.logic.names import unique
-from sysmlc.logic.samples import arrow, machine
 
 
 def occurrence_of(parts: Parts, trigger: Element, vertex: Vertex) -> Occurrence:
@@ -71,20 +70,13 @@ def _change(parts: Parts, trigger: Element) -> Occurrence:
 # -- time ----------------------------------------------------------------------------------------
 
 
-def _waiting(after: str) -> str:
-    return machine(arrow("a", "b", after=after))
-
-
 OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
     "time '{text}' is no constant relative time; the environment says when it comes, as "
     "'{variable}'",
-    why="A contract counts a duration in steps, so that it has to be a number.",
     help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
-    wrong=_waiting("after cooling"),
-    right=_waiting("after 5 s"),
 )
 _SECONDS = {
     "ms": 0.001,

@@ -5,64 +5,28 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic import samples
 from sysmlc.logic.machines.machine import HISTORIES, Machine, Transition, element_id
-from sysmlc.logic.samples import arrow, choice, machine, machine_of
 
 PSEUDO_CYCLE = rule(
     "SM424",
     "pseudostate-cycle",
     Severity.ERROR,
     "pseudostate '{vertex}' leads back to itself without a state between",
-    why="A step would never end.",
     help="put a state into the cycle",
-    wrong=machine(
-        *(choice("x"), choice("y")),
-        *(arrow("a", "x", "start"), arrow("x", "y"), arrow("y", "x", guard="ready")),
-        arrow("y", "b", guard="else"),
-    ),
-    right=machine(
-        *(choice("x"), choice("y")),
-        *(arrow("a", "x", "start"), arrow("x", "y"), arrow("y", "a", guard="ready")),
-        arrow("y", "b", guard="else"),
-    ),
 )
 DEAD_END = rule(
     "SM425",
     "pseudostate-without-exit",
     Severity.ERROR,
     "{kind} '{vertex}' has no outgoing transition",
-    why="A step cannot end in a pseudostate.",
-    wrong=machine(choice("x"), arrow("a", "x", "start")),
-    right=machine(choice("x"), arrow("a", "x", "start"), arrow("x", "b")),
 )
 STRAY = rule(
     "SM431",
     "transition-out-of-reach",
     Severity.WARNING,
     "transition '{transition}' leads {where}; the component gets no contract",
-    why="A transition stays in its machine and does not jump between regions of the machine; "
-    "an initial transition stays in its region (UML 2.5.1, 14.5.8 and 14.5.11).",
     help="let the transition end at a vertex that it may reach",
-    wrong=machine_of(
-        samples.region("r", samples.state("a"), arrow("i", "a"), arrow("a", "b", "start")),
-        samples.region("q", samples.state("b"), arrow("qi", "b")),
-    ),
-    right=machine_of(
-        samples.region("r", samples.state("a"), arrow("i", "a"), arrow("a", "a", "start")),
-        samples.region("q", samples.state("b"), arrow("qi", "b")),
-    ),
 )
-
-
-def _split(*forked: str, into: str = "e") -> str:
-    inner = (
-        samples.region("s", samples.state("d"), arrow("si", "d")),
-        samples.region("t", samples.state("e"), samples.state("f"), arrow("ti", "f")),
-    )
-    parts = (samples.state("a"), samples.state("b", *inner), choice("x", "fork"))
-    ways = (arrow("i", "a"), arrow("a", "x", "start"), arrow("x", "d"), arrow("x", into))
-    return machine_of(samples.region("r", *parts, *ways, *forked))
 
 
 MALFORMED = rule(
@@ -70,12 +34,10 @@ MALFORMED = rule(
     "malformed-fork-or-join",
     Severity.ERROR,
     "{kind} '{vertex}': {reason}",
-    why="A fork enters regions of one state together, and a join leaves such regions together, "
-    "when their states are complete (UML 2.5.1, 14.2.3.7 and 14.5.11).",
-    help="let its transitions lead to, or from, states in different regions of one state, "
-    "without guards and triggers",
-    wrong=_split(into="a"),
-    right=_split(),
+    help=(
+        "let its transitions lead to, or from, states in different regions of one state, "
+        "without guards and triggers"
+    ),
 )
 
 

@@ -10,39 +10,18 @@ from sysmlc.logic.requirements.scope import Scope
 from sysmlc.logic.requirements.statements import Statement
 from sysmlc.logic.texts.formal import is_formal, read_formal, told
 
-_MODEL = """\
-Package p "Plant"
-  Class c "Tank" role="block"
-    Property level "level" direction="out"
-      -> typed-by int
-    Property filling "filling" direction="in"
-      -> typed-by bool
-    Constraint k body="0 <= level <= 9"
-  Class q "Safe" role="requirement" req_id="R1"
-    -> subject c
-    Constraint f "never full" {body}
-  DataType bool "Boolean"
-  DataType int "Integer"
-"""
 NOT_A_FORMULA = rule(
     "SM522",
     "requirement-not-understood",
     Severity.ERROR,
     "the formula of '{constraint}' in requirement '{requirement}' is not understood: {reason}",
-    why="What it demands of '{about}' would be missing in the contract.",
     help="write LTL (G F X U or [] <> X U) over the features of '{about}': {variables}",
-    wrong=_MODEL.replace("{body}", 'language="LTL" body="G (filling -> X lvel>0)"'),
-    right=_MODEL.replace("{body}", 'language="LTL" body="G (filling -> X level>0)"'),
 )
 NOT_FORMAL = rule(
     "SM523",
     "requirement-not-formal",
     Severity.INFO,
     "'{constraint}' of requirement '{requirement}' is in no contract: {reason}",
-    why="A contract compares features of the subject that have finitely many values: Booleans, "
-    "enumerations, Integers with a range.",
-    wrong=_MODEL.replace("{body}", 'body="level * 0.5 < 4.5"'),
-    right=_MODEL.replace("{body}", 'body="level < 9"'),
 )
 _EXPRESSIONS = ("", "kerml", "sysml", "ocl", "alf")
 

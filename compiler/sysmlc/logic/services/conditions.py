@@ -27,28 +27,11 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplified
 from sysmlc.logic.texts.formal import is_formal
 
-_TANK = """\
-Package p "Plant"
-  Class c "Tank" role="block"
-    Property level "level"
-      -> typed-by int
-    Constraint r body="0 <= level <= 9"
-    Operation o "fill"
-      Parameter a "amount" direction="in"
-        -> typed-by int
-      Constraint ra body="0 <= amount <= 9"
-      Constraint k subkind="postcondition" body={body}
-  DataType int "Integer"
-"""
 NOT_FORMAL = rule(
     "SM505",
     "condition-not-formal",
     Severity.INFO,
     "the {kind} '{text}' of '{service}' is in no contract: {reason}",
-    why="A contract compares parameters and features that have finitely many values: Booleans, "
-    "enumerations, Integers with a range.",
-    wrong=_TANK.format(body='"the tank is full"'),
-    right=_TANK.format(body='"level >= amount"'),
 )
 _ORDERS = frozenset(["<", "<=", ">", ">="])
 _KINDS = ("", "precondition", "postcondition", "body")

@@ -98,37 +98,13 @@ def report_stops(graph: Graph, tokens: TokenGraph, sink: Sink) -> None:
             sink.report(SATURATES, subject, transition=node.label, can=can.value, variable=name)
 
 
-def _filling(body: str) -> str:
-    return f"""\
-Package p "Plant"
-  Class c "Cell" role="block"
-    Property n "full"
-      -> typed-by bool
-    Activity a "work"
-      Control i subkind="initial"
-      Action w "fill" subkind="opaque" body="{body}"
-      Control e subkind="final"
-      ControlFlow iw
-        -> flow-source i
-        -> flow-target w
-      ControlFlow we
-        -> flow-source w
-        -> flow-target e
-  DataType bool "Boolean"
-"""
-
-
 UNKNOWN_TARGET = rule(
     "SM545",
     "assigns-to-nobody",
     Severity.INFO,
     "action '{action}' assigns to '{name}', which is no feature that '{activity}' or what it is in "
     "has; {suggestion}",
-    why="An action assigns to features of its activity and of the block that has it. The contract "
-    "leaves out what it cannot find, so that the assignment has no effect there.",
     help="correct the name, or give the block or the activity a property of that name",
-    wrong=_filling("ful := true"),
-    right=_filling("full := true"),
 )
 
 

@@ -9,19 +9,7 @@ UNKNOWN_LITERAL = rule(
     "unknown-literal",
     Severity.WARNING,
     "the {attribute} of '{element}' is '{value}', which is none of {known}",
-    why="Directions and kinds of aggregation are enumerations (UML 2.5.1 clause 9.9; SysML 1.6 "
-    "clause 9.3.2). A value that they do not have counts as none.",
     help="choose one of {known} in the modelling tool",
-    wrong="""\
-Class gate "Gate"
-  Operation open "open"
-    Parameter speed "speed" direction="sideways"
-""",
-    right="""\
-Class gate "Gate"
-  Operation open "open"
-    Parameter speed "speed" direction="in"
-""",
 )
 
 _KINDS = (Kind.PARAMETER, Kind.PORT, Kind.PROPERTY, Kind.FLOW_PROPERTY)

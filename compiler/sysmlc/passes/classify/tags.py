@@ -215,23 +215,13 @@ def optional_with_value(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> I
                 yield parameter
 
 
-_SAMPLE = (
-    'Profile q "Plant"\n  Stereotype s "Cell"\n    Property n "number"\nClass a "A"\n'
-    '  Application t "Cell" stereotype="Cell" {}="3"\n    -> instance-of s\n    -> subject a'
-)
-
 UNDEFINED_TAG = rule(
     "SM156",
     "undefined-tag",
     Severity.WARNING,
     "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is none that its profile "
     "defines",
-    why="The profile is part of the unit, and neither the stereotype nor one that it specialises "
-    "has such a property: most likely the property was renamed or removed since. The graph keeps "
-    "the value, but nothing is made of it.",
     help="apply the profile again in the modelling tool, or correct the name of the tag",
-    wrong=_SAMPLE.format("tag.numbr"),
-    right=_SAMPLE.format("tag.number"),
 )
 
 _TAG = "tag."

@@ -29,17 +29,7 @@ SAME_COMPONENT = rule(
     "components-with-one-name",
     Severity.WARNING,
     "{count} components have the name '{component}'; a number tells their contracts apart",
-    why="A contract is found by the name of its component.",
     help="give them or their owners different names",
-    wrong='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
-    '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
-    "        -> flow-source ai\n        -> flow-target as\n"
-    '  StateMachine b "M"\n    Region rb\n      Pseudostate bi subkind="initial"\n'
-    '      State bs "S"\n      Transition bt\n        -> flow-source bi\n'
-    "        -> flow-target bs\n",
-    right='Package p "P"\n  StateMachine a "M"\n    Region ra\n'
-    '      Pseudostate ai subkind="initial"\n      State as "S"\n      Transition at\n'
-    "        -> flow-source ai\n        -> flow-target as\n",
 )
 
 

@@ -20,57 +20,29 @@ from sysmlc.logic.spelling import FormulaError
 from sysmlc.logic.texts.formal import is_formal, read_formal, told
 
 _ACTIONS = (Kind.ACTIVITY, Kind.OPERATION)
-_MACHINE = """\
-Class c "Lamp"
-  -> classifier-behavior m
-  StateMachine m "M"
-    Region r
-      Pseudostate i subkind="initial"
-      State a "Off"
-      State b "On"
-      Transition t0
-        -> flow-source i
-        -> flow-target a
-      Transition t1
-        -> flow-source a
-        -> flow-target b
-        -> trigger g
-        Trigger g subkind="signal"
-          -> typed-by s
-  Constraint k "Lit" language="LTL" body={body}
-Signal s "start"
-"""
 
 NOT_A_FORMULA = rule(
     "SM501",
     "formula-not-understood",
     Severity.ERROR,
     "the formula of '{constraint}' is not understood: {reason}",
-    why="What it demands would be missing in the contract.",
-    help="write LTL (G F X U or [] <> X U; of the past Y O H S), or a sentence like 'globally, it "
-    "is always the case that if P holds then Q eventually holds', over: {variables}",
-    wrong=_MACHINE.replace("{body}", '"[](Statte=On)"'),
-    right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
+    help=(
+        "write LTL (G F X U or [] <> X U; of the past Y O H S), or a sentence like 'globally, it "
+        "is always the case that if P holds then Q eventually holds', over: {variables}"
+    ),
 )
 NO_CONTRACT = rule(
     "SM502",
     "formula-without-contract",
     Severity.WARNING,
     "'{constraint}' is a formula about '{component}', which has no behaviour with a contract",
-    why="A formula in temporal logic speaks of the variables of a behaviour.",
     help="give '{component}' a classifier behaviour, or move the formula to what has one",
-    wrong='Class c "Lamp"\n  Constraint k "Lit" language="LTL" body="[](<>on)"\n',
-    right=_MACHINE.replace("{body}", '"[](<>(state=On))"'),
 )
 OUTSIDE_GR1 = rule(
     "SM503",
     "formula-outside-gr1",
     Severity.INFO,
     "the formula of '{constraint}' is not in GR(1); the contract keeps it as general LTL",
-    why="Synthesis decides initial, one-step and infinitely-often conditions, and what can be said "
-    "by them with history bits; the rest can only be checked.",
-    wrong=_MACHINE.replace("{body}", '"<>[](state=On)"'),
-    right=_MACHINE.replace("{body}", '"[](event=start -> <>(state=On))"'),
 )
 
 

@@ -6,38 +6,20 @@ from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _LISTED = 8
-_PLANT = """\
-Document plant "Plant.aml" subkind="caex" @plant.aml:0
-Class flow "Flow" @plant.aml:1
-Class gate "Gate" @plant.aml:2
-  Port gate.in "in"{direction} @plant.aml:3
-    -> typed-by flow
-  Port gate.out "out" direction="out" @plant.aml:4
-    -> typed-by flow
-"""
 
 UNDIRECTED = rule(
     "SM121",
     "undirected-plant-ports",
     Severity.INFO,
     "{count} of {all} ports of '{file}' have no direction: {ports}",
-    why="AutomationML need not say what flows where, but other ports of the file have a direction. "
-    "Contracts treat what passes through a port without one as an input, and diagrams draw no "
-    "arrow.",
     help="give the interfaces an attribute Direction, or say in an overlay what flows",
-    wrong=_PLANT.format(direction=""),
-    right=_PLANT.format(direction=' direction="in"'),
 )
 UNTYPED = rule(
     "SM122",
     "untyped-plant-ports",
     Severity.WARNING,
     "{count} of {all} ports of '{file}' have no type: {ports}",
-    why="An external interface without RefBaseClassPath says nothing of what passes through it.",
     help="let the interfaces refer to interface classes",
-    wrong='Document plant "Plant.aml" subkind="caex" @plant.aml:0\n'
-    'Class gate "Gate" @plant.aml:1\n  Port gate.in "in" direction="in" @plant.aml:2\n',
-    right=_PLANT.format(direction=' direction="in"'),
 )
 
 

@@ -12,20 +12,13 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.query import units as measures
 from sysmlc.passes.recipe.context import Context
-from sysmlc.recipe import samples
 
 DERIVED = rule(
     "SM483",
     "recipe-level-derived",
     Severity.INFO,
     "'{element}' is taken for {level}: {because}",
-    "A model that says which behaviours are machine functions need not say what has them: the "
-    "machine is the block that owns them. A stereotype whose tag nodeId is a node id of OPC UA "
-    "(OPC 10000-6, 5.3.1.10) binds what it is applied to, and a behaviour that is only given a "
-    "duration and does nothing lets it pass.",
-    "say the level in [recipe.levels], or by a stereotype, when something else is meant",
-    samples.OWNED_FUNCTION,
-    samples.OWNED_FUNCTION.replace('"Robot"', '"Robot" level="machine"'),
+    help="say the level in [recipe.levels], or by a stereotype, when something else is meant",
 )
 
 _NODE_ID = re.compile(

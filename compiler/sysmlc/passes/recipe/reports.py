@@ -8,7 +8,6 @@ from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.graphs import refined
 from sysmlc.passes.recipe.profile import NAMESPACE, Tags
 from sysmlc.passes.recipe.tasks import steps
-from sysmlc.recipe import samples
 from sysmlc.recipe.model import Model
 
 UNREADABLE_TAG = rule(
@@ -16,10 +15,7 @@ UNREADABLE_TAG = rule(
     "recipe-tag-unreadable",
     Severity.WARNING,
     "'{tag}' of «{stereotype}» on '{element}' is '{value}', but must be {expected}; it is left out",
-    "Durations are whole milliseconds; the profile sysmlc gives the type of each tagged value.",
-    "correct the tagged value",
-    samples.task(close="soon"),
-    samples.task(),
+    help="correct the tagged value",
 )
 
 _Reading = tuple[str, Callable[[Tags, str], object]]
@@ -62,61 +58,33 @@ def _ours(context: Context) -> Iterator[tuple[Element, str]]:
             yield one, str(one.attrs.get("stereotype", ""))
 
 
-_UNTYPED = (
-    samples.task()
-    .replace(' level="infrastructure service"', "")
-    .replace("InfrastructureService", "Comment")
-)
-_CALL = '    Action g "grip" subkind="call-behavior"\n      -> calls grip\n'
-_STRUCTURED = samples.NODES.replace(_CALL, '    Structured g "grip" subkind="sequence"\n')
-
 BY_POSITION = rule(
     "SM614",
     "recipe-level-by-position",
     Severity.INFO,
     "'{element}' is taken for a {level} because '{caller}' calls it",
-    "What a recipe calls is a task, what a task calls a service, what a service calls a machine "
-    "function, unless a stereotype says otherwise.",
-    "apply the stereotype, so that the model says what is meant",
-    _UNTYPED,
-    samples.task(),
+    help="apply the stereotype, so that the model says what is meant",
 )
 STRUCTURED = rule(
     "SM615",
     "recipe-structured-node",
     Severity.WARNING,
     "the content of '{element}' does not go into the recipe",
-    "Structured nodes become one opaque step of the graph; the services inside would be lost to "
-    "the scheduler.",
-    "draw loops and choices with decision and merge nodes",
-    samples.task(nodes=_STRUCTURED),
-    samples.task(),
+    help="draw loops and choices with decision and merge nodes",
 )
 CHOICE_OF_TASKS = rule(
     "SM617",
     "recipe-chooses-tasks",
     Severity.WARNING,
     "'{decision}' chooses between tasks, but all tasks of recipe '{recipe}' are scheduled",
-    "The first level is a graph of tasks without control statements (thesis 3.5.1); a decision "
-    "only orders them.",
-    "move the choice into a task, or make two recipes",
-    samples.recipe("r.i r.a", "r.a r.d", "r.d r.b", "r.d r.f", "r.b r.f").replace(
-        '    Control r.f "end" subkind="final"\n',
-        '    Control r.f "end" subkind="final"\n    Control r.d "good?" subkind="decision"\n',
-    ),
-    samples.recipe(),
+    help="move the choice into a task, or make two recipes",
 )
 SAME_NAME = rule(
     "SM619",
     "recipe-same-name",
     Severity.INFO,
     "'{element}' is not refined, and the activity '{other}' has the same name",
-    "An equal name alone decides nothing.",
-    "call the activity from the node, or type the node by it, if it is what is meant",
-    samples.recipe()
-    .replace("      -> calls mill\n", "")
-    .replace('"mill" subkind="call-behavior"', '"Mill" subkind="call-behavior" level="task"'),
-    samples.recipe(),
+    help="call the activity from the node, or type the node by it, if it is what is meant",
 )
 
 

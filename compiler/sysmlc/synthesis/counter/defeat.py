@@ -23,10 +23,7 @@ NO_COUNTER = rule(
     "counter-strategy-not-written",
     Severity.WARNING,
     "what defeats the contract of '{component}' is not written: {reached}",
-    why="A counter-strategy lists every answer that the component may give in every state.",
     help="give more (--time-limit, --memory-limit, --nodes), or play against it (--play)",
-    wrong="sysmlc synth wide.contract.json -o out --nodes 1000",
-    right="sysmlc synth wide.contract.json -o out",
 )
 
 

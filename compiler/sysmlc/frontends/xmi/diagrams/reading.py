@@ -17,10 +17,7 @@ UNREADABLE = rule(
     "unreadable-diagrams",
     Severity.WARNING,
     "the diagrams in '{file}' cannot be read: {problem}",
-    why="The model is read, but the diagrams as their author drew them are not all there.",
     help="open and save the model again in the modelling tool",
-    wrong="<notation:Diagram><children></notation:Diagram>",
-    right="<notation:Diagram><children/></notation:Diagram>",
 )
 
 
