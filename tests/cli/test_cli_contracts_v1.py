@@ -26,7 +26,7 @@ DOOR = """\
   <region xmi:id="r" name="state">
    <subvertex xmi:type="uml:Pseudostate" xmi:id="i"/>
    <subvertex xmi:type="uml:State" xmi:id="sc" name="Closed"/>
-   <subvertex xmi:type="uml:State" xmi:id="so" name="Opened"/>
+   <subvertex xmi:type="uml:State" xmi:id="so" name="OpenedUnit"/>
    <transition xmi:id="t0" source="i" target="sc"/>
    <transition xmi:id="t1" source="sc" target="so">
     <trigger xmi:id="g1" event="eo"/>
@@ -111,8 +111,8 @@ CELL = """\
 <Requirements:Satisfy xmi:id="y1" base_Abstraction="fe.s" base_DirectedRelationship="fe.s"/>
 <Requirements:Satisfy xmi:id="y2" base_Abstraction="pi.s" base_DirectedRelationship="pi.s"/>
 """
-CLOSES = "G (state=Opened &amp; event=close -> X state=Closed)"
-STAYS_OPEN = "G (state=Opened -> X state=Opened)"
+CLOSES = "G (state=OpenedUnit &amp; event=close -> X state=Closed)"
+STAYS_OPEN = "G (state=OpenedUnit -> X state=OpenedUnit)"
 
 
 @pytest.fixture(autouse=True)

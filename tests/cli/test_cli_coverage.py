@@ -10,7 +10,7 @@ from sysmlc.diagnostics.coverage import covered_tenths, tenths
 from sysmlc.diagnostics.coverage_report import FileReport
 from sysmlc.diagnostics.render import coverage
 from sysmlc.driver import Request
-from sysmlc.driver.covering import cover
+from sysmlc.driver.coverage import measure_coverage
 from sysmlc.support import resources
 
 PLANT = """\
@@ -81,7 +81,7 @@ def test_columns_stand_below_each_other(plant):
 
 
 def test_colours_are_for_terminals_and_move_no_column(plant):
-    files = cover(Request(inputs=(plant.folder / "plant.uml",))).files
+    files = measure_coverage(Request(inputs=(plant.folder / "plant.uml",))).files
     plain, coloured = coverage.text(files), coverage.text(files, color=True)
     assert "\x1b" not in plain
     assert "\x1b[31munsupported\x1b[0m" in coloured

@@ -78,7 +78,7 @@ MARKDOWN = """\
 |---|---|---|---|---|
 | `~` | value `speed` | changed: default | `1.5` | `2.0` |
 """
-REAL_PASSES = registry.passes
+REAL_PASSES = registry.load_passes
 
 
 @pytest.fixture

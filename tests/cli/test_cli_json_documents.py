@@ -54,7 +54,7 @@ def test_a_schema_is_a_schema_and_its_id_names_its_format(name):
 
 
 def test_the_languages_of_inputs_are_those_of_the_front_ends():
-    languages = [frontend.name for frontend in registry.frontends()] + ["overlay", "diagrams"]
+    languages = [frontend.name for frontend in registry.load_frontends()] + ["overlay", "diagrams"]
     manifest, recipe = SCHEMAS["sysmlc-manifest"], SCHEMAS["sysmlc-recipe"]
     for inputs in (manifest["properties"]["inputs"], recipe["properties"]["source"]):
         assert inputs["items"]["properties"]["language"]["enum"] == languages

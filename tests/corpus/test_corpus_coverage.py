@@ -7,7 +7,7 @@ import pytest
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.driver import Request
-from sysmlc.driver.covering import cover
+from sysmlc.driver.coverage import measure_coverage
 
 pytestmark = pytest.mark.corpus
 
@@ -27,7 +27,7 @@ def covered(corpus):
 
 
 def _files(path):
-    return cover(Request(inputs=(path,))).files
+    return measure_coverage(Request(inputs=(path,))).files
 
 
 def test_no_model_is_read_less_than_before(covered, golden):

@@ -16,7 +16,7 @@ from json_documents import (
     written_properties,
 )
 from rich_recipe import rich_recipe
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text
 
 pytestmark = [pytest.mark.corpus, pytest.mark.long]
@@ -71,7 +71,7 @@ def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
     texts = [rich_recipe()]
     texts += [
         text
-        for rule in full_catalogue().values()
+        for rule in load_full_catalogue().values()
         for text in (rule.read_page().wrong, rule.read_page().right)
     ]
     # The rules about comments with JSON show comments that somebody damaged.

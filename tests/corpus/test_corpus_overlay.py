@@ -203,7 +203,7 @@ def test_the_contract_of_the_gate_is_derived_and_spot_reads_it(name, refined):
     made = refined[name]
     contracts = {one.component: one for one in made.graph.derived(Contract)}
     assert list(contracts) == ["BayGate Breakdown::BayGate"]
-    texts = {one.path: one.text for one in made.written() if one.path.endswith(".spin.ltl")}
+    texts = {one.path: one.text for one in made.list_published() if one.path.endswith(".spin.ltl")}
     (text,) = texts.values()
     formula = "\n".join(line for line in text.splitlines() if not line.startswith("//"))
     parsed = spot.parse_infix_psl(formula, spot.default_environment.instance(), False, True)

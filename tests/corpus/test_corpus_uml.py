@@ -54,7 +54,7 @@ def saved(path):
 
 def uml(compilation):
     """The saved model; it is written also when the model has errors."""
-    return next(one.text for one in compilation.written() if one.backend == "uml")
+    return next(one.text for one in compilation.list_published() if one.backend == "uml")
 
 
 def changes(path, folder):

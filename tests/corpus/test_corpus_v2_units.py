@@ -18,4 +18,4 @@ def test_valid_models_compile_without_an_error(corpus, folder):
     found = list(made.diagnostics)
     assert [one.message for one in found if one.severity is Severity.ERROR] == []
     assert {one.rule.code for one in found} & SILENT == set()
-    assert len(list(made.written())) > 5
+    assert len(list(made.list_published())) > 5

@@ -25,7 +25,7 @@ def compiled(folder, seed):
 
 
 def texts(compilation):
-    return {a.path: a.text for a in compilation.written() if a.path.endswith(DRAWN)}
+    return {a.path: a.text for a in compilation.list_published() if a.path.endswith(DRAWN)}
 
 
 @pytest.mark.parametrize("seed", SEEDS)

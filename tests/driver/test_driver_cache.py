@@ -28,13 +28,13 @@ def runs(monkeypatch, tmp_path, cache_folder):
     happened = []
     monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "tool")
     cache_key.compute_tool_digest.cache_clear()
-    real = compilation._Run.compilation
+    real = compilation._CompilationRun.compile
 
     def counted(run):
         happened.append(run)
         return real(run)
 
-    monkeypatch.setattr(compilation._Run, "compilation", counted)
+    monkeypatch.setattr(compilation._CompilationRun, "compile", counted)
     yield happened
     cache_key.compute_tool_digest.cache_clear()
 

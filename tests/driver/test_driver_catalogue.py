@@ -5,9 +5,9 @@ import re
 import pytest
 
 from sysmlc.diagnostics.rule_page import FOLDER
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 
-RULES = [rule for rule in full_catalogue().values() if not rule.name.startswith("test-")]
+RULES = [rule for rule in load_full_catalogue().values() if not rule.name.startswith("test-")]
 FAULTS_OF_SYSMLC = {"SM900", "SM901"}
 """No model shows them."""
 

@@ -37,7 +37,7 @@ def codes(compilation):
 
 
 def paths(compilation):
-    return [artefact.path for artefact in compilation.written()]
+    return [artefact.path for artefact in compilation.list_published()]
 
 
 def test_a_model_becomes_a_graph_and_artefacts(plant):
@@ -268,9 +268,9 @@ def test_the_order_of_the_inputs_does_not_matter(tmp_path):
 def test_the_hash_seed_does_not_matter(tmp_path):
     script = (
         "import sys; from pathlib import Path; from driver_fakes import compiled\n"
-        "from sysmlc.driver import manifest_text, outcome, trace_text\n"
+        "from sysmlc.driver import format_manifest, format_trace, summarize\n"
         "made = compiled(*map(Path, sys.argv[1:]))\n"
-        "print(manifest_text(outcome(made), {}), trace_text(made), made.diagnostics)"
+        "print(format_manifest(summarize(made), {}), format_trace(made), made.diagnostics)"
     )
     (tmp_path / "faulty.ir").write_text(FAULTY)
     printed = set()

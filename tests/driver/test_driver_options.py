@@ -15,7 +15,7 @@ def passes(folder, text):
     """The passes with the options of a configuration, by name."""
     (folder / "sysmlc.toml").write_text(text)
     options = config.load(folder / "sysmlc.toml").passes
-    return {one.name: one for one in registry.passes(options)}
+    return {one.name: one for one in registry.load_passes(options)}
 
 
 def test_options_are_fields_of_the_pass(tmp_path):
@@ -46,10 +46,10 @@ class DataclassPass:
 def test_passes_are_structs_or_dataclasses(monkeypatch, written):
     monkeypatch.setattr(pipeline, "NAMES", ("counting",))
     monkeypatch.setattr(pipeline, "load", lambda name: written)
-    (made,) = registry.passes({"counting": {"limit": 7}})
+    (made,) = registry.load_passes({"counting": {"limit": 7}})
     assert (type(made), made.limit, written.limit) == (type(written), 7, 1)
     with pytest.raises(ConfigError, match="did you mean 'limit'"):
-        registry.passes({"counting": {"limits": 7}})
+        registry.load_passes({"counting": {"limits": 7}})
 
 
 def test_an_integer_serves_as_a_number(tmp_path):
@@ -77,6 +77,6 @@ def test_what_is_wrong_is_said(tmp_path, text, sentence):
 
 
 def test_passes_run_in_the_order_that_they_ask_for():
-    order = [one.name for one in registry.passes({})]
+    order = [one.name for one in registry.load_passes({})]
     assert order[:5] == ["resolve", "kept", "overlay", "inherit", "classify"]
     assert order.index("activities") < order.index("contracts")

@@ -178,7 +178,7 @@ def test_what_rests_on_an_entry_that_is_wrong_is_withheld(folder):
     made = build(folder / "line.ir", emit=("plantuml",))
     assert [one[0] for one in told(made)] == ["SM300", "SM300", "SM324"]
     assert [path.rpartition("/")[2] for path in made.withheld] == ["Plant.Line.ibd.puml"]
-    assert any(one.path.endswith("bdd.puml") for one in made.written())
+    assert any(one.path.endswith("bdd.puml") for one in made.list_published())
 
 
 def test_a_link_beside_a_model_that_leads_out_of_the_folder_is_not_followed(folder):
@@ -293,6 +293,6 @@ def test_the_overlay_of_the_documentation_refines_the_example(tmp_path):
 def test_a_flow_both_ways_is_two_flows_in_sysml_v2_and_one_in_uml(folder):
     write(folder, "line.overlay.yaml", FLOW.replace("to: bt", "both-ways: true"))
     made = build(folder / "line.ir", emit=("sysml", "uml"))
-    texts = {one.path.partition("/")[0]: one.text for one in made.written()}
+    texts = {one.path.partition("/")[0]: one.text for one in made.list_published()}
     assert len([line for line in texts["sysml"].splitlines() if "flow of" in line]) == 2
     assert texts["uml"].count("uml:InformationFlow") == 1

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from sysmlc.config import ConfigError
-from sysmlc.driver import BackendError, backend_names, registry
+from sysmlc.driver import BackendError, list_backend_names, registry
 
 PASS = """\
 from typing import ClassVar
@@ -44,7 +44,7 @@ def install(folder: Path, name: str, group: str, *entries: str) -> None:
 def test_back_ends_of_other_distributions_are_found_and_not_loaded(folder):
     install(folder, "shouting", "sysmlc.backends", "shout = shouting:BACKEND")
     assert list(registry.find_plug_ins(registry.BACKEND_GROUP)) == ["shout"]
-    assert "shout" in backend_names()
+    assert "shout" in list_backend_names()
 
 
 def test_back_ends_of_sysmlc_are_no_plug_ins(folder):
@@ -55,13 +55,13 @@ def test_back_ends_of_sysmlc_are_no_plug_ins(folder):
 def test_a_plug_in_cannot_take_the_name_of_a_back_end(folder):
     install(folder, "shouting", "sysmlc.backends", "uml = shouting:BACKEND")
     with pytest.raises(BackendError, match="shouting:BACKEND takes the name of back end 'uml'"):
-        backend_names()
+        list_backend_names()
 
 
 def test_a_pass_of_another_distribution_runs_where_its_predecessors_ask(folder):
     (folder / "counting_elements.py").write_text(PASS)
     install(folder, "counting", "sysmlc.passes", "census = counting_elements:PASS")
-    passes = registry.passes({"census": {"limit": 3}})
+    passes = registry.load_passes({"census": {"limit": 3}})
     assert passes[-1].name == "census"
     assert passes[-1].limit == 3
 
@@ -76,7 +76,7 @@ def test_a_pass_of_another_distribution_runs_where_its_predecessors_ask(folder):
 def test_a_pass_that_cannot_be_used_is_an_error_of_the_configuration(folder, entry, message):
     install(folder, "counting", "sysmlc.passes", entry)
     with pytest.raises(ConfigError, match=message):
-        registry.passes({})
+        registry.load_passes({})
 
 
 def test_rules_of_a_pass_are_in_the_catalogue(folder, monkeypatch):
@@ -89,4 +89,4 @@ def test_rules_of_a_pass_are_in_the_catalogue(folder, monkeypatch):
         + PASS
     )
     install(folder, "strictness", "sysmlc.passes", "census = strict_names:PASS")
-    assert registry.full_catalogue()["SM947"].name == "long-name"
+    assert registry.load_full_catalogue()["SM947"].name == "long-name"

@@ -7,7 +7,7 @@ import pytest
 from driver_fakes import FAULTY, PLANT, Outlines, compiled
 from jsonschema import Draft202012Validator
 
-from sysmlc.driver import Target, compare, outcome, publish
+from sysmlc.driver import Target, compare, publish, summarize
 from sysmlc.support import resources
 
 
@@ -20,7 +20,7 @@ def build(folder, text=PLANT, **given):
 
 def publication_of(folder, text=PLANT, **given):
     (folder / "plant.ir").write_text(text)
-    return publish(outcome(compiled(folder / "plant.ir", **given)), Target(folder / "out"))
+    return publish(summarize(compiled(folder / "plant.ir", **given)), Target(folder / "out"))
 
 
 def files(folder):
@@ -122,7 +122,7 @@ def test_what_was_kept_is_removed_when_the_model_can_be_read_again(tmp_path):
 def test_differences_are_what_publishing_would_change(tmp_path):
     build(tmp_path)
     (tmp_path / "plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-    result, target = outcome(compiled(tmp_path / "plant.ir")), Target(tmp_path / "out")
+    result, target = summarize(compiled(tmp_path / "plant.ir")), Target(tmp_path / "out")
     differences = compare(result, target)
     assert "outlines/Arm.txt" in differences
     assert sorted(publish(result, target).changed) == differences

@@ -3,13 +3,13 @@
 import tomllib
 from pathlib import Path
 
-from sysmlc.driver import backend_names, load_backends, registry, select_backends
+from sysmlc.driver import list_backend_names, load_backends, registry, select_backends
 
 _PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 
 def test_without_a_name_the_default_back_ends_run():
-    every = load_backends(backend_names())
+    every = load_backends(list_backend_names())
     assert select_backends([]) == [one for one in every if one.is_default]
 
 

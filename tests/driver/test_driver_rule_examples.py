@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from sysmlc.driver import Request, backend_names, compile_model, full_catalogue, load_backends
+from sysmlc.driver import Request, list_backend_names, compile_model, load_full_catalogue, load_backends
 
 TESTS = Path(__file__).parents[1]
-RULES = [rule for rule in full_catalogue().values() if not rule.name.startswith("test-")]
+RULES = [rule for rule in load_full_catalogue().values() if not rule.name.startswith("test-")]
 OF_CIRCUMSTANCES = {
     "SM455": "the limit is an option",
     "SM476": "what is in the example leads to another behaviour",
@@ -36,7 +36,7 @@ GRAPHS = [
 def found(text: str, folder: Path) -> set[str]:
     path = folder / "model.ir"
     path.write_text(text, encoding="utf-8")
-    made = compile_model(Request((path,), backends=tuple(load_backends(backend_names()))))
+    made = compile_model(Request((path,), backends=tuple(load_backends(list_backend_names()))))
     return {one.rule.code for one in made.diagnostics}
 
 

@@ -27,7 +27,7 @@ def compile_text(folder: Path, name: str, data: bytes, *emit: str) -> Compilatio
 
 def outputs(compilation: Compilation) -> dict[str, str]:
     """The texts of all files that are not withheld, by path."""
-    return {artefact.path: artefact.text for artefact in compilation.written()}
+    return {artefact.path: artefact.text for artefact in compilation.list_published()}
 
 
 def findings(compilation: Compilation) -> str:

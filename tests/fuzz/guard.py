@@ -153,14 +153,22 @@ def _warm_up() -> None:
 
     from sysmlc.cli import group
     from sysmlc.diagnostics.render import make_report, render
-    from sysmlc.driver import Request, backend_names, compile_model, full_catalogue, load_backends
+    from sysmlc.driver import (
+        Request,
+        compile_model,
+        list_backend_names,
+        load_backends,
+        load_full_catalogue,
+    )
 
-    full_catalogue()
+    load_full_catalogue()
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder, "m.uml")
         model.write_text(_MODEL)
         made = compile_model(
-            Request((model, model.with_name("no")), backends=tuple(load_backends(backend_names())))
+            Request(
+                (model, model.with_name("no")), backends=tuple(load_backends(list_backend_names()))
+            )
         )
         render(make_report(made.diagnostics, made.sources, str), "text", color=False)
     for name in group.COMMANDS:

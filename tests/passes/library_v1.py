@@ -33,7 +33,7 @@ def library(name: str) -> bytes:
 
 def _emitted(folder: Path, model: str, backend: str, file: str) -> bytes:
     made = compile_model(Request((folder / model,), backends=tuple(select_backends([backend]))))
-    return next(one.text for one in made.written() if one.path == file).encode()
+    return next(one.text for one in made.list_published() if one.path == file).encode()
 
 
 def _for_v1(graph: Graph, element: Element, name: str) -> None:

@@ -4,10 +4,10 @@ import pytest
 from overlaying import laid_over
 from passing import codes
 
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 
 CODES = {*range(320, 341), 637}
-RULES = [rule for rule in full_catalogue().values() if int(rule.code[2:]) in CODES]
+RULES = [rule for rule in load_full_catalogue().values() if int(rule.code[2:]) in CODES]
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

@@ -4,7 +4,7 @@ import pytest
 
 import recipe_samples as samples
 from sysmlc.diagnostics import Severity, Sink
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import Graph, parse_text, verify
 from sysmlc.ir.text import print_text
 from sysmlc.passes.recipe import Recipe
@@ -13,7 +13,7 @@ from sysmlc.recipe.model import MaterialUse, Mode, Model, Range
 
 RULES = [
     rule
-    for rule in full_catalogue().values()
+    for rule in load_full_catalogue().values()
     if "SM601" <= rule.code <= "SM622" and rule.code != "SM621"
 ]
 
@@ -114,7 +114,7 @@ def test_a_stereotype_that_specialises_the_profile_counts_and_a_namesake_does_no
 
 
 def test_an_equal_name_only_suggests():
-    rule = full_catalogue()["SM619"]
+    rule = load_full_catalogue()["SM619"]
     found = model(rule.read_page().wrong)
     assert {task.implementation for task in found.recipe.tasks} == {""}
 

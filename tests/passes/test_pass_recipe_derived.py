@@ -4,7 +4,7 @@ import pytest
 
 import recipe_samples as samples
 from sysmlc.diagnostics import Sink
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import Graph, parse_text
 from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.expression import Lit
@@ -30,7 +30,7 @@ def test_a_block_that_owns_a_machine_function_is_a_machine_and_it_is_told():
 
 
 def test_the_rule_reports_its_wrong_model_and_not_its_right_one():
-    rule = full_catalogue()["SM483"]
+    rule = load_full_catalogue()["SM483"]
     assert [one[:5] for one in run(rule.read_page().wrong)[1]] == ["SM483"]
     assert run(rule.read_page().right)[1] == []
 

@@ -32,7 +32,7 @@ def library() -> bytes:
         path = Path(folder) / "Floors.sysml"
         path.write_text(text, encoding="utf-8")
         made = compile_model(Request((path,), backends=tuple(select_backends(["uml"]))))
-        (found,) = (one.text for one in made.written() if one.path.endswith(".uml"))
+        (found,) = (one.text for one in made.list_published() if one.path.endswith(".uml"))
     return found.replace('name="Library"', 'name="Floors"').encode()
 
 

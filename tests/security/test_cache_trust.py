@@ -54,7 +54,7 @@ def test_a_committed_cache_cannot_hide_findings(project, monkeypatch):
     honest = project.run("check", "plant.ir")
     assert honest.exit_code == 1
     shutil.rmtree(project.folder / ".sysmlc-cache", ignore_errors=True)
-    monkeypatch.setattr(compilation._Run, "_findings", lambda self: ())
+    monkeypatch.setattr(compilation._CompilationRun, "_list_diagnostics", lambda self: ())
     store = Cache(project.folder / ".sysmlc-cache")
     store.folder.mkdir()
     monkeypatch.setattr(cache, "open_cache", lambda roots: store)

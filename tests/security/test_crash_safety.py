@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from sysmlc.driver import Target, compare, publish
-from sysmlc.driver.outcome import Outcome, OutputFile, digest_of
+from sysmlc.driver.outcome import Outcome, OutputFile, compute_text_digest
 
 CALLS = ["open", "write", "replace", "fsync", "unlink", "rmdir", "mkdir", "close"]
 FOREIGN = {"out/own.txt": "by hand", "out/contracts/own.txt": "by hand", "notes.txt": "by hand"}
@@ -35,7 +35,9 @@ def _fsync(_handle):
 def make_outcome(**texts: str) -> Outcome:
     """Return the outcome of a model that gives *texts*; ``__`` stands for ``/``, ``_`` for ``.``"""
     files = {name.replace("__", "/").replace("_", "."): text for name, text in texts.items()}
-    listed = tuple(OutputFile(path, "test", digest_of(text)) for path, text in files.items())
+    listed = tuple(
+        OutputFile(path, "test", compute_text_digest(text)) for path, text in files.items()
+    )
     return Outcome(Path.cwd(), (), (), listed, files)
 
 

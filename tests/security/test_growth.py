@@ -9,7 +9,7 @@ import hostile_families as families
 import pytest
 
 from sysmlc.backends.plantuml import bdd
-from sysmlc.driver import Request, backend_names, compile_model, load_backends
+from sysmlc.driver import Request, compile_model, list_backend_names, load_backends
 from sysmlc.logic.machines import conflicts as competition
 
 MAX_GROWTH = 4.5
@@ -18,7 +18,7 @@ MAX_GROWTH = 4.5
 
 @cache
 def load_all_backends():
-    return tuple(load_backends(backend_names()))
+    return tuple(load_backends(list_backend_names()))
 
 
 def compile_text(folder: Path, name: str, text: str):

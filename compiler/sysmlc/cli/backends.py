@@ -7,10 +7,10 @@ import click
 def command() -> None:
     """List the back ends, plug-ins included; those with * are emitted by default."""
     from sysmlc.cli.session import fail
-    from sysmlc.driver import BackendError, backend_names, load_backends
+    from sysmlc.driver import BackendError, list_backend_names, load_backends
 
     try:
-        backends = load_backends(backend_names())
+        backends = load_backends(list_backend_names())
     except BackendError as problem:
         fail(str(problem))
     width = max(len(backend.name) for backend in backends)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from sysmlc.diagnostics.coverage_report import FileReport
-    from sysmlc.driver.covering import Covered
+    from sysmlc.driver.coverage import UnitCoverage
 
 
 @click.command(
@@ -59,12 +59,12 @@ def command(
     """
     from sysmlc.cli import session
     from sysmlc.cli.units import open_units
-    from sysmlc.driver.covering import cover
+    from sysmlc.driver.coverage import measure_coverage
 
     settings = session.Settings(config, isolated)
     loaded = session.load_config(models, settings)
     units = open_units(models, loaded, settings, None)
-    made = [cover(unit.request, unit.opened) for unit in units]
+    made = [measure_coverage(unit.request, unit.opened) for unit in units]
     code = max(_report_errors(one) for one in made)
     reports = {file.file: file for one in made for file in _shown(one)}
     files = [reports[name] for name in sorted(reports)]
@@ -73,7 +73,7 @@ def command(
     ctx.exit(max(code, int(_is_below(files, fail_under))))
 
 
-def _report_errors(made: "Covered") -> int:
+def _report_errors(made: "UnitCoverage") -> int:
     """Show what could not be read, and say the exit code that this means."""
     from sysmlc.cli import session
     from sysmlc.diagnostics.render import make_report
@@ -83,10 +83,10 @@ def _report_errors(made: "Covered") -> int:
     if errors:
         shown = session.named(made.root, make_report(errors, made.sources).findings)
         session.show(shown, session.Settings())
-    return faults.exit_code(errors)
+    return faults.compute_exit_code(errors)
 
 
-def _shown(made: "Covered") -> "Iterable[FileReport]":
+def _shown(made: "UnitCoverage") -> "Iterable[FileReport]":
     """The reports with file names as the reader knows them."""
     from sysmlc.cli.session import name_of
 

@@ -146,7 +146,7 @@ def _places(
 ) -> "Mapping[Place, Place]":
     """Lines and columns of what changed, in the old model or in the new one."""
     from sysmlc.diagnostics import Place
-    from sysmlc.driver.places import Locator
+    from sysmlc.driver.locations import Locator
 
     refs = (change.new if side else change.old for change in changes)
     places = {Place(ref.file, ref.ordinal) for ref in refs if ref is not None and ref.file}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.diagnostics.render import Finding
-    from sysmlc.driver import Compilation, Opened, Outcome, Publication, Request, Target
+    from sysmlc.driver import Compilation, OpenedUnit, Outcome, Publication, Request, Target
     from sysmlc.sources.schema import Schemas
     from sysmlc.support.cache import Cache
 
@@ -86,9 +86,9 @@ def fail(message: str, *details: str) -> NoReturn:
 
 def known_rules() -> "dict[str, Rule]":
     """Every rule by its code; those of a module that cannot be imported are noted as missing."""
-    from sysmlc.driver import full_catalogue
+    from sysmlc.driver import load_full_catalogue
 
-    return full_catalogue(lambda note: terminal.echo(f"sysmlc: note: {note}", err=True))
+    return load_full_catalogue(lambda note: terminal.echo(f"sysmlc: note: {note}", err=True))
 
 
 def load_config(models: Sequence[Path], settings: Settings) -> "Config":
@@ -208,7 +208,7 @@ def compile_opened(
 
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
     """Read a unit as its authors wrote it: references are resolved, nothing is refined."""
-    passes = tuple(step for step in unit.request.pipeline() if step.name in _AS_WRITTEN)
+    passes = tuple(step for step in unit.request.load_passes() if step.name in _AS_WRITTEN)
     return _compile(replace(unit.request, passes=passes), settings, unit.opened)
 
 
@@ -262,9 +262,9 @@ def _reuse_outcome(cache: "Cache", unit: "Unit", settings: Settings, has_files: 
 
 def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) -> "Outcome":
     """Compile the unit in this process and return the outcome; the cache is not used."""
-    from sysmlc.driver import outcome
+    from sysmlc.driver import summarize
 
-    return outcome(compile_opened(unit, settings, unit.emit), has_files)
+    return summarize(compile_opened(unit, settings, unit.emit), has_files)
 
 
 def make_request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
@@ -301,7 +301,7 @@ def _with_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request
 
 
 def _compile(
-    request: "Request", settings: Settings, opened: "Opened | None" = None
+    request: "Request", settings: Settings, opened: "OpenedUnit | None" = None
 ) -> "Compilation":
     from sysmlc.cli.progress import Progress
     from sysmlc.config import ConfigError
@@ -309,7 +309,7 @@ def _compile(
 
     progress = Progress(settings.verbose, settings.print_after)
     try:
-        _check_pass_names([step.name for step in request.pipeline()], settings.print_after)
+        _check_pass_names([step.name for step in request.load_passes()], settings.print_after)
         return compile_model(request, progress, opened)
     except ConfigError as problem:
         fail(f"{request.config.file}: {problem}" if request.config.file else str(problem))

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 if TYPE_CHECKING:
     from sysmlc.cli.session import Selection, Settings
     from sysmlc.config import Config
-    from sysmlc.driver import Opened, Request
+    from sysmlc.driver import OpenedUnit, Request
 
 _LISTED = 10
 """Units that a message lists."""
@@ -24,7 +24,7 @@ class Unit(Struct, frozen=True):
     """
 
     request: "Request"
-    opened: "Opened"
+    opened: "OpenedUnit"
     name: str
     output: Path
     emit: tuple[str, ...]
@@ -138,7 +138,7 @@ def _open_project(
 
 
 def _make_unit(
-    selection: "Selection", request: "Request", opened: "Opened", name: str, output: Path
+    selection: "Selection", request: "Request", opened: "OpenedUnit", name: str, output: Path
 ) -> Unit:
     return Unit(request, opened, name, output, selection.emit, selection.boundary)
 

@@ -3,43 +3,43 @@
 from sysmlc.driver.compilation import (
     Compilation,
     Observer,
-    Opened,
+    OpenedUnit,
     Request,
     compile_model,
     open_unit,
 )
-from sysmlc.driver.manifest import manifest_text
-from sysmlc.driver.outcome import Outcome, outcome
+from sysmlc.driver.manifest import format_manifest
+from sysmlc.driver.outcome import Outcome, summarize
 from sysmlc.driver.publishing import Publication, Target, compare, publish
 from sysmlc.driver.registry import (
     BackendError,
-    backend_names,
-    full_catalogue,
+    list_backend_names,
     load_backends,
+    load_full_catalogue,
     select_backends,
 )
-from sysmlc.driver.tracing import trace_text
+from sysmlc.driver.tracing import format_trace
 from sysmlc.driver.units import open_units
 
 __all__ = [
     "BackendError",
     "Compilation",
     "Observer",
-    "Opened",
+    "OpenedUnit",
     "Outcome",
     "Publication",
     "Request",
     "Target",
-    "backend_names",
     "compare",
     "compile_model",
-    "full_catalogue",
+    "format_manifest",
+    "format_trace",
+    "list_backend_names",
     "load_backends",
-    "manifest_text",
+    "load_full_catalogue",
     "open_unit",
     "open_units",
-    "outcome",
     "publish",
     "select_backends",
-    "trace_text",
+    "summarize",
 ]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from sysmlc import __version__
 from sysmlc.diagnostics import rule_page
 from sysmlc.driver import registry
-from sysmlc.driver.compilation import Opened, Request
+from sysmlc.driver.compilation import OpenedUnit, Request
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
 from sysmlc.sources.whole import read_whole
 from sysmlc.support import resources
@@ -25,7 +25,7 @@ _RESOURCES = ("grammars", "metamodels", "templates")
 
 
 def compute_outcome_key(
-    opened: Opened, request: Request, emit: Sequence[str], has_files: bool
+    opened: OpenedUnit, request: Request, emit: Sequence[str], has_files: bool
 ) -> str:
     """Return the key of the outcome of a request.
 
@@ -46,7 +46,7 @@ def compute_tool_digest() -> str:
 
 
 def _list_dependencies(
-    opened: Opened, request: Request, emit: Sequence[str], has_files: bool
+    opened: OpenedUnit, request: Request, emit: Sequence[str], has_files: bool
 ) -> Iterator[str]:
     config, reading = request.config, opened.reading
     yield compute_tool_digest()

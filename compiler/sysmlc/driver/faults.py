@@ -1,4 +1,4 @@
-"""Rules of the driver: what can go wrong around a compilation."""
+"""Rules of the driver about inputs, configuration and internal faults, and exit codes."""
 
 from collections.abc import Iterable
 
@@ -143,31 +143,31 @@ _BY_FAULT = {
 }
 
 STOPPING = frozenset(
-    found.code
-    for found in (MISSING_FILE, UNOPENED, TOO_LARGE, CHANGING, INTERNAL_FAULT, INVALID_GRAPH)
+    rule.code
+    for rule in (MISSING_FILE, UNOPENED, TOO_LARGE, CHANGING, INTERNAL_FAULT, INVALID_GRAPH)
 )
-"""Rules after which we could not do our work: exit code 2."""
+"""Rules whose diagnostics lead to exit code 2."""
 
 
 FAILED = 2
-"""Exit code: we could not do our work."""
+"""Exit code of a run that could not do its work."""
 
 
-def exit_code(found: Iterable[Diagnostic], strict: bool = False) -> int:
-    """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
-    known = {(one.rule.code, one.severity) for one in found}
-    if any(code in STOPPING for code, _ in known):
-        return 2
-    bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
-    return 1 if any(severity in bad for _, severity in known) else 0
+def compute_exit_code(diagnostics: Iterable[Diagnostic], strict: bool = False) -> int:
+    """Return 0 (clean), 1 (errors, with *strict* also warnings) or 2 (no result)."""
+    codes = {(diagnostic.rule.code, diagnostic.severity) for diagnostic in diagnostics}
+    if any(code in STOPPING for code, _ in codes):
+        return FAILED
+    failing = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
+    return 1 if any(severity in failing for _, severity in codes) else 0
 
 
 def about_file(name: str) -> Subject:
-    """A file as the subject of a finding."""
+    """Return a file as the subject of a diagnostic."""
     return Subject(place=Place(name))
 
 
 def report_unreadable(problem: SourceError, sink: Sink) -> None:
-    """Report a file that cannot be read, at the byte where it ends to make sense."""
+    """Report a file that cannot be read, at the byte where reading failed."""
     subject = Subject(place=Place(problem.file, offset=problem.offset))
     sink.report(_BY_FAULT[problem.fault], subject, path=problem.file, reason=problem.message)

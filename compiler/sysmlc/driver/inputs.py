@@ -1,4 +1,4 @@
-"""From what the user named to the sources of one compile unit."""
+"""The files of one compile unit: search folders, recognise contents, name files in outputs."""
 
 import os
 import unicodedata
@@ -10,7 +10,7 @@ from msgspec import Struct
 from sysmlc.config import FILE_NAME, find_project_root
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
-from sysmlc.driver.contents import describe_content, is_blank
+from sysmlc.driver.content_types import describe_content, is_blank
 from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
@@ -21,7 +21,7 @@ _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar
 """
 SUFFIXES = frozenset(_SUFFIXES.split())
-"""How files in a folder end that are worth a look; files that are named may end in anything."""
+"""Suffixes of the files that a search of folders considers. A named file may have any suffix."""
 
 
 class Recognised(Struct, frozen=True):
@@ -31,13 +31,13 @@ class Recognised(Struct, frozen=True):
     frontend: Frontend
 
 
-def unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
-    """The folder that names in outputs are relative to.
+def find_unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
+    """Return the folder that names in outputs are relative to.
 
-    ``preferred`` (where the configuration stands) if all paths are below it, else the nearest
-    folder that holds them all.
+    It is *preferred* (the folder of the configuration) if all paths are below it, else the nearest
+    common folder.
     """
-    absolute = [_absolute(path) for path in paths]
+    absolute = [_make_absolute(path) for path in paths]
     preferred = preferred.resolve() if preferred else None
     if preferred is not None and all(path.is_relative_to(preferred) for path in absolute):
         return preferred
@@ -45,14 +45,14 @@ def unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
     return Path(os.path.commonpath(folders)) if folders else Path.cwd()
 
 
-def allowed_roots(paths: Sequence[Path], root: Path) -> Roots:
+def find_allowed_roots(paths: Sequence[Path], root: Path) -> Roots:
     """Return the folders that references of a unit may lead into.
 
     These are the project roots of what the user named, as far as they lie below *root*, the
     folder that outputs name files relative to. *root* alone could be ``/``: it holds all models
     that the user named.
     """
-    projects = {find_project_root(_absolute(path)) for path in paths}
+    projects = {find_project_root(_make_absolute(path)) for path in paths}
     return Roots(tuple(sorted(max(root, project, key=_depth) for project in projects)))
 
 
@@ -60,24 +60,25 @@ def _depth(folder: Path) -> int:
     return len(folder.parts)
 
 
-def collect(
+def collect_files(
     paths: Iterable[Path], root: Path, sink: Sink, excluded: Iterable[Path] = ()
 ) -> dict[Path, bool]:
-    """Files to read, sorted by name, and whether each was named (not found in a folder).
+    """Return the files to read, sorted by name, and whether the user named each file itself.
 
-    Folders are searched without the files and folders in ``excluded``, which are real paths.
+    The search of folders skips the files and folders in *excluded*, which are real paths.
     """
-    found: dict[Path, bool] = {}
-    left_out = frozenset(excluded)
+    is_named: dict[Path, bool] = {}
+    excluded = frozenset(excluded)
     for path in paths:
-        absolute = _absolute(path)
+        absolute = _make_absolute(path)
         if absolute.is_dir():
-            found = dict.fromkeys(_in_folder(absolute, root, sink, left_out), False) | found
+            files = _search_folder(absolute, root, sink, excluded)
+            is_named = dict.fromkeys(files, False) | is_named
         elif absolute.exists():
-            found[absolute] = True
+            is_named[absolute] = True
         else:
             _report_missing(path, absolute, root, sink)
-    return {path: found[path] for path in sorted(found, key=lambda p: name_of(p, root))}
+    return {path: is_named[path] for path in sorted(is_named, key=lambda p: name_of(p, root))}
 
 
 def name_of(path: Path, root: Path) -> str:
@@ -92,7 +93,7 @@ def name_of(path: Path, root: Path) -> str:
 def recognise(
     sources: Sequence[Source], frontends: Sequence[Frontend], otherwise: Rule | None, sink: Sink
 ) -> Iterator[Recognised]:
-    """The sources that a front end recognises; ``otherwise`` is reported about the others."""
+    """Yield the sources that a front end recognises; report *otherwise* about the others."""
     for source in sources:
         scores = [(frontend.detect(source), frontend) for frontend in frontends]
         score, best = max(scores, key=lambda pair: pair[0])
@@ -101,33 +102,34 @@ def recognise(
                 sink.report(faults.EMPTY, faults.about_file(source.name), path=source.name)
             yield Recognised(source, best)
         elif otherwise is not None:
-            known = ", ".join(frontend.name for frontend in frontends)
+            names = ", ".join(frontend.name for frontend in frontends)
             reason = "it is empty"
             if not is_blank(source.data):
                 reason = f"it is {describe_content(source.data)}"
             subject = faults.about_file(source.name)
-            sink.report(otherwise, subject, path=source.name, reason=reason, frontends=known)
+            sink.report(otherwise, subject, path=source.name, reason=reason, frontends=names)
 
 
-def _absolute(path: Path) -> Path:
-    """The path from the top; only a file that is itself a symbolic link keeps its name."""
+def _make_absolute(path: Path) -> Path:
+    """Return the absolute path, with links resolved except for a file that is itself a link."""
     return path.resolve() if path.is_dir() else path.parent.resolve() / path.name
 
 
-def _in_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Path]) -> list[Path]:
+def _search_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Path]) -> list[Path]:
+    """Return the model files below *folder*; report links out of it, and if there is no model."""
     inside = Roots((folder,))
-    found = []
+    files = []
     for path in sorted(find_model_files(folder, excluded)):
         if path.is_symlink() and not inside.allows(path):
             name = name_of(path, root)
             sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         else:
-            found.append(path)
-    if not found and not any(path.is_relative_to(folder) for path in excluded):
+            files.append(path)
+    if not files and not any(path.is_relative_to(folder) for path in excluded):
         name = name_of(folder, root)
         shown = folder.resolve().name if name == "." else name
         sink.report(faults.NOTHING_TO_COMPILE, faults.about_file(name), path=shown)
-    return found
+    return files
 
 
 def find_model_files(folder: Path, excluded: frozenset[Path] = frozenset()) -> Iterator[Path]:
@@ -177,7 +179,8 @@ def _is_excluded(path: Path, excluded: frozenset[Path]) -> bool:
 def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:
     name = path.as_posix()
     folder = absolute.parent
-    near = [p.name for p in sorted(folder.iterdir())] if folder.is_dir() else []
-    advice = did_you_mean(absolute.name, [n for n in near if not n.startswith(".")][:40])
+    names = [p.name for p in sorted(folder.iterdir())] if folder.is_dir() else []
+    visible_names = [name for name in names if not name.startswith(".")]
+    advice = did_you_mean(absolute.name, visible_names[:40])
     subject = faults.about_file(name_of(absolute, root))
     sink.report(faults.MISSING_FILE, subject, help="{advice}", path=name, advice=advice)

@@ -9,7 +9,7 @@ from sysmlc.driver.ownership import FORMAT
 from sysmlc.support.json_text import encode_json
 
 
-def manifest_text(outcome: Outcome, kept: Mapping[str, str]) -> str:
+def format_manifest(outcome: Outcome, kept: Mapping[str, str]) -> str:
     """Return the manifest: inputs and files with their digests, withheld files and the reasons.
 
     *kept* are paths and digests of files of an earlier run, whose inputs could not be read now.
@@ -22,22 +22,22 @@ def manifest_text(outcome: Outcome, kept: Mapping[str, str]) -> str:
                 {"path": file.path, "sha256": file.sha256, "language": file.language}
                 for file in outcome.inputs
             ],
-            "files": [_file(file) for file in outcome.files],
-            "withheld": [_withheld(file) for file in outcome.withheld],
+            "files": [_describe_file(file) for file in outcome.files],
+            "withheld": [_describe_withheld(file) for file in outcome.withheld],
             "kept": [{"path": path, "sha256": digest} for path, digest in kept.items()],
         }
     )
 
 
-def _file(file: OutputFile) -> dict[str, object]:
+def _describe_file(file: OutputFile) -> dict[str, object]:
     return {"path": file.path, "backend": file.backend, "sha256": file.sha256}
 
 
-def _withheld(file: Withheld) -> dict[str, object]:
-    return {"path": file.path, "because": [_because(error) for error in file.because]}
+def _describe_withheld(file: Withheld) -> dict[str, object]:
+    return {"path": file.path, "because": [_describe_reason(error) for error in file.because]}
 
 
-def _because(error: Diagnostic) -> dict[str, str]:
+def _describe_reason(error: Diagnostic) -> dict[str, str]:
     return {
         "code": error.rule.code,
         "name": error.rule.name,

@@ -1,4 +1,4 @@
-"""What a compilation means to its user: findings with places, files, exit code. No graph."""
+"""The outcome of a compilation: located findings, files and exit code, without the graph."""
 
 import hashlib
 from collections.abc import Mapping
@@ -11,11 +11,11 @@ from sysmlc.diagnostics import Diagnostic
 from sysmlc.diagnostics.render import Finding, make_report
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
-from sysmlc.driver.tracing import COVERAGE, TRACE, coverage_text, trace_text
+from sysmlc.driver.tracing import COVERAGE, TRACE, format_coverage, format_trace
 
 
 class OutputFile(Struct, frozen=True):
-    """A file of the output folder, and the back end that made it."""
+    """A file of the output folder, and the back end that generated it."""
 
     path: str
     backend: str
@@ -23,16 +23,16 @@ class OutputFile(Struct, frozen=True):
 
 
 class Withheld(Struct, frozen=True):
-    """A file that is not written, and the errors because of which."""
+    """A file that is not written, and the errors that are the reason."""
 
     path: str
     because: tuple[Diagnostic, ...]
 
 
 class Outcome(Struct, frozen=True):
-    """What came out of one compilation, or of the same one earlier.
+    """The outcome of one compilation, computed now or loaded from the cache.
 
-    ``findings`` name files as the unit does. ``texts`` holds the text of each of ``files``.
+    ``findings`` name files relative to ``root``. ``texts`` has the text of each file by path.
     """
 
     root: Path
@@ -42,26 +42,26 @@ class Outcome(Struct, frozen=True):
     texts: Mapping[str, str]
     withheld: tuple[Withheld, ...] = ()
     is_complete: bool = True
-    """Whether every input could be read; if not, nothing old is removed."""
+    """Whether every input was read. If not, files of earlier runs are not removed."""
 
     def exit_code(self, strict: bool = False) -> int:
-        """0 clean; 1 the model is wrong (with ``strict`` also warnings); 2 we failed."""
-        return faults.exit_code((found.diagnostic for found in self.findings), strict)
+        """Return 0 (clean), 1 (errors, with *strict* also warnings) or 2 (no result)."""
+        return faults.compute_exit_code((finding.diagnostic for finding in self.findings), strict)
 
 
-def outcome(compilation: Compilation, has_files: bool = True) -> Outcome:
-    """The outcome of a compilation: places become lines, elements their trace.
+def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:
+    """Return the outcome of a compilation; without *has_files* it has only the findings.
 
-    Without ``has_files`` it holds the findings only.
+    Locations are resolved to lines and columns.
     """
-    texts = _texts(compilation) if has_files else {}
+    texts = _collect_texts(compilation) if has_files else {}
     backends = {artefact.path: artefact.backend for artefact in compilation.artefacts}
     return Outcome(
         root=compilation.root,
         inputs=compilation.inputs,
         findings=make_report(compilation.diagnostics, compilation.sources).findings,
         files=tuple(
-            OutputFile(path, backends.get(path, ""), digest_of(text))
+            OutputFile(path, backends.get(path, ""), compute_text_digest(text))
             for path, text in texts.items()
         ),
         texts=texts,
@@ -70,11 +70,11 @@ def outcome(compilation: Compilation, has_files: bool = True) -> Outcome:
     )
 
 
-def _texts(compilation: Compilation) -> dict[str, str]:
-    texts = {artefact.path: artefact.text for artefact in compilation.written()}
-    return texts | {COVERAGE: coverage_text(compilation), TRACE: trace_text(compilation)}
+def _collect_texts(compilation: Compilation) -> dict[str, str]:
+    texts = {artefact.path: artefact.text for artefact in compilation.list_published()}
+    return texts | {COVERAGE: format_coverage(compilation), TRACE: format_trace(compilation)}
 
 
-def digest_of(text: str) -> str:
-    """SHA-256, in hex, of a text as it is written."""
+def compute_text_digest(text: str) -> str:
+    """Return the SHA-256, in hex, of a text as a file contains it."""
     return hashlib.sha256(text.encode("utf-8")).hexdigest()

@@ -1,4 +1,4 @@
-"""Overlays of a unit: those beside its models, and those that are named."""
+"""The overlay documents of a unit: those beside its models, and those that the user names."""
 
 import os
 from collections.abc import Iterable
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 
 class LoadedOverlay(Struct, frozen=True):
-    """The file of an overlay and what it says; nothing when it cannot be used."""
+    """The file of an overlay and its content; no content if the overlay has errors."""
 
     path: Path
     source: Source
     refinement: "Refinement | None"
 
 
-def beside(model: Path) -> Path | None:
-    """The overlay that lies beside a model: ``gate.overlay.yaml`` for ``gate.aml``."""
+def find_overlay(model: Path) -> Path | None:
+    """Return the overlay beside a model, ``gate.overlay.yaml`` for ``gate.aml``, if it exists."""
     path = model.with_name(model.stem + SUFFIX)
     return path if os.path.lexists(path) else None
 
@@ -37,9 +37,9 @@ def beside(model: Path) -> Path | None:
 def load_overlay(
     path: Path, root: Path, roots: Roots, sink: Sink, *, is_named: bool
 ) -> LoadedOverlay | None:
-    """Read an overlay. One that cannot be read is reported, or is a link out of the roots.
+    """Read an overlay; report it if it cannot be read or lies outside the allowed roots.
 
-    An overlay that the user named may be anywhere.
+    An overlay that the user names may lie anywhere.
     """
     name = name_of(path, root)
     if is_named and not path.exists():
@@ -58,17 +58,17 @@ def load_overlay(
     return LoadedOverlay(path, source, read(source, sink))
 
 
-def store_all(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
-    """Keep what overlays say for the pass ``overlay``."""
-    said = [laid.refinement for laid in overlays if laid.refinement is not None]
-    if said:
+def store_refinements(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
+    """Store the content of the overlays in the graph, for the pass ``overlay``."""
+    refinements = [o.refinement for o in overlays if o.refinement is not None]
+    if refinements:
         from sysmlc.overlay import Refinement
 
-        graph.store(Refinement, said)
+        graph.store(Refinement, refinements)
 
 
-def models_of(overlay: LoadedOverlay) -> list[str]:
-    """Files that the terms of an overlay name, each once, as it writes them."""
+def list_models(overlay: LoadedOverlay) -> list[str]:
+    """Return the files that the entries of an overlay name, each once, as written there."""
     if overlay.refinement is None:
         return []
     from sysmlc.overlay import files_of

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from sysmlc.config import Config, ConfigError, expand_files
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver import faults
-from sysmlc.driver.compilation import Opened
+from sysmlc.driver.compilation import OpenedUnit
 from sysmlc.driver.inputs import find_model_files, find_projects
 from sysmlc.driver.outcome import Outcome
 from sysmlc.frontends.base import Frontend
@@ -23,7 +23,7 @@ _PROJECT_RULES = frozenset({faults.UNUSED_SUPPRESSION.code, faults.UNKNOWN_LEVEL
 
 
 def judge_project_findings(
-    units: Sequence[tuple[Config, Opened]], outcomes: Sequence[Outcome]
+    units: Sequence[tuple[Config, OpenedUnit]], outcomes: Sequence[Outcome]
 ) -> list[Outcome]:
     """Return the outcomes with the findings that hold for a whole project, each once.
 
@@ -46,7 +46,7 @@ def judge_project_findings(
 
 
 def select_project_findings(
-    config: Config, units: Sequence[Opened], diagnostics: Sequence[Iterable[Diagnostic]]
+    config: Config, units: Sequence[OpenedUnit], diagnostics: Sequence[Iterable[Diagnostic]]
 ) -> frozenset[str]:
     """Return the messages of the findings about the configuration that hold in all *units*."""
     messages = [
@@ -68,7 +68,7 @@ def _is_kept(diagnostic: Diagnostic, kept: frozenset[str]) -> bool:
     return diagnostic.rule.code not in _PROJECT_RULES or diagnostic.message in kept
 
 
-def _is_whole_project(config: Config, units: Sequence[Opened]) -> bool:
+def _is_whole_project(config: Config, units: Sequence[OpenedUnit]) -> bool:
     """Whether the units read every model of the project."""
     read = {file.path for opened in units for file in opened.reading.files}
     frontends = units[0].frontends

@@ -1,4 +1,4 @@
-"""From an outcome to the output folder: what changed is written, what is stale is removed.
+"""Bring an output folder up to date: write changed files and remove stale ones.
 
 A build may be killed at any moment, or the disk may be full. The next build then finds one of
 these states, and what it does leads to the same folder as a build without an interruption:
@@ -24,7 +24,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Diagnostic, Place, Severity, Sink, Subject, rule
 from sysmlc.driver.folder_lock import lock_folder
-from sysmlc.driver.manifest import manifest_text
+from sysmlc.driver.manifest import format_manifest
 from sysmlc.driver.outcome import Outcome
 from sysmlc.driver.ownership import (
     MANIFEST,
@@ -86,7 +86,7 @@ class Target(Struct, frozen=True):
 
 
 class Publication(Struct, frozen=True):
-    """What became of an output folder: the paths that changed, or why nothing was written."""
+    """The result of publishing: the paths that changed, or the reasons why nothing was written."""
 
     changed: tuple[str, ...]
     diagnostics: tuple[Diagnostic, ...]
@@ -185,7 +185,7 @@ def _plan(outcome: Outcome, target: Target, sink: Sink) -> _Plan:
         elif current != OTHER:
             sink.report(EDITED_STALE_FILE, _subject(folder / path), path=_show(folder / path))
     removals += _find_temporaries(folder, {*digests, *ownership.paths()})
-    manifest = manifest_text(outcome, kept)
+    manifest = format_manifest(outcome, kept)
     is_new = _read_bytes(folder / MANIFEST) != manifest.encode("utf-8")
     has_new_manifest = is_new or (folder / PENDING).exists()
     return _Plan(
@@ -226,14 +226,16 @@ def _show(place: Path) -> str:
 
 def _find_temporaries(folder: Path, paths: Iterable[str]) -> list[str]:
     """Return temporary files of killed builds in the folders of *paths*."""
-    found = []
+    temporaries = []
     for parent in sorted({"", *(path.rpartition("/")[0] for path in paths)}):
         try:
             names = os.listdir(folder / parent)  # noqa: PTH208
         except (FileNotFoundError, NotADirectoryError):
             continue
-        found += [f"{parent}/{name}".lstrip("/") for name in sorted(names) if is_temporary(name)]
-    return found
+        temporaries += [
+            f"{parent}/{name}".lstrip("/") for name in sorted(names) if is_temporary(name)
+        ]
+    return temporaries
 
 
 def _read_bytes(path: Path) -> bytes | None:

@@ -1,4 +1,4 @@
-"""Bytes of the inputs, with the files that they refer to, ready for the front ends."""
+"""Read the input files of a unit and the files that they refer to."""
 
 import os
 from collections.abc import Sequence
@@ -8,8 +8,8 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
-from sysmlc.driver.inputs import Recognised, allowed_roots, collect, name_of, recognise
-from sysmlc.driver.overlays import LoadedOverlay, beside, load_overlay, models_of
+from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, name_of, recognise
+from sysmlc.driver.overlays import LoadedOverlay, find_overlay, list_models, load_overlay
 from sysmlc.frontends.base import Frontend, Mentioning
 from sysmlc.sources import Roots, Source, SourceError, load
 
@@ -30,18 +30,18 @@ class ReadFile(Struct, frozen=True):
 
 
 class Reading(Struct, frozen=True):
-    """The recognised sources, sorted by name, and whether nothing was left out."""
+    """The recognised sources, sorted by name, and whether all files could be read."""
 
     recognised: tuple[Recognised, ...]
     is_complete: bool
     roots: Roots
-    """Folders that the unit may be read from."""
+    """Folders that references of the unit may lead into."""
     overlays: tuple[LoadedOverlay, ...] = ()
     files: tuple[ReadFile, ...] = ()
 
     def sources(self) -> tuple[Source, ...]:
-        """The sources alone."""
-        return tuple(found.source for found in self.recognised)
+        """Return the recognised sources without their front ends."""
+        return tuple(item.source for item in self.recognised)
 
 
 def read_unit(
@@ -52,38 +52,41 @@ def read_unit(
     overlays: Sequence[Path] = (),
     excluded: Sequence[Path] = (),
 ) -> Reading:
-    """The sources of the unit; what cannot be read is reported.
+    """Read the files of a unit, following references; report files that cannot be read.
 
-    Folders are searched without the real paths in ``excluded``.
+    The search of folders skips the real paths in *excluded*.
     """
-    roots = allowed_roots((*inputs, *overlays), root)
+    roots = find_allowed_roots((*inputs, *overlays), root)
     reader = _Reader(root, roots, frontends, sink)
-    for path, named in collect(inputs, root, sink, excluded).items():
-        reader.read(path, faults.UNRECOGNISED if named else faults.SKIPPED, is_named=named)
+    for path, is_named in collect_files(inputs, root, sink, excluded).items():
+        rule = faults.UNRECOGNISED if is_named else faults.SKIPPED
+        reader.read(path, rule, is_named=is_named)
     for path in overlays:
         reader.read_overlay(path, is_named=True)
     reader.follow_links()
-    ordered = tuple(reader.found[name] for name in sorted(reader.found))
-    laid = tuple(reader.overlays[name] for name in sorted(reader.overlays))
-    return Reading(ordered, not sink.has_errors(), roots, laid, reader.list_files())
+    recognised_sources = tuple(reader.recognised[name] for name in sorted(reader.recognised))
+    loaded_overlays = tuple(reader.overlays[name] for name in sorted(reader.overlays))
+    is_complete = not sink.has_errors()
+    return Reading(recognised_sources, is_complete, roots, loaded_overlays, reader.list_files())
 
 
 class _Reader:
-    """Reads files, and then those that they refer to inside the allowed roots."""
+    """Reads files with a worklist of the references that lead into the allowed roots."""
 
     def __init__(self, root: Path, roots: Roots, frontends: Sequence[Frontend], sink: Sink) -> None:
-        self.found: dict[str, Recognised] = {}
+        self.recognised: dict[str, Recognised] = {}
         self.overlays: dict[str, LoadedOverlay] = {}
         self._root = root
         self._roots = roots
         self._frontends = frontends
         self._sink = sink
-        self._seen: set[Path] = set()
-        self._laid: set[Path] = set()
-        self._waiting: list[tuple[Path, Recognised]] = []
+        # Real paths of the files read so far, of the overlays among them, and of named files.
+        self._visited: set[Path] = set()
+        self._overlay_files: set[Path] = set()
+        self._named: set[Path] = set()
+        self._worklist: list[tuple[Path, Recognised]] = []
         self._sources: dict[Path, list[str]] = {}
         self._references: dict[Path, set[Path]] = {}
-        self._named: set[Path] = set()
 
     def list_files(self) -> tuple[ReadFile, ...]:
         """Return the files that were read, sorted by path, with their references."""
@@ -93,86 +96,89 @@ class _Reader:
                 tuple(self._sources.get(path, ())),
                 frozenset(self._references.get(path, ())),
                 path in self._named,
-                path in self._laid,
+                path in self._overlay_files,
             )
-            for path in sorted(self._seen)
+            for path in sorted(self._visited)
         )
 
     def read(self, path: Path, otherwise: Rule | None, *, is_named: bool = False) -> None:
-        """Read a file; ``otherwise`` is reported when no front end recognises it."""
+        """Read a file and its overlay; report *otherwise* if no front end recognises the file."""
         real = Path(os.path.realpath(path))
-        if real in self._seen:
+        if real in self._visited:
             return
-        self._seen.add(real)
+        self._visited.add(real)
         if is_named:
             self._named.add(real)
-        sources = _sources(path, self._root, self._sink)
-        for found in recognise(sources, self._frontends, otherwise, self._sink):
-            name = found.source.name
-            if name in self.found:
+        sources = _load_sources(path, self._root, self._sink)
+        for item in recognise(sources, self._frontends, otherwise, self._sink):
+            name = item.source.name
+            if name in self.recognised:
                 self._sink.report(faults.SAME_NAME, faults.about_file(name), path=name)
                 continue
-            self.found[name] = found
-            self._sources.setdefault(real, []).append(found.source.name)
-            self._waiting.append((path, found))
-        overlay = beside(path) if sources else None
+            self.recognised[name] = item
+            self._sources.setdefault(real, []).append(name)
+            self._worklist.append((path, item))
+        overlay = find_overlay(path) if sources else None
         if overlay is not None:
-            self._refer(path, overlay)
+            self._add_reference(path, overlay)
             self.read_overlay(overlay, is_named=False)
 
     def read_overlay(self, path: Path, *, is_named: bool) -> None:
-        """Read an overlay, and the models that its entries name."""
+        """Read an overlay and the models that its entries name."""
         real = Path(os.path.realpath(path))
-        if real in self._laid:
+        if real in self._overlay_files:
             return
-        self._laid.add(real)
-        self._seen.add(real)
-        found = load_overlay(path, self._root, self._roots, self._sink, is_named=is_named)
-        if found is None:
+        self._overlay_files.add(real)
+        self._visited.add(real)
+        overlay = load_overlay(path, self._root, self._roots, self._sink, is_named=is_named)
+        if overlay is None:
             return
-        self.overlays[found.source.name] = found
-        self._sources[real] = [found.source.name]
+        self.overlays[overlay.source.name] = overlay
+        self._sources[real] = [overlay.source.name]
         if is_named:
             self._named.add(real)
-        for file in models_of(found):
+        for file in list_models(overlay):
             target = self._roots.resolve(path, file)
             if target is not None:
-                self._refer(path, target)
+                self._add_reference(path, target)
                 self.read(target, None)
 
     def follow_links(self) -> None:
-        """Read what the files refer to, and so on; what is elsewhere stays external."""
-        while self._waiting:
-            path, found = self._waiting.pop()
-            for href in found.frontend.links(found.source):
+        """Read the files that references lead to, transitively; skip those outside the roots."""
+        while self._worklist:
+            path, item = self._worklist.pop()
+            for href in item.frontend.links(item.source):
                 target = self._roots.resolve(path, href)
                 if target is not None:
-                    self._refer(path, target)
+                    self._add_reference(path, target)
                     self.read(target, None)
-            self._check_mentioned(path, found)
+            self._check_mentioned_files(path, item)
 
-    def _refer(self, path: Path, target: Path) -> None:
+    def _add_reference(self, path: Path, target: Path) -> None:
         references = self._references.setdefault(Path(os.path.realpath(path)), set())
         references.add(Path(os.path.realpath(target)))
 
-    def _check_mentioned(self, path: Path, found: Recognised) -> None:
-        """Tell which files of other languages are not there; parts of a package are checked."""
-        source, frontend = found.source, found.frontend
+    def _check_mentioned_files(self, path: Path, item: Recognised) -> None:
+        """Report files of other languages, such as CAD models, that do not exist.
+
+        References inside a package (``!`` in the name) are checked by its front end.
+        """
+        source, frontend = item.source, item.frontend
         if not isinstance(frontend, Mentioning) or "!" in source.name:
             return
-        gone: dict[str, Place] = {}
+        missing: dict[str, Place] = {}
         for href, place in frontend.mentioned(source):
             if self._roots.resolve(path, href) is None:
-                gone.setdefault(href.partition("#")[0], place)
-        if gone:
-            first = next(iter(gone))
-            more = f" and {len(gone) - 1} more" if len(gone) > 1 else ""
-            subject = Subject(source.name, place=gone[first])
-            notes = tuple(gone)
+                missing.setdefault(href.partition("#")[0], place)
+        if missing:
+            first = next(iter(missing))
+            more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+            subject = Subject(source.name, place=missing[first])
+            notes = tuple(missing)
             self._sink.report(faults.NOT_THERE, subject, notes=notes, file=first, more=more)
 
 
-def _sources(path: Path, root: Path, sink: Sink) -> list[Source]:
+def _load_sources(path: Path, root: Path, sink: Sink) -> list[Source]:
     name = name_of(path, root)
     try:
         return load(path, name)

@@ -1,4 +1,4 @@
-"""Front ends, passes, back ends and rules: where they are found, imported when they are used.
+"""The registry of front ends, passes, back ends and rules, imported when they are used.
 
 Other distributions add passes and back ends by entry points. A pass of a plug-in runs after those
 of sysmlc. The rules of a plug-in are those that its modules define when they are imported.
@@ -54,7 +54,7 @@ _BACKENDS = {
     )
 }
 _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})
-"""Ours with ``is_default``: the others are not even imported unless they are asked for."""
+"""Shipped back ends with ``is_default``. The others are imported only if ``--emit`` names them."""
 _RULE_PACKAGES = (
     "frontends",
     "language",
@@ -71,22 +71,22 @@ _RULE_PACKAGES = (
 
 
 class BackendError(Exception):
-    """A back end is unknown, twice there, or cannot be loaded."""
+    """A back end is unknown, defined twice, or cannot be loaded."""
 
 
-def frontends(library: str = "") -> list[Frontend]:
-    """Return the front ends in the order in which they are asked.
+def load_frontends(library: str = "") -> list[Frontend]:
+    """Return the front ends in the order of detection.
 
-    ``library`` is where the model library of SysML v2 is; empty where it is usually found.
+    *library* is the path of the SysML v2 standard library; empty for the installed one.
     """
-    found = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
+    frontends = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
     if not library:
-        return found
-    return [one.with_library(library) if isinstance(one, Libraried) else one for one in found]
+        return frontends
+    return [f.with_library(library) if isinstance(f, Libraried) else f for f in frontends]
 
 
-def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
-    """Return the passes in order, with *options* by the name of the pass.
+def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
+    """Return the passes in order; *options* maps the name of a pass to its options.
 
     Raise ConfigError for a pass or an option that does not exist, and for a plug-in that cannot be
     loaded.
@@ -99,7 +99,7 @@ def passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
             raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [_load_pass(entry) for entry in plug_ins.values()]
-    return pipeline.ordered(_with_options(one, options.get(one.name, {})) for one in loaded)
+    return pipeline.ordered(_set_options(step, options.get(step.name, {})) for step in loaded)
 
 
 def _load_pass(entry: EntryPoint) -> Pass:
@@ -111,30 +111,31 @@ def _load_pass(entry: EntryPoint) -> Pass:
         raise ConfigError(f"pass '{entry.name}' cannot be loaded: {problem!r}") from problem
 
 
-def _with_options(one: Pass, options: Mapping[str, object]) -> Pass:
+def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
+    """Return the pass with these options. Raises ConfigError."""
     if not options:
-        return one
-    known = _option_names(one)
+        return step
+    names = _list_option_names(step)
     for name, value in options.items():
-        where = f"passes.{one.name}.{name}"
-        if name not in known:
-            raise ConfigError(f"{where}: there is no such option; {did_you_mean(name, known)}")
-        if not _fits(value, getattr(one, name)):
-            wanted = type(getattr(one, name)).__name__
-            raise ConfigError(f"{where}: {value!r} is no {wanted}")
-    replace = structs.replace if isinstance(one, Struct) else dataclasses.replace
-    return cast("Pass", replace(cast("Any", one), **options))
+        where = f"passes.{step.name}.{name}"
+        if name not in names:
+            raise ConfigError(f"{where}: there is no such option; {did_you_mean(name, names)}")
+        default = getattr(step, name)
+        if not _has_type_of(value, default):
+            raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}")
+    replace = structs.replace if isinstance(step, Struct) else dataclasses.replace
+    return cast("Pass", replace(cast("Any", step), **options))
 
 
-def _option_names(step: Pass) -> list[str]:
-    """Return the names of the options of a pass: the fields of a struct or a dataclass."""
+def _list_option_names(step: Pass) -> list[str]:
+    """Return the options of a pass, which is a struct or, in a plug-in, maybe a dataclass."""
     if isinstance(step, Struct):
         return list(step.__struct_fields__)
     return [field.name for field in dataclasses.fields(cast("DataclassInstance", step))]
 
 
-def _fits(value: object, default: object) -> bool:
-    """Whether an option has the type of its default; TOML's integers serve as numbers."""
+def _has_type_of(value: object, default: object) -> bool:
+    """Whether an option has the type of its default; an integer is a valid float."""
     if isinstance(value, bool) or isinstance(default, bool):
         return isinstance(value, bool) and isinstance(default, bool)
     return isinstance(value, type(default)) or (
@@ -142,21 +143,21 @@ def _fits(value: object, default: object) -> bool:
     )
 
 
-def backend_names() -> list[str]:
-    """Names of all back ends, those of plug-ins included; loads none."""
-    return sorted({*_BACKENDS, *_others()})
+def list_backend_names() -> list[str]:
+    """Return the names of all back ends, including plug-ins, without loading them."""
+    return sorted({*_BACKENDS, *_find_foreign_backends()})
 
 
 def load_backends(names: Iterable[str]) -> list[Backend]:
-    """The back ends with these names, each once. Raises BackendError."""
-    return _loaded(names, _others())
+    """Load the back ends with these names, each once. Raises BackendError."""
+    return _load_each(names, _find_foreign_backends())
 
 
-def _loaded(names: Iterable[str], others: dict[str, EntryPoint]) -> list[Backend]:
-    return [_load(name, others) for name in dict.fromkeys(names)]
+def _load_each(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[Backend]:
+    return [_load(name, foreign) for name in dict.fromkeys(names)]
 
 
-def _others() -> dict[str, EntryPoint]:
+def _find_foreign_backends() -> dict[str, EntryPoint]:
     """Return the back ends of other distributions by name. Raise BackendError."""
     plug_ins = find_plug_ins(BACKEND_GROUP)
     for name, entry in plug_ins.items():
@@ -172,47 +173,48 @@ def find_plug_ins(group: str) -> dict[str, EntryPoint]:
 
 
 def select_backends(wanted: Sequence[str]) -> list[Backend]:
-    """Back ends for ``--emit``: plain names replace the default set, ``+name`` adds to it.
+    """Load the back ends for ``--emit``: names replace the default set, ``+name`` adds to it.
 
-    Raises BackendError; an unknown name is answered with the known ones.
+    Raises BackendError, whose message suggests names.
     """
     plain = [name for name in wanted if not name.startswith("+")]
     added = [name[1:] for name in wanted if name.startswith("+")]
-    others = _others()
+    foreign = _find_foreign_backends()
     if plain:
-        return _loaded([*plain, *added], others)
-    chosen = _known(added, others)
-    unasked = _BACKENDS.keys() - _DEFAULT - chosen
-    every = _loaded(sorted({*_BACKENDS, *others} - unasked), others)
-    return [backend for backend in every if backend.is_default or backend.name in chosen]
+        return _load_each([*plain, *added], foreign)
+    selected = _check_names(added, foreign)
+    skipped = _BACKENDS.keys() - _DEFAULT - selected
+    candidates = _load_each(sorted({*_BACKENDS, *foreign} - skipped), foreign)
+    return [b for b in candidates if b.is_default or b.name in selected]
 
 
-def full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:
-    """Every rule there is: imports every module that may hold one, and the plug-ins that load.
+def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:
+    """Import every module that may define rules, and the plug-ins; return all rules by code.
 
-    ``note`` is told of each module that cannot be imported: its rules are missing.
+    *note* is called with a message for each module that cannot be imported.
     """
     for package in _RULE_PACKAGES:
-        for module in _modules(f"sysmlc.{package}"):
+        for module in _iter_modules(f"sysmlc.{package}"):
             try:
                 import_module(module)
             except Exception as problem:
                 note(f"the rules of {module} are missing: {problem!r}")
-    others = _others()
-    for name in others:
+    foreign = _find_foreign_backends()
+    for name in foreign:
         with suppress(BackendError):
-            _load(name, others)
+            _load(name, foreign)
     for entry in find_plug_ins(PASS_GROUP).values():
         with suppress(ConfigError):
             _load_pass(entry)
     return catalogue()
 
 
-def _known(names: Iterable[str], others: dict[str, EntryPoint]) -> frozenset[str]:
-    known = sorted({*_BACKENDS, *others})
+def _check_names(names: Iterable[str], foreign: dict[str, EntryPoint]) -> frozenset[str]:
+    """Return the names as a set. Raises BackendError for an unknown one."""
+    all_names = sorted({*_BACKENDS, *foreign})
     for name in names:
-        if name not in known:
-            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, known)}")
+        if name not in all_names:
+            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, all_names)}")
     return frozenset(names)
 
 
@@ -220,17 +222,18 @@ def _is_ours(entry: EntryPoint) -> bool:
     return entry.value.startswith("sysmlc.")
 
 
-def _load(name: str, others: dict[str, EntryPoint]) -> Backend:
-    _known([name], others)
+def _load(name: str, foreign: dict[str, EntryPoint]) -> Backend:
+    _check_names([name], foreign)
     try:
         if name in _BACKENDS:
             return cast("Backend", import_module(_BACKENDS[name]).BACKEND)
-        return cast("Backend", others[name].load())
+        return cast("Backend", foreign[name].load())
     except Exception as problem:
         raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
 
 
-def _modules(package: str) -> Iterator[str]:
+def _iter_modules(package: str) -> Iterator[str]:
+    """Yield the modules of a package; those that cannot be imported included."""
     try:
         folder = import_module(package)
     except ModuleNotFoundError as problem:
@@ -240,8 +243,7 @@ def _modules(package: str) -> Iterator[str]:
     yield package
     from pkgutil import walk_packages
 
-    # What cannot be imported is given all the same: who imports it finds out.
     paths, ignore = getattr(folder, "__path__", ()), lambda _: None
-    for found in walk_packages(paths, f"{package}.", onerror=ignore):
-        if not found.name.endswith("__main__"):
-            yield found.name
+    for module in walk_packages(paths, f"{package}.", onerror=ignore):
+        if not module.name.endswith("__main__"):
+            yield module.name

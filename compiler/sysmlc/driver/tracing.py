@@ -13,14 +13,14 @@ COVERAGE = "coverage.json"
 TRACE = "trace.json"
 
 
-def coverage_text(compilation: Compilation) -> str:
+def format_coverage(compilation: Compilation) -> str:
     """Return the verdict on every element of the inputs."""
     return encode_json({"format": "sysmlc-coverage/2", **compilation.coverage.as_json()})
 
 
-def trace_text(compilation: Compilation) -> str:
+def format_trace(compilation: Compilation) -> str:
     """Return the elements that each file comes from, and where each stands in the inputs."""
-    artefacts = compilation.written()
+    artefacts = compilation.list_published()
     ids = dict.fromkeys(chain.from_iterable(artefact.trace for artefact in artefacts))
     elements = filter(None, map(compilation.graph.get, ids))
     content = {

@@ -15,8 +15,8 @@ from pathlib import Path
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Diagnostic
-from sysmlc.driver.compilation import Opened, Request, load_drawings, open_unit
-from sysmlc.driver.inputs import Recognised, unit_root
+from sysmlc.driver.compilation import OpenedUnit, Request, load_drawings, open_unit
+from sysmlc.driver.inputs import Recognised, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, Relating
 from sysmlc.support.file_names import assign_file_names
@@ -41,7 +41,7 @@ class Bundle:
         return [name for file in self.files for name in file.sources]
 
 
-def open_units(request: Request) -> list[Opened]:
+def open_units(request: Request) -> list[OpenedUnit]:
     """Read the inputs of a request and partition them into compile units, sorted by first file.
 
     There is at least one unit, even if nothing can be read. Findings about files that belong to no
@@ -54,7 +54,9 @@ def open_units(request: Request) -> list[Opened]:
         groups = [bundles]
     else:
         groups = _group(bundles, recognised)
-    names = _name_units([_own_files(group) for group in groups], unit_root(request.inputs, None))
+    names = _name_units(
+        [_own_files(group) for group in groups], find_unit_root(request.inputs, None)
+    )
     if len(groups) < 2:
         return [replace(opened, name=names[0])]
     return _split(request, opened, groups, names)
@@ -222,9 +224,9 @@ def _qualify(path: Path, base: Path) -> str:
 
 
 def _split(
-    request: Request, opened: Opened, units: Sequence[Sequence[Bundle]], names: Sequence[str]
-) -> list[Opened]:
-    parts: list[Opened] = []
+    request: Request, opened: OpenedUnit, units: Sequence[Sequence[Bundle]], names: Sequence[str]
+) -> list[OpenedUnit]:
+    parts: list[OpenedUnit] = []
     shares = [
         {s for bundle in unit for file in bundle.files for s in file.sources} for unit in units
     ]
@@ -237,7 +239,7 @@ def _split(
         )
         reading = _select(opened.reading, share)
         drawings = load_drawings(request, reading, opened.root, sink)
-        parts.append(Opened(opened.root, reading, sink, opened.frontends, drawings, name))
+        parts.append(OpenedUnit(opened.root, reading, sink, opened.frontends, drawings, name))
     return parts
 
 

@@ -1,4 +1,4 @@
-"""Inputs against the schemas that the user gives with ``--schema``."""
+"""Validation of the inputs against the schemas that ``--schema`` names."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from sysmlc.sources.schema import Schema, Schemas, Violation
 
 _MOST = 200
-"""Violations of one file that are told each; the others are counted."""
+"""Violations that are reported for one file. The others are only counted."""
 
 VIOLATION = rule(
     "SM186",
@@ -37,28 +37,32 @@ MORE = rule(
 
 def validate(recognised: Iterable[Recognised], schemas: "Schemas", sink: Sink) -> None:
     """Report where the inputs violate the schema of their language, and which have none."""
-    for one in recognised:
-        source = one.source
+    for item in recognised:
+        source = item.source
         try:
             schema, violations = schemas.violations(source)
         except ValueError:
             continue
         if schema is None:
-            what, folder = one.frontend.name, schemas.folder.name
-            sink.report(NO_SCHEMA, _file(source), file=source.name, what=what, folder=folder)
+            what, folder = item.frontend.name, schemas.folder.name
+            sink.report(
+                NO_SCHEMA, _make_subject(source), file=source.name, what=what, folder=folder
+            )
         else:
-            _report(source, schema, violations, sink)
+            _report_violations(source, schema, violations, sink)
 
 
-def _file(source: Source) -> Subject:
+def _make_subject(source: Source) -> Subject:
     return Subject(source.name, place=Place(source.name, ordinal=0))
 
 
-def _report(source: Source, schema: "Schema", violations: "list[Violation]", sink: Sink) -> None:
+def _report_violations(
+    source: Source, schema: "Schema", violations: "list[Violation]", sink: Sink
+) -> None:
     for fault in violations[:_MOST]:
         subject = Subject(fault.element, place=Place(source.name, ordinal=fault.ordinal))
-        told = {"element": fault.element, "problem": fault.problem}
-        sink.report(VIOLATION, subject, notes=(), help="", schema=schema.name, **told)
-    left = len(violations) - _MOST
-    if left > 0:
-        sink.report(MORE, _file(source), file=source.name, schema=schema.name, count=left)
+        facts = {"element": fault.element, "problem": fault.problem}
+        sink.report(VIOLATION, subject, notes=(), help="", schema=schema.name, **facts)
+    hidden = len(violations) - _MOST
+    if hidden > 0:
+        sink.report(MORE, _make_subject(source), file=source.name, schema=schema.name, count=hidden)

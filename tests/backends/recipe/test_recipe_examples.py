@@ -31,7 +31,9 @@ def short(value: object) -> object:
 
 def content(name: str) -> dict:
     """The only recipe file of an example."""
-    (artefact,) = [one for one in compiled(name).written() if one.path.startswith("recipes/")]
+    (artefact,) = [
+        one for one in compiled(name).list_published() if one.path.startswith("recipes/")
+    ]
     return json.loads(artefact.text)
 
 
@@ -204,6 +206,6 @@ def test_the_same_model_as_magicdraw_saves_it_gives_the_same_recipe(name, tmp_pa
     model = tmp_path / f"{name}.xml"
     model.write_bytes(write_xml((EXAMPLES / name / f"{name}.uml").read_bytes()))
     found = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
-    (artefact,) = [one for one in found.written() if one.path.startswith("recipes/")]
+    (artefact,) = [one for one in found.list_published() if one.path.startswith("recipes/")]
     theirs, ours = short(json.loads(artefact.text)), short(content(name))
     assert {**theirs, "source": None} == {**ours, "source": None}

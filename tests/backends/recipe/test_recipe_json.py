@@ -10,7 +10,7 @@ import recipe_samples as samples
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
 from sysmlc.diagnostics import Sink
-from sysmlc.driver import full_catalogue
+from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text
 from sysmlc.passes.recipe import Recipe
 from sysmlc.support import resources
@@ -47,7 +47,7 @@ def test_the_schema_is_a_schema():
 
 RIGHT = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
 RIGHT += [
-    rule.read_page().right for rule in full_catalogue().values() if "SM601" <= rule.code <= "SM622"
+    rule.read_page().right for rule in load_full_catalogue().values() if "SM601" <= rule.code <= "SM622"
 ]
 
 
@@ -64,7 +64,7 @@ def test_the_file_has_the_name_of_the_recipe_and_its_sources_in_order():
 
 
 def test_a_recipe_without_tasks_is_told_and_not_written():
-    rule = full_catalogue()["SM621"]
+    rule = load_full_catalogue()["SM621"]
     assert emit(rule.read_page().wrong) == ({}, ["SM621"])
     assert emit(rule.read_page().right)[1] == []
 

@@ -44,6 +44,6 @@ def test_a_spoilt_recipe_gives_a_valid_file_or_none(seed, tmp_path):
     text = (EXAMPLES / name / f"{name}.uml").read_text(encoding="utf-8")
     model.write_text(spoilt(text, random), encoding="utf-8")
     found = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
-    for artefact in found.written():
+    for artefact in found.list_published():
         if artefact.path.startswith("recipes/"):
             assert list(SCHEMA.iter_errors(json.loads(artefact.text))) == []

@@ -5,7 +5,7 @@ from judging import judged_together
 from writing import refined, text_of, written
 
 from sysmlc.backends.sysml import rules
-from sysmlc.driver.registry import full_catalogue
+from sysmlc.driver.registry import load_full_catalogue
 from sysmlc.ir.text import IrSyntaxError
 
 RULES = (
@@ -74,7 +74,7 @@ def texts():
     return sorted(
         {
             text
-            for rule in full_catalogue().values()
+            for rule in load_full_catalogue().values()
             for text in (rule.read_page().wrong, rule.read_page().right)
         }
     )

@@ -487,7 +487,7 @@ def test_the_toolkit_reads_our_names(name):
 def test_the_plant_of_the_thesis(golden):
     """The gate in AutomationML, refined by its overlay and its behaviour."""
     compilation = compile_example(PLANT, "sysml")
-    files = {one.path: one.text for one in compilation.written() if one.backend == "sysml"}
+    files = {one.path: one.text for one in compilation.list_published() if one.backend == "sysml"}
     assert sorted(files) == ["sysml/SysMLC.sysml", "sysml/baygate.sysml"]
     golden.check("sysml", {"baygate.sysml": files["sysml/baygate.sysml"]})
 

@@ -2,7 +2,7 @@
 
 from saving import read, refined, saved
 
-from sysmlc.driver.registry import full_catalogue
+from sysmlc.driver.registry import load_full_catalogue
 from sysmlc.ir import Kind
 from sysmlc.ir.text import IrSyntaxError
 
@@ -25,7 +25,7 @@ def texts():
     return sorted(
         {
             text
-            for rule in full_catalogue().values()
+            for rule in load_full_catalogue().values()
             for text in (rule.read_page().wrong, rule.read_page().right)
         }
     )

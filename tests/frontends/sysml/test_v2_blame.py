@@ -24,7 +24,7 @@ def withheld(tmp_path, *, inside="", state="", beside=""):
     backends = tuple(select_backends(("contracts", "plantuml")))
     made = compile_model(Request((tmp_path / "m.sysml",), backends=backends))
     assert [one.rule.code for one in made.diagnostics if one.is_error] in ([], ["SM205"])
-    written = {one.path.rpartition("/")[2] for one in made.written()}
+    written = {one.path.rpartition("/")[2] for one in made.list_published()}
     return {name for name in NAMES if name not in written}
 
 

@@ -60,7 +60,7 @@ def contracts(model):
     """What each contract says, in any order, and what is written as UML."""
     made = compile_model(Request((model,), backends=tuple(select_backends(["uml"]))))
     found = {one.component: said(one) for one in made.graph.derived(Contract)}
-    return found, next(one.text for one in made.written() if one.path.endswith(".uml"))
+    return found, next(one.text for one in made.list_published() if one.path.endswith(".uml"))
 
 
 def said(made):

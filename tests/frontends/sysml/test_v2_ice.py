@@ -43,13 +43,13 @@ def laboratory(corpus, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def recipe(laboratory):
-    made = {one.path: one.text for one in laboratory.written()}
+    made = {one.path: one.text for one in laboratory.list_published()}
     return json.loads(made["recipes/DemoLegoRecipe.DemoLego.json"])
 
 
 def test_four_lines_say_as_much_as_nine(corpus, tmp_path, recipe):
     assert len(LEVELS.splitlines()) == 4
-    (told,) = compiled(corpus, tmp_path, ALL_LEVELS, "recipe").written()
+    (told,) = compiled(corpus, tmp_path, ALL_LEVELS, "recipe").list_published()
     assert json.loads(told.text) == recipe
 
 
@@ -152,7 +152,7 @@ def test_only_the_names_that_are_known_to_be_missing_are_unresolved(laboratory):
 
 
 def test_the_milling_cell_has_a_contract_with_what_it_is_given_and_told(laboratory):
-    made = {one.path: one.text for one in laboratory.written()}
+    made = {one.path: one.text for one in laboratory.list_published()}
     text = made["contracts/MillingCellBehavior.MillingCellEngravingStates.contract.json"]
     owners = {name: one["owner"] for name, one in json.loads(text)["variables"].items()}
     assert owners["equipment_mesBusy"] == owners["engraveCmd_accepted"] == "sys"
@@ -168,7 +168,7 @@ def test_only_what_an_unknown_name_is_in_is_withheld(laboratory):
     assert {path.partition(".")[0].rpartition("/")[2] for path in laboratory.withheld} == {
         "RoboticCellStates"
     }
-    written = {one.path for one in laboratory.written()}
+    written = {one.path for one in laboratory.list_published()}
     plant = {"diagrams/PlantTopology.bdd.puml", "diagrams/PlantTopology.ICEProductionLine.ibd.puml"}
     assert plant <= written
 

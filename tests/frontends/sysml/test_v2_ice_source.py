@@ -39,7 +39,7 @@ def laboratory(folder, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def recipe(laboratory):
-    (told,) = laboratory.written()
+    (told,) = laboratory.list_published()
     return json.loads(told.text)
 
 

@@ -233,15 +233,15 @@ def test_every_element_of_a_snapshot_is_counted():
 
 
 def test_library_content_gives_no_findings_and_no_outputs(tmp_path):
-    from sysmlc.driver.registry import backend_names, load_backends
+    from sysmlc.driver.registry import list_backend_names, load_backends
 
     inside = COMPANY.replace('type="lost"', 'isConjugated="true"')
     path = archive(tmp_path, model(), snapshot(inside), snapshot(SYSML, "b"))
     # What CAEX and SysML v2 cannot say of the model is theirs to tell.
-    names = [name for name in backend_names() if name not in ("aml", "sysml", "sysmlx")]
+    names = [name for name in list_backend_names() if name not in ("aml", "sysml", "sysmlx")]
     made = compile_model(Request((path,), backends=tuple(load_backends(names))))
     assert made.diagnostics == ()
-    drawn = {a.path: a.text for a in made.written() if a.path.endswith(".puml")}
+    drawn = {a.path: a.text for a in made.list_published() if a.path.endswith(".puml")}
     assert list(drawn) == ["diagrams/M.bdd.puml"]
     assert "**Cell**" in drawn["diagrams/M.bdd.puml"]
     assert "**Robot**" not in drawn["diagrams/M.bdd.puml"]

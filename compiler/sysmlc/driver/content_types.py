@@ -1,4 +1,4 @@
-"""What a file holds that no front end recognises, in words for messages."""
+"""Descriptions of files that no front end recognises, for messages."""
 
 import re
 
@@ -27,7 +27,7 @@ def is_blank(data: bytes) -> bool:
 
 
 def describe_content(data: bytes) -> str:
-    """Return what the bytes are, as far as their beginning shows it."""
+    """Return a description of the content that its first bytes suggest: ``an HTML page``."""
     for signature, description in _SIGNATURES:
         if data.startswith(signature):
             return description

@@ -1,4 +1,7 @@
-"""What becomes of every element of a unit's inputs, for ``sysmlc coverage``: no pass, no output."""
+"""The verdict on every element of a unit's inputs, for ``sysmlc coverage``.
+
+Only the front ends run: no pass and no back end is needed.
+"""
 
 from pathlib import Path
 
@@ -7,13 +10,13 @@ from msgspec import Struct
 from sysmlc.diagnostics import Coverage, Diagnostic
 from sysmlc.diagnostics.coverage_report import FileReport, file_reports
 from sysmlc.driver import faults
-from sysmlc.driver.compilation import Opened, Request, open_unit
+from sysmlc.driver.compilation import OpenedUnit, Request, open_unit
 from sysmlc.ir import Graph
 from sysmlc.sources import Source, SourceError
 
 
-class Covered(Struct, frozen=True):
-    """The coverage of one unit, and what was found wrong while its files were read."""
+class UnitCoverage(Struct, frozen=True):
+    """The coverage of one unit, and the diagnostics of reading its files."""
 
     root: Path
     files: tuple[FileReport, ...]
@@ -21,26 +24,26 @@ class Covered(Struct, frozen=True):
     sources: tuple[Source, ...]
 
 
-def cover(request: Request, opened: Opened | None = None) -> Covered:
-    """Read the inputs of a request, and say what became of their elements."""
+def measure_coverage(request: Request, opened: OpenedUnit | None = None) -> UnitCoverage:
+    """Read the inputs of a request and collect the verdicts on their elements."""
     opened = opened or open_unit(request)
     coverage, graph = Coverage(is_detailed=True), Graph()
     sources = opened.reading.sources()
     for frontend in opened.frontends:
-        ours = [r.source for r in opened.reading.recognised if r.frontend is frontend]
+        own_sources = [r.source for r in opened.reading.recognised if r.frontend is frontend]
         try:
-            if ours:
-                frontend.read(ours, graph, opened.sink, coverage)
+            if own_sources:
+                frontend.read(own_sources, graph, opened.sink, coverage)
         except SourceError as problem:
             faults.report_unreadable(problem, opened.sink)
-    return Covered(
+    return UnitCoverage(
         opened.root,
-        tuple(file_reports(coverage, sources, lambda id: _name(graph, id))),
+        tuple(file_reports(coverage, sources, lambda id: _find_name(graph, id))),
         tuple(opened.sink),
         sources,
     )
 
 
-def _name(graph: Graph, id: str) -> str:
+def _find_name(graph: Graph, id: str) -> str:
     element = graph.get(id)
     return graph.qualified_name(element) if element is not None else ""

@@ -1,4 +1,4 @@
-"""What lies beside the models and holds the diagrams of their authors; read on demand only."""
+"""Companion files: files beside the models that contain the authors' diagrams."""
 
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
@@ -13,31 +13,39 @@ from sysmlc.sources.limits import DEFAULT_LIMITS
 from sysmlc.sources.whole import read_whole
 
 
-def beside(reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
-    """The companions of all sources that are there, by name; what cannot be read is reported."""
+def load_companions(reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
+    """Load the existing companion files of all sources, sorted by name.
+
+    Files that cannot be read are reported.
+    """
     names = dict.fromkeys(
         name
-        for found in reading.recognised
-        if isinstance(found.frontend, DiagramReader)
-        for name in found.frontend.companions(found.source.name)
+        for item in reading.recognised
+        if isinstance(item.frontend, DiagramReader)
+        for name in item.frontend.companions(item.source.name)
     )
-    found = {
+    sources = {
         source.name: source for name in names for source in _load(name, root, reading.roots, sink)
     }
-    return tuple(found[name] for name in sorted(found))
+    return tuple(sources[name] for name in sorted(sources))
 
 
 def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:
-    """Read the file, if one of the roots holds it, or entries of an archive that was an input."""
+    """Yield the source of a file, or the matching entries of an archive (``file!pattern``).
+
+    A file outside the allowed roots is skipped. An archive is an input, and therefore allowed.
+    """
     file, is_archive, pattern = name.partition("!")
     if not (root / file).is_file() or not (is_archive or roots.allows(root / file)):
         return
     try:
         source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))
-        yield from entries(source, lambda entry: _fits(entry, pattern)) if is_archive else [source]
+        yield from (
+            entries(source, lambda entry: _matches(entry, pattern)) if is_archive else [source]
+        )
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
 
 
-def _fits(entry: str, pattern: str) -> bool:
+def _matches(entry: str, pattern: str) -> bool:
     return fnmatchcase(entry.rpartition("/")[2], pattern)
