@@ -99,7 +99,7 @@ class Here:
 def here(tmp_path, monkeypatch):
     """A folder with a right model ``plant.ir``, in which the commands run."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "passes", lambda options: [Ports()])
+    monkeypatch.setattr(registry, "load_passes", lambda options: [Ports()])
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / ".git").mkdir()
     made = Here(tmp_path)

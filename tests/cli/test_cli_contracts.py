@@ -11,7 +11,7 @@ from sysmlc.synthesis.lints import rules
 @pytest.fixture
 def all_passes(monkeypatch):
     every = [pipeline.load(name) for name in pipeline.NAMES]
-    monkeypatch.setattr(registry, "passes", lambda options: every)
+    monkeypatch.setattr(registry, "load_passes", lambda options: every)
 
 
 def test_a_contract_that_is_well_is_one_line(here):

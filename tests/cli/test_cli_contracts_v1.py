@@ -118,7 +118,7 @@ STAYS_OPEN = "G (state=OpenedUnit -> X state=OpenedUnit)"
 @pytest.fixture(autouse=True)
 def all_passes(here, monkeypatch):
     every = [pipeline.load(name) for name in pipeline.NAMES]
-    monkeypatch.setattr(registry, "passes", lambda options: every)
+    monkeypatch.setattr(registry, "load_passes", lambda options: every)
 
 
 @pytest.fixture

@@ -30,7 +30,9 @@ AUTHORED = "diagrams/author/Plant.Gates.class.puml"
 def plant(here, monkeypatch):
     from sysmlc.driver import registry
 
-    monkeypatch.setattr(registry, "passes", lambda options: [*map(pipeline.load, pipeline.NAMES)])
+    monkeypatch.setattr(
+        registry, "load_passes", lambda options: [*map(pipeline.load, pipeline.NAMES)]
+    )
     here.write("plant.uml", MODEL)
     here.write("plant.notation", NOTATION)
     return here

@@ -83,7 +83,7 @@ REAL_PASSES = registry.load_passes
 
 @pytest.fixture
 def plants(here, monkeypatch):
-    monkeypatch.setattr(registry, "passes", REAL_PASSES)
+    monkeypatch.setattr(registry, "load_passes", REAL_PASSES)
     here.write("old.aml", OLD)
     here.write("new.aml", NEW)
     return here

@@ -94,7 +94,7 @@ def test_contracts_of_a_model_are_decided_by_component(here, monkeypatch):
     from sysmlc.passes import pipeline
 
     monkeypatch.setattr(
-        registry, "passes", lambda options: [pipeline.load(name) for name in pipeline.NAMES]
+        registry, "load_passes", lambda options: [pipeline.load(name) for name in pipeline.NAMES]
     )
     here.write("gate.ir", MACHINE)
     made = here.sysmlc("synth", "gate.ir", "--realizable", "-c", "Gate")
