@@ -9,7 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from sysmlc.driver import Request, list_backend_names, compile_model, load_full_catalogue, load_backends
+from sysmlc.driver import (
+    Request,
+    compile_model,
+    list_backend_names,
+    load_backends,
+    load_full_catalogue,
+)
 
 TESTS = Path(__file__).parents[1]
 RULES = [rule for rule in load_full_catalogue().values() if not rule.name.startswith("test-")]

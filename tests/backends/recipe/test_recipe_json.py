@@ -47,7 +47,9 @@ def test_the_schema_is_a_schema():
 
 RIGHT = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
 RIGHT += [
-    rule.read_page().right for rule in load_full_catalogue().values() if "SM601" <= rule.code <= "SM622"
+    rule.read_page().right
+    for rule in load_full_catalogue().values()
+    if "SM601" <= rule.code <= "SM622"
 ]
 
 
