@@ -107,10 +107,10 @@ def _is_unread(made: "Compilation") -> bool:
 
 def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
     """Refuse words that make no difference in any model: most likely they are misspelt."""
-    from sysmlc.ir.compare.content import words
+    from sysmlc.ir.compare.content import ignorable_words
     from sysmlc.support.suggestions import did_you_mean
 
-    known = words(one.graph for one in made) if ignore else ()
+    known = ignorable_words(one.graph for one in made) if ignore else ()
     for word in ignore:
         if word not in known:
             hint = did_you_mean(word, known)

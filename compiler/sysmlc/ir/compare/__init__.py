@@ -1,4 +1,4 @@
-"""What changed between two models, whoever wrote them: added, renamed, rewired ..."""
+"""Differences of two models for their authors: added, renamed, rewired ..."""
 
 from sysmlc.ir.compare.change import Change, Ref, What
 from sysmlc.ir.compare.changes import compare

@@ -1,4 +1,4 @@
-"""What a difference of two models is, in the words of who reviews a new export."""
+"""The difference of two models as a value, in the words of a reviewer."""
 
 from enum import StrEnum
 
@@ -19,7 +19,7 @@ class What(StrEnum):
 
 
 class Ref(Struct, frozen=True):
-    """An element of one of the two models: its id, whole name, and place in its file."""
+    """A reference to an element of one of the models: id, qualified name and position."""
 
     id: str
     qualified_name: str
@@ -28,12 +28,12 @@ class Ref(Struct, frozen=True):
 
 
 class Change(Struct, frozen=True):
-    """One difference, of the element ``name`` that ``owner`` (a qualified name) owns.
+    """One difference of the element ``name``, whose owner has the qualified name ``owner``.
 
-    ``kind`` is the element's role or kind in words, ``aspect`` what of it changed; ``before``
-    and ``after`` are texts, empty where there is none. ``contents`` counts what was added or
-    removed together with the element, below it. ``old`` or ``new`` is None when it is in one
-    model only.
+    ``kind`` is the role or kind of the element in words, ``aspect`` the attribute or relation that
+    differs; ``before`` and ``after`` are texts, empty for an absent value. ``contents`` is the
+    number of elements below an added or removed element. ``old`` or ``new`` is None when only one
+    model has the element.
     """
 
     what: What

@@ -1,4 +1,7 @@
-"""What of a graph is content of the model, and what only tells of files, tools and passes."""
+"""Which elements, edges and attributes of a graph are content of the model.
+
+The others describe files, tools and the work of passes; the comparison ignores them.
+"""
 
 from collections.abc import Iterable
 
@@ -25,10 +28,10 @@ DETAILS = frozenset(
         Kind.UNIT,
     }
 )
-"""Kinds that say something of their owner; a difference in them is one of the owner."""
+"""Kinds that describe their owner; a difference in them is a difference of the owner."""
 
 _OF_PACKAGES = frozenset({Kind.APPLICATION, Kind.COMMENT, Kind.IMPORT, Kind.METADATA})
-"""Those of them that say something of a package; the others it owns for their own sake."""
+"""Details of packages; a package owns all other elements for their own sake."""
 
 _GUARDED = frozenset({Kind.TRANSITION, Kind.CONTROL_FLOW, Kind.OBJECT_FLOW})
 
@@ -44,10 +47,10 @@ NOT_CONTENT = frozenset(
         "unresolved",
     }
 )
-"""Attributes that tell of files and tools, or follow from what is compared anyway."""
+"""Attributes that describe files and tools, or follow from what is compared anyway."""
 
 IMPLIED = frozenset({"role", "subkind"})
-"""Attributes that mostly follow from others: told only when nothing else of the element is."""
+"""Attributes that mostly follow from others: reported only if no other attribute differs."""
 
 WORDS = frozenset(
     {
@@ -72,14 +75,13 @@ WORDS = frozenset(
 """Attributes that never hold ids, whatever the ids of a model look like."""
 
 PASSED_OVER = frozenset({Edge.OWNS, Edge.FEATURE, Edge.END})
-"""Edges that follow from other edges, or that the ends of a relation stand for; the subject of
-an application is what it is told of."""
+"""Edges that follow from ownership, from inheritance, or from the ends of a relation."""
 
 ENDS = (Edge.CLIENT, Edge.SUPPLIER, Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
-"""Edges of which two make one relation: they are compared together."""
+"""Edges from a relation to its two ends, which are compared together."""
 
 TYPES = frozenset({Edge.TYPED_BY, Edge.INSTANCE_OF, Edge.SPECIALIZES, Edge.REALIZES})
-"""Edges that say what an element is."""
+"""Edges to the types of an element."""
 
 WIRES = frozenset(
     {
@@ -94,7 +96,7 @@ WIRES = frozenset(
         Edge.SEND_EVENT,
     }
 )
-"""Edges that say what an element is connected with."""
+"""Edges to what an element is connected with."""
 
 IN_ORDER = {
     Kind.OPERATION: frozenset({Kind.PARAMETER}),
@@ -107,42 +109,44 @@ IN_ORDER = {
     Kind.OPERAND: frozenset({Kind.OCCURRENCE, Kind.EXECUTION, Kind.FRAGMENT}),
     Kind.FRAGMENT: frozenset({Kind.OPERAND}),
 }
-"""Kinds of owners to whom the order of what they own means something, and the kinds that count."""
+"""Kinds of owners for which order has a meaning, with the kinds of owned elements it concerns."""
 
 MOVABLE = frozenset(
     {*CLASSIFIERS, *BEHAVIORS, Kind.PACKAGE, Kind.PROFILE, Kind.INSTANCE, Kind.PROPERTY}
 )
-"""Kinds that are recognised below another owner without the help of ids."""
+"""Kinds that are recognised below another owner by kind and name, without ids."""
 
 
 def is_external(element: Element) -> bool:
-    """Whether it stands for something outside the model, or is of a library."""
+    """Return whether *element* is an external stub or an element of a library."""
     return element.attrs.get("external") is True
 
 
 def is_header(element: Element) -> bool:
-    """Whether it tells of the file, not of the plant (docs/automationml.md)."""
+    """Return whether *element* describes the file, not the plant (docs/automationml.md)."""
     if element.owner is not None:
         return False
     return element.subkind in ("caex", "alias") or element.kind is Kind.METADATA
 
 
 def is_detail(element: Element, owner: Element | None) -> bool:
-    """Whether it is told as a property of its owner."""
+    """Return whether *element* is compared as a property of its owner."""
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         return element.kind in _OF_PACKAGES
     is_guard = element.kind is Kind.CONSTRAINT and (not element.name or owner.kind in _GUARDED)
     return is_guard or element.kind in DETAILS
 
 
-_WORDS = frozenset({"id", "name", "value", "default", "default_value", "stereotype", "tag", "xml"})
-"""``id``, and keys of facts that are no attributes in every model."""
-_NEVER = frozenset({"source", "trace"})
-"""Where elements are and what was made of them is never compared; ``id,source,trace`` says so."""
+_FACT_KEYS = frozenset(
+    {"id", "name", "value", "default", "default_value", "stereotype", "tag", "xml"}
+)
+"""``id``, and keys of facts that not every model has as attributes."""
+_NEVER_COMPARED = frozenset({"source", "trace"})
+"""Accepted because ``--ignore id,source,trace`` is a usual combination."""
 
 
-def words(graphs: Iterable[Graph]) -> frozenset[str]:
-    """All words that may make a difference in these models, and the common ones."""
-    found = {name for graph in graphs for element in graph for name in element.attrs}
-    found |= {edge.value for edge in Edge} | {kind.value for kind in DETAILS}
-    return frozenset(found | _WORDS | WORDS | IMPLIED | _NEVER)
+def ignorable_words(graphs: Iterable[Graph]) -> frozenset[str]:
+    """Return the words that ``--ignore`` accepts: attributes, edges and kinds of details."""
+    attributes = {name for graph in graphs for element in graph for name in element.attrs}
+    kinds = {edge.value for edge in Edge} | {kind.value for kind in DETAILS}
+    return frozenset(attributes | kinds | _FACT_KEYS | WORDS | IMPLIED | _NEVER_COMPARED)

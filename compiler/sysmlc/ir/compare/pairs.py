@@ -1,21 +1,21 @@
-"""Which element of the new model is which element of the old one."""
+"""Pairs of elements of two models that are the same element; pairs by id and by name."""
 
 from collections.abc import Callable, Iterator
 
 from sysmlc.ir.compare.content import is_external
-from sysmlc.ir.compare.facts import BETWEEN, Fact, facts
-from sysmlc.ir.compare.plants import other_id
+from sysmlc.ir.compare.facts import BETWEEN, Fact, iter_facts
+from sysmlc.ir.compare.plants import alternate_id
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Kind
 from sysmlc.ir.query import CLASSIFIERS
 
 Token = object
-"""What a value is for both sides: equal tokens are equal values."""
+"""A hashable value that is equal for equal values of both models; paired elements are equal."""
 
 
 class Pairs:
-    """The pairs found so far, and the leftovers of both sides below the paired owners."""
+    """The pairs, and the unpaired children of paired owners."""
 
     def __init__(self, old: Side, new: Side) -> None:
         self.old = old
@@ -23,82 +23,87 @@ class Pairs:
         self.new_of: dict[str, Element] = {}
         self.old_of: dict[str, Element] = {}
         self.owners: list[tuple[Element | None, Element | None]] = [(None, None)]
-        """Paired owners whose children may still be unpaired; the models themselves first."""
+        """Paired owners that may have unpaired children; (None, None) are the models."""
 
-    def put(self, old: Element, new: Element) -> None:
-        """Make a pair of two elements that are in none."""
+    def add(self, old: Element, new: Element) -> None:
+        """Pair two unpaired elements."""
         self.new_of[old.id] = new
         self.old_of[new.id] = old
         self.owners.append((old, new))
 
-    def left_of(self, owner: Element | None) -> list[Element]:
-        """Children of an owner of the old model that are in no pair."""
-        return [one for one in self.old.children(owner) if one.id not in self.new_of]
+    def unpaired_old(self, owner: Element | None) -> list[Element]:
+        """Return the unpaired children of an owner of the old model."""
+        return [child for child in self.old.children(owner) if child.id not in self.new_of]
 
-    def right_of(self, owner: Element | None) -> list[Element]:
-        """Children of an owner of the new model that are in no pair."""
-        return [one for one in self.new.children(owner) if one.id not in self.old_of]
+    def unpaired_new(self, owner: Element | None) -> list[Element]:
+        """Return the unpaired children of an owner of the new model."""
+        return [child for child in self.new.children(owner) if child.id not in self.old_of]
 
-    def leftovers(self) -> Iterator[tuple[list[Element], list[Element]]]:
-        """Unpaired children of each pair of owners; an owner without any on one side is done."""
-        still = []
-        for owners in self.owners:
-            left, right = self.left_of(owners[0]), self.right_of(owners[1])
-            if left and right:
-                still.append(owners)
-                yield left, right
-        self.owners = still
+    def iter_unpaired(self) -> Iterator[tuple[list[Element], list[Element]]]:
+        """Iterate over the unpaired children of each pair of owners, if both sides have some."""
+        remaining = []
+        for old_owner, new_owner in self.owners:
+            olds, news = self.unpaired_old(old_owner), self.unpaired_new(new_owner)
+            if olds and news:
+                remaining.append((old_owner, new_owner))
+                yield olds, news
+        self.owners = remaining
 
     # -- tokens --------------------------------------------------------------------------------
 
     def old_token(self, element: Element) -> Token:
-        """What stands for an element of the old model: its partner, if it has one."""
+        """Return the token of an element of the old model, that of its partner if it has one."""
         partner = self.new_of.get(element.id)
-        return ("new", partner.id) if partner is not None else self._alone(self.old, element)
+        if partner is not None:
+            return ("new", partner.id)
+        return self._unpaired_token(self.old, element)
 
     def new_token(self, element: Element) -> Token:
-        """What stands for an element of the new model."""
-        is_paired = element.id in self.old_of
-        return ("new", element.id) if is_paired else self._alone(self.new, element)
+        """Return the token of an element of the new model."""
+        if element.id in self.old_of:
+            return ("new", element.id)
+        return self._unpaired_token(self.new, element)
 
-    def _alone(self, side: Side, element: Element) -> Token:
+    def _unpaired_token(self, side: Side, element: Element) -> Token:
         if is_external(element):
             return ("outside", str(element.attrs.get("qualified_name") or element.name))
         if element.id in side.hidden:
-            owner = side.visible(element)
+            owner = side.find_visible(element)
             to_token = self.old_token if side is self.old else self.new_token
             return ("of", None if owner is None else to_token(owner), element.kind, element.name)
         return ("old only" if side is self.old else "new only", element.id)
 
-    def old_facts(self, element: Element) -> list[tuple[tuple[Token, Token], Fact]]:
-        """What an element of the old model says, each with a token that both sides share."""
-        return _tokens(facts(self.old, element), self.old_token)
+    def old_facts(self, element: Element) -> "list[TokenisedFact]":
+        """Return the facts about an element of the old model with their tokens."""
+        return _tokenise(iter_facts(self.old, element), self.old_token)
 
-    def new_facts(self, element: Element) -> list[tuple[tuple[Token, Token], Fact]]:
-        """What an element of the new model says."""
-        return _tokens(facts(self.new, element), self.new_token)
+    def new_facts(self, element: Element) -> "list[TokenisedFact]":
+        """Return the facts about an element of the new model with their tokens."""
+        return _tokenise(iter_facts(self.new, element), self.new_token)
 
 
-def _tokens(
-    found: Iterator[Fact], to_token: Callable[[Element], Token]
-) -> list[tuple[tuple[Token, Token], Fact]]:
-    return [(fact_token(fact, to_token), fact) for fact in found]
+TokenisedFact = tuple[tuple[Token, Token], Fact]
+"""Tokens of key and value, and the fact."""
+
+
+def _tokenise(facts: Iterator[Fact], to_token: Callable[[Element], Token]) -> list[TokenisedFact]:
+    return [(fact_token(fact, to_token), fact) for fact in facts]
 
 
 def fact_token(fact: Fact, to_token: Callable[[Element], Token]) -> tuple[Token, Token]:
-    """Key and value of a fact for both sides; the ends of a connector have no order."""
-    value = token(fact.value, to_token)
+    """Return the tokens of the key and the value; the ends of a connector have no order."""
+    value = _value_token(fact.value, to_token)
     if fact.key == BETWEEN and isinstance(value, tuple):
         value = tuple(sorted(value, key=repr))
-    return token(fact.key, to_token), value
+    return _value_token(fact.key, to_token), value
 
 
-def token(value: object, to_token: Callable[[Element], Token]) -> Token:
-    """The value with tokens for elements; true is not the number 1."""
+def _value_token(value: object, to_token: Callable[[Element], Token]) -> Token:
     if isinstance(value, Element):
         return to_token(value)
     if isinstance(value, tuple):
-        return tuple([token(part, to_token) for part in value])
+        return tuple([_value_token(item, to_token) for item in value])
+    # True equals 1 in Python, but not in a model.
     return ("truth", value) if isinstance(value, bool) else value
 
 
@@ -108,85 +113,91 @@ _FEW = 2
 _SHARE = 10
 
 
-def by_id(pairs: Pairs) -> None:
-    """Pair what has the same id, unless ids were given anew."""
+def pair_by_id(pairs: Pairs) -> None:
+    """Pair elements with the same id, unless the tool has assigned the ids anew."""
     common = [
-        (one, pairs.new.graph[one.id])
-        for one in pairs.old.graph
-        if one.id in pairs.new.graph
-        if one.id not in pairs.old.hidden and one.id not in pairs.new.hidden
+        (old, pairs.new.graph[old.id])
+        for old in pairs.old.graph
+        if old.id in pairs.new.graph
+        if old.id not in pairs.old.hidden and old.id not in pairs.new.hidden
     ]
-    if _are_stable(pairs, common):
-        for old, new in common:
-            if _are_of_a_kind(old, new) and (old.name == new.name or not is_external(old)):
-                pairs.put(old, new)
-        _by_other_id(pairs)
+    if not _are_ids_stable(pairs, common):
+        return
+    for old, new in common:
+        if _are_kinds_compatible(old, new) and (old.name == new.name or not is_external(old)):
+            pairs.add(old, new)
+    _pair_by_alternate_id(pairs)
 
 
-def _are_of_a_kind(old: Element, new: Element) -> bool:
-    """A class may become a component; what has the id of a part may not be an instance now."""
+def _are_kinds_compatible(old: Element, new: Element) -> bool:
+    """Return whether an element can have changed its kind: a class may become a component."""
     return old.kind is new.kind or (old.kind in CLASSIFIERS and new.kind in CLASSIFIERS)
 
 
-def _by_other_id(pairs: Pairs) -> None:
+def _pair_by_alternate_id(pairs: Pairs) -> None:
     for old in pairs.old.graph.of_kind(Kind.INSTANCE):
-        new = pairs.new.graph.get(other_id(old))
-        is_free = new is not None and old.id not in pairs.new_of and new.id not in pairs.old_of
-        if is_free and new is not None and new.kind is Kind.INSTANCE:
-            pairs.put(old, new)
+        new = pairs.new.graph.get(alternate_id(old))
+        if new is None or new.kind is not Kind.INSTANCE:
+            continue
+        if old.id not in pairs.new_of and new.id not in pairs.old_of:
+            pairs.add(old, new)
 
 
-def _are_stable(pairs: Pairs, common: list[tuple[Element, Element]]) -> bool:
-    """Whether equal ids mean the same elements.
+def _are_ids_stable(pairs: Pairs, common: list[tuple[Element, Element]]) -> bool:
+    """Return whether equal ids denote the same elements.
 
-    They do not when tools count: then what an id named before has another one now, and what it
-    names now had another one before.
+    Tools that number the elements of each export shift the ids: many a kind and name then has
+    another id in the new model, and the id has another kind and name.
     """
-    unequal = [(old, new) for old, new in common if _naming(old) != _naming(new)]
+    unequal = [(old, new) for old, new in common if _kind_and_name(old) != _kind_and_name(new)]
     if len(unequal) <= _FEW:
         return True
-    before = {_naming(one) for one in pairs.old.graph}
-    after = {_naming(one) for one in pairs.new.graph}
-    shifted = sum(_naming(old) in after and _naming(new) in before for old, new in unequal)
+    before = {_kind_and_name(element) for element in pairs.old.graph}
+    after = {_kind_and_name(element) for element in pairs.new.graph}
+    shifted = sum(
+        _kind_and_name(old) in after and _kind_and_name(new) in before for old, new in unequal
+    )
     return shifted <= max(_FEW, len(common) // _SHARE)
 
 
-def _naming(element: Element) -> tuple[str, str]:
+def _kind_and_name(element: Element) -> tuple[str, str]:
     return (element.kind, element.name)
 
 
 # -- by name -----------------------------------------------------------------------------------
 
 
-def by_name(pairs: Pairs) -> None:
-    """Pair what has the same name and kind below one owner, from the roots down.
+def pair_by_name(pairs: Pairs) -> None:
+    """Pair elements with the same name and kind below paired owners, from the roots down.
 
-    Where several have it, what they say decides later.
+    A second run ignores the kind. Names that several children have are left to other steps.
     """
     for with_kind in (True, False):
         pending = pairs.owners
         while pending:
-            known = len(pairs.owners)
-            for owners in pending:
-                _pair_names(pairs, *owners, with_kind=with_kind)
-            pending = pairs.owners[known:]
+            number = len(pairs.owners)
+            for old_owner, new_owner in pending:
+                _pair_children(pairs, old_owner, new_owner, with_kind=with_kind)
+            pending = pairs.owners[number:]
 
 
-def _pair_names(pairs: Pairs, old: Element | None, new: Element | None, *, with_kind: bool) -> None:
-    left = _unique(pairs.left_of(old), with_kind=with_kind)
-    right = _unique(pairs.right_of(new), with_kind=with_kind) if left else {}
-    for key, one in left.items():
-        if key in right:
-            pairs.put(one, right[key])
+def _pair_children(
+    pairs: Pairs, old_owner: Element | None, new_owner: Element | None, *, with_kind: bool
+) -> None:
+    olds = _by_unique_name(pairs.unpaired_old(old_owner), with_kind=with_kind)
+    news = _by_unique_name(pairs.unpaired_new(new_owner), with_kind=with_kind) if olds else {}
+    for key, old in olds.items():
+        if key in news:
+            pairs.add(old, news[key])
 
 
-def _unique(elements: list[Element], *, with_kind: bool) -> dict[tuple[str, str], Element]:
-    found: dict[tuple[str, str], Element] = {}
-    several: set[tuple[str, str]] = set()
-    for one in elements:
-        key = (one.kind if with_kind else "", one.name)
-        if one.name and key in found:
-            several.add(key)
-        elif one.name:
-            found[key] = one
-    return {key: one for key, one in found.items() if key not in several}
+def _by_unique_name(elements: list[Element], *, with_kind: bool) -> dict[tuple[str, str], Element]:
+    index: dict[tuple[str, str], Element] = {}
+    ambiguous: set[tuple[str, str]] = set()
+    for element in elements:
+        key = (element.kind if with_kind else "", element.name)
+        if element.name and key in index:
+            ambiguous.add(key)
+        elif element.name:
+            index[key] = element
+    return {key: element for key, element in index.items() if key not in ambiguous}

@@ -1,297 +1,308 @@
-"""The colours of elements that are in no pair yet: equal colours, equal surroundings.
+"""Pairs of elements without a unique name, found by their surroundings.
 
-Colour refinement (Weisfeiler and Leman): elements that say the same have the same colour; in every
-round the colours of their neighbours are mixed in.
+Colour refinement (Weisfeiler and Leman): the first colour of an element is a fingerprint of its
+facts and its subtree; each round mixes in the colours of the neighbours. Elements of both models
+with equal colours have equal surroundings.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import NamedTuple
 
-from sysmlc.ir.compare.facts import facts
+from sysmlc.ir.compare.facts import iter_facts
 from sysmlc.ir.compare.pairs import Pairs, Token, fact_token
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 
+_MOST_ROUNDS = 12
 
-class Numbers(dict[Token, int]):
-    """A number for each value that was asked for, the same one for equal values."""
+Colours = dict[str, int]
+Group = tuple[list[Element], list[Element]]
+"""Unpaired children of one pair of owners, of the old and of the new model."""
 
-    def __missing__(self, value: Token) -> int:
-        self[value] = number = len(self)
+
+def pair_by_surroundings(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
+    """Pair siblings whose colour is unique on both sides, after most rounds first."""
+    groups = list(pairs.iter_unpaired())
+    rounds = _Refinement(fingerprints, groups).rounds if groups else ()
+    for old_colours, new_colours in rounds:
+        for group in groups:
+            for olds, news in list(_iter_equal(pairs, group, old_colours, new_colours)):
+                if len(olds) == len(news) == 1:
+                    pairs.add(olds[0], news[0])
+
+
+def pair_by_choice(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
+    """Pair any two siblings of equal colour, and follow the choice to their neighbours.
+
+    For each group only the latest round with equal colours is used; the rest waits for new colours.
+    """
+    groups = list(pairs.iter_unpaired())
+    refinement = _Refinement(fingerprints, groups)
+    for group in groups:
+        for old_colours, new_colours in refinement.rounds:
+            classes = list(_iter_equal(pairs, group, old_colours, new_colours))
+            propagation = _Propagation(pairs, refinement, old_colours, new_colours)
+            for olds, news in classes:
+                _choose_pairs(pairs, olds, news, propagation)
+            if classes:
+                break
+
+
+def _choose_pairs(
+    pairs: Pairs, olds: list[Element], news: list[Element], propagation: "_Propagation"
+) -> None:
+    for old in olds:
+        new = next((element for element in news if element.id not in pairs.old_of), None)
+        if new is not None and old.id not in pairs.new_of:
+            propagation.add_pair(old, new)
+
+
+def _iter_equal(
+    pairs: Pairs, group: Group, old_colours: Colours, new_colours: Colours
+) -> Iterator[tuple[list[Element], list[Element]]]:
+    """Iterate over the unpaired elements of a group by colours that both sides have."""
+    olds = _by_colour((e for e in group[0] if e.id not in pairs.new_of), old_colours)
+    news = _by_colour((e for e in group[1] if e.id not in pairs.old_of), new_colours)
+    return ((elements, news[colour]) for colour, elements in olds.items() if colour in news)
+
+
+def _by_colour(elements: Iterable[Element], colours: Colours) -> dict[int, list[Element]]:
+    index: dict[int, list[Element]] = {}
+    for element in elements:
+        index.setdefault(colours[element.id], []).append(element)
+    return index
+
+
+class _Propagation:
+    """Pairs two elements, and along equal links their neighbours of equal colour."""
+
+    def __init__(
+        self, pairs: Pairs, refinement: "_Refinement", old_colours: Colours, new_colours: Colours
+    ) -> None:
+        self._pairs = pairs
+        self._refinement = refinement
+        self._old_colours = old_colours
+        self._new_colours = new_colours
+
+    def add_pair(self, old: Element, new: Element) -> None:
+        """Pair two elements, their neighbours, the neighbours of those, and so on."""
+        self._pairs.add(old, new)
+        worklist = [(old, new)]
+        while worklist:
+            for pair in self._iter_neighbours(*worklist.pop()):
+                self._pairs.add(*pair)
+                worklist.append(pair)
+
+    def _iter_neighbours(self, old: Element, new: Element) -> Iterator[tuple[Element, Element]]:
+        candidates: dict[tuple[str, int | None], list[Element]] = {}
+        for label, neighbour in reversed(self._refinement.new.neighbours(new)):
+            if neighbour.id in self._new_colours and neighbour.id not in self._pairs.old_of:
+                key = (label, self._new_colours[neighbour.id])
+                candidates.setdefault(key, []).append(neighbour)
+        for label, neighbour in self._refinement.old.neighbours(old):
+            equals = candidates.get((label, self._old_colours.get(neighbour.id)))
+            if equals and neighbour.id not in self._pairs.new_of:
+                candidate = equals.pop()
+                if self._can_pair(neighbour, candidate):
+                    yield neighbour, candidate
+
+    def _can_pair(self, old: Element, new: Element) -> bool:
+        """Return whether *new* is unpaired and the owners are a pair."""
+        if new.id in self._pairs.old_of:
+            return False
+        old_owner, new_owner = self._pairs.old.graph.owner(old), self._pairs.new.graph.owner(new)
+        if old_owner is None or new_owner is None:
+            return old_owner is new_owner
+        return self._pairs.new_of.get(old_owner.id) is new_owner
+
+
+# -- fingerprints ------------------------------------------------------------------------------
+
+
+class _Numbering(dict[Token, int]):
+    """A number for each distinct token, assigned at the first lookup."""
+
+    def __missing__(self, token: Token) -> int:
+        self[token] = number = len(self)
         return number
 
 
-class Sayings:
-    """The numbers of one side. Equal numbers, equal sayings, on both sides.
+class _Fingerprints:
+    """Fingerprints of the elements of one side: numbers that are equal for equal content.
 
-    What is said of elements that are in no pair is said of any of that kind and name. A number is
-    kept until one of those gets a partner: elements without names are paired level by level, and
-    each level has all below it.
+    An unpaired element counts only by kind and name where another element refers to it. Pairing
+    it invalidates the fingerprints of those elements and of their owners. The others are reused,
+    because nested elements without names are paired level by level, and each level has all below
+    it.
     """
 
-    def __init__(self, pairs: Pairs, side: Side, numbers: Numbers) -> None:
+    def __init__(self, pairs: Pairs, side: Side, numbering: _Numbering) -> None:
         self.side = side
         self._pairs = pairs
         self._is_old = side is pairs.old
         self._to_token = pairs.old_token if self._is_old else pairs.new_token
-        self._numbers = numbers
-        self._known_pairs = 0
-        self._own: dict[str, int] = {}
-        self._whole: dict[str, int] = {}
-        self._readers: dict[str, list[str]] = {}
-        """Who says something of an element."""
+        self._numbering = numbering
+        self._processed_pairs = 0
+        self._of_element: dict[str, int] = {}
+        self._of_subtree: dict[str, int] = {}
+        self._dependents: dict[str, list[str]] = {}
+        """Ids of the elements whose facts refer to an element."""
 
-    def whole(self, element: Element) -> int:
-        """The number of what the element and all below it say; depth does no harm."""
-        known = self._whole
-        stack, unknown = [element], []
+    def of_subtree(self, element: Element) -> int:
+        """Return the fingerprint of *element* with its visible subtree."""
+        # Without recursion: models may be nested deeply.
+        stack, missing = [element], []
         while stack:
             top = stack.pop()
-            if top.id not in known:
-                unknown.append(top)
+            if top.id not in self._of_subtree:
+                missing.append(top)
                 stack += self.side.children(top)
-        for one in reversed(unknown):
-            inside = sorted([known[child.id] for child in self.side.children(one)])
-            known[one.id] = self._numbers[self._said(one), *inside]
-        return known[element.id]
+        for owner in reversed(missing):
+            children = sorted([self._of_subtree[c.id] for c in self.side.children(owner)])
+            self._of_subtree[owner.id] = self._numbering[self._fingerprint(owner), *children]
+        return self._of_subtree[element.id]
 
-    def _said(self, element: Element) -> int:
-        """The number of what the element says itself."""
-        known = self._own.get(element.id)
-        if known is None:
+    def _fingerprint(self, element: Element) -> int:
+        """Return the fingerprint of the facts about *element* itself."""
+        if element.id not in self._of_element:
 
-            def to_token(other: Element) -> Token:
-                seen = self.side.visible(other)
-                if seen is not None:
-                    self._readers.setdefault(seen.id, []).append(element.id)
-                return self._blind(other)
+            def to_token(target: Element) -> Token:
+                visible = self.side.find_visible(target)
+                if visible is not None:
+                    self._dependents.setdefault(visible.id, []).append(element.id)
+                return self._reference_token(target)
 
-            tokens = [fact_token(one, to_token) for one in facts(self.side, element)]
-            said = sorted([self._numbers[one] for one in tokens])
-            known = self._own[element.id] = self._numbers[element.kind, element.name, tuple(said)]
-        return known
+            tokens = [fact_token(fact, to_token) for fact in iter_facts(self.side, element)]
+            facts = tuple(sorted([self._numbering[token] for token in tokens]))
+            self._of_element[element.id] = self._numbering[element.kind, element.name, facts]
+        return self._of_element[element.id]
 
-    def named(self, element: Element) -> int:
-        """The number of an element that is spoken of."""
-        return self._numbers[self._blind(element)]
+    def of_reference(self, element: Element) -> int:
+        """Return the fingerprint of a reference to *element*."""
+        return self._numbering[self._reference_token(element)]
 
-    def _blind(self, element: Element) -> Token:
-        """A token that is the same for all of a kind and name while partners are unknown."""
+    def _reference_token(self, element: Element) -> Token:
         if element.id in self.side.hidden:
-            owner = self.side.visible(element)
-            return ("of", owner and self._blind(owner), element.kind, element.name)
-        found = self._to_token(element)
-        is_known = isinstance(found, tuple) and found[0] in ("new", "outside")
-        return found if is_known else ("?", element.kind, element.name)
+            owner = self.side.find_visible(element)
+            return ("of", owner and self._reference_token(owner), element.kind, element.name)
+        token = self._to_token(element)
+        is_paired = isinstance(token, tuple) and token[0] in ("new", "outside")
+        return token if is_paired else ("?", element.kind, element.name)
 
-    def update(self) -> None:
-        """Forget what says something of elements that got partners since the last time."""
+    def invalidate_new_pairs(self) -> None:
+        """Remove the fingerprints that depend on elements paired since the last call."""
         new_of = self._pairs.new_of
-        for old_id, new in islice(new_of.items(), self._known_pairs, None):
-            for reader in self._readers.pop(old_id if self._is_old else new.id, ()):
-                self._forget(reader)
-        self._known_pairs = len(new_of)
+        for old_id, new in islice(new_of.items(), self._processed_pairs, None):
+            for dependent in self._dependents.pop(old_id if self._is_old else new.id, ()):
+                self._invalidate(dependent)
+        self._processed_pairs = len(new_of)
 
-    def _forget(self, reader: str) -> None:
-        self._own.pop(reader, None)
-        above: str | None = reader
-        while above is not None and self._whole.pop(above, None) is not None:
-            above = self.side.graph[above].owner
-
-
-_ROUNDS = 12
-
-Colours = dict[str, int]
-Group = tuple[list[Element], list[Element]]
-"""Unpaired elements of one owner, of the old and of the new model."""
+    def _invalidate(self, id: str) -> None:
+        self._of_element.pop(id, None)
+        owner: str | None = id
+        while owner is not None and self._of_subtree.pop(owner, None) is not None:
+            owner = self.side.graph[owner].owner
 
 
-class _Surroundings(NamedTuple):
-    """What leads from an element and to it, and how."""
+class BothFingerprints:
+    """The fingerprints of both sides; they are comparable, and shared by all steps."""
 
-    leftovers: list[tuple[str, Element]]
+    def __init__(self, pairs: Pairs) -> None:
+        numbering = _Numbering()
+        self.old = _Fingerprints(pairs, pairs.old, numbering)
+        self.new = _Fingerprints(pairs, pairs.new, numbering)
+
+
+# -- colours -----------------------------------------------------------------------------------
+
+
+class _Neighbourhood(NamedTuple):
+    """The labelled links of an element."""
+
+    unpaired: list[tuple[str, Element]]
+    """Links to elements that are coloured."""
     rest: int
-    """The colour of all that is no leftover: it stays in all rounds."""
+    """A number for all other links, the same in every round."""
 
 
-class Refinement:
-    """The colours of the leftovers of one side.
+class _SideRefinement:
+    """The colours of the unpaired elements of one side.
 
-    What lies below a leftover belongs to it: a flow from its pin is a flow from itself. ``mixed``
-    gives new colours; what is said gives the first ones, which are not negative.
+    A link of an element below an unpaired element counts as a link of the unpaired element.
+    Fingerprints are the first colours and not negative; later colours are negative.
     """
 
-    def __init__(self, sayings: Sayings, elements: list[Element], mixed: Numbers) -> None:
-        self._sayings = sayings
-        self._side = sayings.side
-        self._mixed = mixed
+    def __init__(
+        self, fingerprints: _Fingerprints, elements: list[Element], numbering: _Numbering
+    ) -> None:
+        self._fingerprints = fingerprints
+        self._side = fingerprints.side
+        self._numbering = numbering
         self._elements = elements
-        self._part_of = {part.id: one for one in elements for part in self._side.below(one)}
-        self._surroundings: dict[str, _Surroundings] = {}
-        sayings.update()
-        self.colours: Colours = {one.id: sayings.whole(one) for one in elements}
+        self._unpaired_owner = {
+            part.id: element for element in elements for part in self._side.visible_subtree(element)
+        }
+        self._neighbourhoods: dict[str, _Neighbourhood] = {}
+        fingerprints.invalidate_new_pairs()
+        self.colours: Colours = {e.id: fingerprints.of_subtree(e) for e in elements}
 
-    def count(self) -> int:
-        """How many colours there are."""
+    def count_colours(self) -> int:
+        """Return the number of different colours."""
         return len(set(self.colours.values()))
 
     def mix(self) -> None:
-        """One more round."""
-        now, made = self.colours, self._mixed
+        """Replace each colour by a mix with the colours of the neighbours."""
+        colours, numbering = self.colours, self._numbering
         self.colours = {}
-        for one in self._elements:
-            around = self._around(one)
-            near = sorted([(how, now[other.id]) for how, other in around.leftovers])
-            self.colours[one.id] = -1 - made[now[one.id], around.rest, *near]
+        for element in self._elements:
+            neighbourhood = self._neighbourhood(element)
+            near = sorted([(label, colours[n.id]) for label, n in neighbourhood.unpaired])
+            number = numbering[colours[element.id], neighbourhood.rest, *near]
+            self.colours[element.id] = -1 - number
 
-    def around(self, element: Element) -> list[tuple[str, Element]]:
-        """What leads from the element and to it, and how; leftovers for what lies in them."""
-        return self._around(element).leftovers
+    def neighbours(self, element: Element) -> list[tuple[str, Element]]:
+        """Return the links between *element* and unpaired elements."""
+        return self._neighbourhood(element).unpaired
 
-    def _around(self, element: Element) -> _Surroundings:
-        known = self._surroundings.get(element.id)
-        if known is None:
-            known = self._surroundings[element.id] = self._look_around(element)
-        return known
+    def _neighbourhood(self, element: Element) -> _Neighbourhood:
+        if element.id not in self._neighbourhoods:
+            self._neighbourhoods[element.id] = self._find_neighbourhood(element)
+        return self._neighbourhoods[element.id]
 
-    def _look_around(self, element: Element) -> _Surroundings:
-        part_of, named = self._part_of, self._sayings.named
-        near, far = [], []
-        for how, one in self._ties(element):
-            leftover = part_of.get(one.id)
-            if leftover is None:
-                far.append((how, named(one)))
+    def _find_neighbourhood(self, element: Element) -> _Neighbourhood:
+        unpaired, rest = [], []
+        for label, linked in self._iter_links(element):
+            owner = self._unpaired_owner.get(linked.id)
+            if owner is None:
+                rest.append((label, self._fingerprints.of_reference(linked)))
             else:
-                near.append((how, leftover))
-        return _Surroundings(near, self._mixed[tuple(sorted(far))])
+                unpaired.append((label, owner))
+        return _Neighbourhood(unpaired, self._numbering[tuple(sorted(rest))])
 
-    def _ties(self, element: Element) -> list[tuple[str, Element]]:
-        found: list[tuple[str, Element]] = []
-        for part in self._side.below(element):
-            ties = self._side.ties.get(part.id, ())
-            found += [(f"{part.name} {how}", one) for how, one in ties]
-        return found
+    def _iter_links(self, element: Element) -> Iterator[tuple[str, Element]]:
+        for part in self._side.visible_subtree(element):
+            for label, linked in self._side.links.get(part.id, ()):
+                yield f"{part.name} {label}", linked
 
 
-class Palette:
-    """What gives the first colours, for as long as pairs are looked for."""
-
-    def __init__(self, pairs: Pairs) -> None:
-        numbers = Numbers()
-        self.old = Sayings(pairs, pairs.old, numbers)
-        self.new = Sayings(pairs, pairs.new, numbers)
-
-
-class Refined:
+class _Refinement:
     """The colours of both sides after each round, the last round first."""
 
-    def __init__(self, palette: Palette, groups: Sequence[Group]) -> None:
-        mixed = Numbers()
-        left = [one for olds, _ in groups for one in olds]
-        right = [one for _, news in groups for one in news]
-        self.old = Refinement(palette.old, left, mixed)
-        self.new = Refinement(palette.new, right, mixed)
+    def __init__(self, fingerprints: BothFingerprints, groups: Sequence[Group]) -> None:
+        numbering = _Numbering()
+        olds = [element for group in groups for element in group[0]]
+        news = [element for group in groups for element in group[1]]
+        self.old = _SideRefinement(fingerprints.old, olds, numbering)
+        self.new = _SideRefinement(fingerprints.new, news, numbering)
         self.rounds = [(self.old.colours, self.new.colours)]
         self._refine()
         self.rounds.reverse()
 
     def _refine(self) -> None:
-        known = 0
-        while known < self.old.count() and len(self.rounds) <= _ROUNDS:
-            known = self.old.count()
+        count = 0
+        while count < self.old.count_colours() and len(self.rounds) <= _MOST_ROUNDS:
+            count = self.old.count_colours()
             self.old.mix()
             self.new.mix()
             self.rounds.append((self.old.colours, self.new.colours))
-
-
-_Classes = Iterator[tuple[list[Element], list[Element]]]
-
-
-def by_surroundings(palette: Palette, pairs: Pairs) -> None:
-    """Pair what is the only one on each side, below one owner, that says what it says."""
-    groups = list(pairs.leftovers())
-    for one, other in Refined(palette, groups).rounds if groups else ():
-        for group in groups:
-            for olds, news in list(_classes(pairs, group, one, other)):
-                if len(olds) == len(news) == 1:
-                    pairs.put(olds[0], news[0])
-
-
-def by_choice(palette: Palette, pairs: Pairs) -> None:
-    """Where several say the same, any may be chosen; what surrounds it follows the choice.
-
-    Only the most telling colours are used that find anything: what they leave is looked at anew.
-    """
-    groups = list(pairs.leftovers())
-    refined = Refined(palette, groups)
-    for group in groups:
-        for one, other in refined.rounds:
-            found = list(_classes(pairs, group, one, other))
-            walk = _Walk(pairs, refined, one, other)
-            for olds, news in found:
-                _choose(pairs, olds, news, walk)
-            if found:
-                break
-
-
-def _choose(pairs: Pairs, olds: list[Element], news: list[Element], walk: "_Walk") -> None:
-    for old in olds:
-        new = next((one for one in news if one.id not in pairs.old_of), None)
-        if new is not None and old.id not in pairs.new_of:
-            walk.pair(old, new)
-
-
-def _classes(pairs: Pairs, group: Group, one: Colours, other: Colours) -> _Classes:
-    """Unpaired elements of one owner that have one colour on both sides."""
-    olds = _by_colour((old for old in group[0] if old.id not in pairs.new_of), one)
-    news = _by_colour((new for new in group[1] if new.id not in pairs.old_of), other)
-    return ((found, news[colour]) for colour, found in olds.items() if colour in news)
-
-
-def _by_colour(elements: Iterable[Element], colours: Colours) -> dict[int, list[Element]]:
-    found: dict[int, list[Element]] = {}
-    for one in elements:
-        found.setdefault(colours[one.id], []).append(one)
-    return found
-
-
-class _Walk:
-    """Pairs two elements, and what leads from and to them as far as the colours agree."""
-
-    def __init__(self, pairs: Pairs, refined: Refined, one: Colours, other: Colours) -> None:
-        self._pairs = pairs
-        self._refined = refined
-        self._one = one
-        self._other = other
-
-    def pair(self, old: Element, new: Element) -> None:
-        """Pair the two, their neighbours, the neighbours of those ..."""
-        self._pairs.put(old, new)
-        waiting = [(old, new)]
-        while waiting:
-            left, right = waiting.pop()
-            for pair in self._neighbours(left, right):
-                self._pairs.put(*pair)
-                waiting.append(pair)
-
-    def _neighbours(self, old: Element, new: Element) -> Iterator[tuple[Element, Element]]:
-        free: dict[tuple[object, ...], list[Element]] = {}
-        for how, one in reversed(self._refined.new.around(new)):
-            if one.id in self._other and one.id not in self._pairs.old_of:
-                free.setdefault((how, self._other[one.id]), []).append(one)
-        for how, one in self._refined.old.around(old):
-            equals = free.get((how, self._one.get(one.id)))
-            if equals and one.id not in self._pairs.new_of:
-                other = equals.pop()
-                if self._are_siblings(one, other):
-                    yield one, other
-
-    def _are_siblings(self, old: Element, new: Element) -> bool:
-        """Whether both are free, below owners that are a pair."""
-        if new.id in self._pairs.old_of:
-            return False
-        there, here = self._pairs.old.graph.owner(old), self._pairs.new.graph.owner(new)
-        if there is None or here is None:
-            return there is here
-        return self._pairs.new_of.get(there.id) is here

@@ -1,4 +1,4 @@
-"""One of the two models that are compared, with what the comparison asks of it often."""
+"""One of the two models that are compared, indexed for the questions that the comparison asks."""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -18,121 +18,122 @@ _COMPARED = tuple(edge for edge in Edge if edge not in PASSED_OVER)
 
 
 class Side:
-    """A graph, read once: elements below their owners, details apart, and edges by their source.
+    """An index of one graph: visible elements by owner, details by owner, edges by source.
 
-    ``None`` is the owner of what nothing owns.
+    A detail (comment, stereotype application, slot ...) is compared as a property of its owner.
+    Details, headers of files and everything below them are *hidden*; all other elements are
+    *visible*. The key None stands for the owner of roots.
     """
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
-        self.things: dict[str | None, list[Element]] = {}
+        self.members: dict[str | None, list[Element]] = {}
         self.details: dict[str, list[Element]] = {}
         self.hidden: set[str] = set()
-        """Ids of details, headers, and everything below them."""
         for root in graph.roots():
-            self._enter(root)
-        self.out = self._edges()
+            self._index(root)
+        self.edges = self._index_edges()
 
-    def _enter(self, root: Element) -> None:
+    def _index(self, root: Element) -> None:
         for element in self.graph.subtree(root):
             owner = self.graph.owner(element)
             if element.owner in self.hidden or is_header(element):
                 self.hidden.add(element.id)
             elif is_detail(element, owner):
                 self.hidden.add(element.id)
-                self._tell(element, owner)
+                self._add_detail(element, owner)
             else:
-                self.things.setdefault(element.owner, []).append(element)
+                self.members.setdefault(element.owner, []).append(element)
 
-    def _tell(self, detail: Element, owner: Element | None) -> None:
-        told = owner if owner is not None else self.graph.target(detail, Edge.SUBJECT)
-        if told is not None:
-            self.details.setdefault(told.id, []).append(detail)
+    def _add_detail(self, detail: Element, owner: Element | None) -> None:
+        subject = owner if owner is not None else self.graph.target(detail, Edge.SUBJECT)
+        if subject is not None:
+            self.details.setdefault(subject.id, []).append(detail)
 
-    def _edges(self) -> dict[str, dict[Edge, list[Element]]]:
-        found: dict[str, dict[Edge, list[Element]]] = {}
-        applied = {one.id for one in self.graph.of_kind(Kind.APPLICATION)}
+    def _index_edges(self) -> dict[str, dict[Edge, list[Element]]]:
+        index: dict[str, dict[Edge, list[Element]]] = {}
+        applications = {element.id for element in self.graph.of_kind(Kind.APPLICATION)}
         for edge in _COMPARED:
-            passed = applied if edge is Edge.SUBJECT else ()
+            # The subject of a stereotype application is the element that it is a detail of.
+            skipped = applications if edge is Edge.SUBJECT else ()
             for _, source, target in self.graph.edges(edge):
-                if source in passed:
-                    continue
-                found.setdefault(source, {}).setdefault(edge, []).append(self.graph[target])
-        return found
+                if source not in skipped:
+                    targets = index.setdefault(source, {}).setdefault(edge, [])
+                    targets.append(self.graph[target])
+        return index
 
     @cached_property
-    def into(self) -> dict[str, list[tuple[Edge, Element]]]:
-        """Edges by their target; those of details belong to the owner of the detail."""
-        found: dict[str, list[tuple[Edge, Element]]] = {}
-        for source, edges in self.out.items():
-            origin = self.visible(self.graph[source])
+    def incoming(self) -> dict[str, list[tuple[Edge, Element]]]:
+        """Edges by target, with their sources; the owner of a detail replaces the detail."""
+        index: dict[str, list[tuple[Edge, Element]]] = {}
+        for source_id, edges in self.edges.items():
+            source = self.find_visible(self.graph[source_id])
             for edge, targets in edges.items():
                 for target in targets:
-                    if origin is not None and origin is not target:
-                        found.setdefault(target.id, []).append((edge, origin))
-        return found
+                    if source is not None and source is not target:
+                        index.setdefault(target.id, []).append((edge, source))
+        return index
 
     @cached_property
-    def ties(self) -> dict[str, list[tuple[str, Element]]]:
-        """What leads from an element and to it, and how: edges, and attributes that name others.
+    def links(self) -> dict[str, list[tuple[str, Element]]]:
+        """Links from and to each element, labelled: edges, and attributes whose values are ids.
 
-        Those of details belong to the owner of the detail, with the words that the detail says.
+        The links of a detail belong to its owner; their labels begin with the detail's own words.
         """
-        found: dict[str, list[tuple[str, Element]]] = {}
-        for source, how, target in (*self._leads(), *self._mentions()):
-            origin = self.visible(source)
-            if origin is None:
+        index: dict[str, list[tuple[str, Element]]] = {}
+        for element, label, target in (*self._edge_links(), *self._attribute_links()):
+            source = self.find_visible(element)
+            if source is None:
                 continue
-            said = how if origin is source else f"{_words(source)} {how}"
-            found.setdefault(origin.id, []).append((f"{said} >", target))
-            if origin is not target:
-                found.setdefault(target.id, []).append((f"< {said}", origin))
-        return found
+            full_label = label if source is element else f"{_describe(element)} {label}"
+            index.setdefault(source.id, []).append((f"{full_label} >", target))
+            if source is not target:
+                index.setdefault(target.id, []).append((f"< {full_label}", source))
+        return index
 
-    def _leads(self) -> Iterator[tuple[Element, str, Element]]:
-        for source, edges in self.out.items():
+    def _edge_links(self) -> Iterator[tuple[Element, str, Element]]:
+        for source, edges in self.edges.items():
             for edge, targets in edges.items():
                 yield from ((self.graph[source], str(edge), target) for target in targets)
 
-    def _mentions(self) -> Iterator[tuple[Element, str, Element]]:
-        """Attributes whose values are ids, those in tuples too, with their places there."""
+    def _attribute_links(self) -> Iterator[tuple[Element, str, Element]]:
         for element in self.graph:
-            for name, raw in element.attrs.items():
+            for name, value in element.attrs.items():
                 if name not in WORDS and name not in NOT_CONTENT:
-                    for how, id in _texts(raw, name):
-                        named = self.graph.get(id)
-                        if named is not None and named is not element:
-                            yield element, how, named
+                    for label, id in _iter_texts(value, name):
+                        target = self.graph.get(id)
+                        if target is not None and target is not element:
+                            yield element, label, target
 
-    def visible(self, element: Element) -> Element | None:
-        """The element, or the nearest owner that is told for itself."""
-        found: Element | None = element
-        while found is not None and found.id in self.hidden:
-            found = self.graph.owner(found)
-        return found
+    def find_visible(self, element: Element) -> Element | None:
+        """Return *element*, or its nearest owner that is visible, or None."""
+        candidate: Element | None = element
+        while candidate is not None and candidate.id in self.hidden:
+            candidate = self.graph.owner(candidate)
+        return candidate
 
     def children(self, owner: Element | None) -> list[Element]:
-        """What the element owns and is told for itself, in order."""
-        return self.things.get(None if owner is None else owner.id, [])
+        """Return the visible elements that *owner* owns, in order."""
+        return self.members.get(None if owner is None else owner.id, [])
 
-    def below(self, element: Element) -> Iterator[Element]:
-        """The element and all that is below it and is told for itself."""
+    def visible_subtree(self, element: Element) -> Iterator[Element]:
+        """Iterate over *element* and the visible elements below it, owners first."""
         stack = [element]
         while stack:
-            top = stack.pop()
-            yield top
-            stack.extend(reversed(self.children(top)))
+            owner = stack.pop()
+            yield owner
+            stack.extend(reversed(self.children(owner)))
 
 
-def _texts(raw: AttrValue, how: str) -> Iterator[tuple[str, str]]:
-    """Texts of a value, each with its place."""
-    if isinstance(raw, str):
-        yield how, raw
-    elif isinstance(raw, tuple):
-        for place, part in enumerate(raw):
-            yield from _texts(part, f"{how} {place}")
+def _iter_texts(value: AttrValue, label: str) -> Iterator[tuple[str, str]]:
+    """Iterate over the texts of an attribute value, each with its position in nested tuples."""
+    if isinstance(value, str):
+        yield label, value
+    elif isinstance(value, tuple):
+        for position, item in enumerate(value):
+            yield from _iter_texts(item, f"{label} {position}")
 
 
-def _words(detail: Element) -> str:
-    said = [str(detail.attrs[name]) for name in sorted(WORDS & detail.attrs.keys())]
-    return " ".join([detail.kind, detail.name, *said])
+def _describe(detail: Element) -> str:
+    words = [str(detail.attrs[name]) for name in sorted(WORDS & detail.attrs.keys())]
+    return " ".join([detail.kind, detail.name, *words])

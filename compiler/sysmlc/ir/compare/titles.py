@@ -1,4 +1,4 @@
-"""How elements and values are called in a comparison, those without a name too."""
+"""Titles of elements and texts of values in a comparison, also for elements without a name."""
 
 import re
 
@@ -7,60 +7,11 @@ from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Edge, Kind
 
-_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+_WORD_BOUNDARY = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _TEXTS = ("guard", "body", "value", "when", "condition")
-_MOST = 60
-
-
-def word(side: Side, element: Element) -> str:
-    """What the element is: its role, its stereotype, or its kind."""
-    details = side.details.get(element.id, ())
-    found = (one.attrs.get("stereotype") for one in details if one.kind is Kind.APPLICATION)
-    applied = str(next(found, "") or "")
-    return element.role or _spaced(applied) or _kind(element)
-
-
-def _kind(element: Element) -> str:
-    kind = _spaced(element.kind)
-    is_telling = element.kind in (Kind.CONTROL, Kind.PSEUDOSTATE, Kind.ACTION, Kind.FRAGMENT)
-    return f"{element.subkind} {kind}" if is_telling and element.subkind else kind
-
-
-def _spaced(name: str) -> str:
-    return name if name.isupper() else _WORD.sub(" ", name).lower()
-
-
-def title(side: Side, element: Element) -> str:
-    """The element's name, or what tells it from its neighbours."""
-    if element.kind is Kind.CONNECTOR_END:
-        return dotted(side, element)
-    return element.name or _description(side, element) or f"<{element.kind}>"
-
-
-def steps(side: Side, end: Element) -> list[Element]:
-    """The parts that lead to the role of a connector end, outermost first, and the role."""
-    edges = side.out.get(end.id, {})
-    return [*edges.get(Edge.PATH, ()), *edges.get(Edge.ROLE, ())]
-
-
-def dotted(side: Side, element: Element) -> str:
-    """``part.port``: the steps to what a connector end or a nested port stands for."""
-    names = (step.name or f"<{step.kind}>" for step in steps(side, element))
-    return ".".join(names) or "(nothing)"
-
-
-def _description(side: Side, element: Element) -> str:
-    edges = side.out.get(element.id, {})
-    ends = relation(side, element)
-    if ends:
-        return ends
-    for edge, phrase in _PHRASES.items():
-        if edges.get(edge):
-            return phrase.format(_listed(side, edges[edge]))
-    texts = (element.attrs.get(name) for name in _TEXTS)
-    return next((_short(text) for text in texts if isinstance(text, str) and text), "")
-
-
+_LONGEST_TITLE = 60
+_NOTHING = "(nothing)"
+_STARTS = (Edge.CLIENT, Edge.FLOW_SOURCE)
 _PHRASES = {
     Edge.CALLS: "call {}",
     Edge.REPRESENTS: "of {}",
@@ -70,107 +21,166 @@ _PHRASES = {
 }
 
 
-def relation(side: Side, element: Element) -> str:
-    """``a -> b`` for what leads from one element to another, ``a -- b`` for a connector."""
-    edges = side.out.get(element.id, {})
-    if element.kind is Kind.CONNECTOR:
-        found = [d for d in side.details.get(element.id, ()) if d.kind is Kind.CONNECTOR_END]
-        return " -- ".join(title(side, end) for end in found)
-    if not any(edge in edges for edge in ENDS):
-        return ""
-    pairs = [(edges.get(edge, []), _is_start(edge)) for edge in ENDS]
-    starts = [one for found, is_start in pairs if is_start for one in found]
-    targets = [one for found, is_start in pairs if not is_start for one in found]
-    return f"{_listed(side, starts)} -> {_listed(side, targets)}"
+# -- elements ----------------------------------------------------------------------------------
 
 
-def ends_in_full(side: Side, connector: Element) -> str:
-    """As ``relation``, with the owner of what each end leads to: features may share a name."""
-    ends = [d for d in side.details.get(connector.id, ()) if d.kind is Kind.CONNECTOR_END]
-    return " -- ".join(_in_full(side, end) for end in ends)
+def kind_title(side: Side, element: Element) -> str:
+    """Return the role of *element*, or its stereotype, or its kind, in words."""
+    details = side.details.get(element.id, ())
+    stereotypes = (d.attrs.get("stereotype") for d in details if d.kind is Kind.APPLICATION)
+    stereotype = str(next(stereotypes, "") or "")
+    return element.role or _separate_words(stereotype) or _name_kind(element)
 
 
-def _in_full(side: Side, end: Element) -> str:
-    owner = side.graph.owner(found[-1]) if (found := steps(side, end)) else None
-    return dotted(side, end) + (f" of {whole(side, owner)}" if owner is not None else "")
+def _name_kind(element: Element) -> str:
+    kind = _separate_words(element.kind)
+    has_subkind = element.kind in (Kind.CONTROL, Kind.PSEUDOSTATE, Kind.ACTION, Kind.FRAGMENT)
+    return f"{element.subkind} {kind}" if has_subkind and element.subkind else kind
 
 
-def _is_start(edge: Edge) -> bool:
-    return edge in (Edge.CLIENT, Edge.FLOW_SOURCE)
+def _separate_words(name: str) -> str:
+    return name if name.isupper() else _WORD_BOUNDARY.sub(" ", name).lower()
 
 
-def _listed(side: Side, elements: list[Element]) -> str:
-    return ", ".join(_name(side, one) for one in elements) or "(nothing)"
+def title(side: Side, element: Element) -> str:
+    """Return the name of *element*, or a description that distinguishes it from its neighbours."""
+    if element.kind is Kind.CONNECTOR_END:
+        return format_path(side, element)
+    return element.name or _describe(side, element) or f"<{element.kind}>"
 
 
-def _name(side: Side, element: Element) -> str:
-    """Name of what another element is described by: its owner's when it has none."""
-    if element.name or element.kind is Kind.CONNECTOR_END:
-        return title(side, element)
-    calls = side.out.get(element.id, {}).get(Edge.CALLS, [])
-    if calls and calls[0].name:
-        return f"call {calls[0].name}"
-    return element.subkind or f"<{element.kind}>"
-
-
-def whole(side: Side, element: Element) -> str:
-    """Qualified name, with titles where names are missing."""
+def qualified_title(side: Side, element: Element) -> str:
+    """Return the qualified name of *element*, with titles where names are missing."""
     path = [element, *side.graph.ancestors(element)]
     return "::".join(title(side, part) for part in reversed(path))
 
 
-def shown(side: Side, value: object) -> str:
-    """A value as text."""
+def _describe(side: Side, element: Element) -> str:
+    ends = format_ends(side, element)
+    if ends:
+        return ends
+    edges = side.edges.get(element.id, {})
+    for edge, phrase in _PHRASES.items():
+        if edges.get(edge):
+            return phrase.format(_list_names(side, edges[edge]))
+    texts = (element.attrs.get(name) for name in _TEXTS)
+    return next((_shorten(text) for text in texts if isinstance(text, str) and text), "")
+
+
+def _list_names(side: Side, elements: list[Element]) -> str:
+    return ", ".join(_name_in_description(side, element) for element in elements) or _NOTHING
+
+
+def _name_in_description(side: Side, element: Element) -> str:
+    if element.name or element.kind is Kind.CONNECTOR_END:
+        return title(side, element)
+    # No further description of a nameless element: two of them may describe each other.
+    called = side.edges.get(element.id, {}).get(Edge.CALLS, [])
+    if called and called[0].name:
+        return f"call {called[0].name}"
+    return element.subkind or f"<{element.kind}>"
+
+
+# -- ends of relations -------------------------------------------------------------------------
+
+
+def path_of_end(side: Side, end: Element) -> list[Element]:
+    """Return the parts that lead to the role of a connector end, outermost first, and the role."""
+    edges = side.edges.get(end.id, {})
+    return [*edges.get(Edge.PATH, ()), *edges.get(Edge.ROLE, ())]
+
+
+def format_path(side: Side, element: Element) -> str:
+    """Return the path of a connector end or of a nested port as ``part.port``."""
+    names = (step.name or f"<{step.kind}>" for step in path_of_end(side, element))
+    return ".".join(names) or _NOTHING
+
+
+def format_ends(side: Side, relation: Element) -> str:
+    """Return the ends of a connector as ``a -- b``, of a directed relation as ``a -> b``, or ""."""
+    if relation.kind is Kind.CONNECTOR:
+        return " -- ".join(title(side, end) for end in _connector_ends(side, relation))
+    edges = side.edges.get(relation.id, {})
+    if edges.keys().isdisjoint(ENDS):
+        return ""
+    starts = [end for edge in ENDS if edge in _STARTS for end in edges.get(edge, ())]
+    targets = [end for edge in ENDS if edge not in _STARTS for end in edges.get(edge, ())]
+    return f"{_list_names(side, starts)} -> {_list_names(side, targets)}"
+
+
+def format_ends_with_owners(side: Side, connector: Element) -> str:
+    """Return the ends of a connector with the owner of each role: features may share a name."""
+    return " -- ".join(_format_end(side, end) for end in _connector_ends(side, connector))
+
+
+def _connector_ends(side: Side, connector: Element) -> list[Element]:
+    details = side.details.get(connector.id, ())
+    return [detail for detail in details if detail.kind is Kind.CONNECTOR_END]
+
+
+def _format_end(side: Side, end: Element) -> str:
+    path = path_of_end(side, end)
+    owner = side.graph.owner(path[-1]) if path else None
+    suffix = f" of {qualified_title(side, owner)}" if owner is not None else ""
+    return format_path(side, end) + suffix
+
+
+# -- values ------------------------------------------------------------------------------------
+
+
+def format_value(side: Side, value: object) -> str:
+    """Return a value as a text for people."""
     if isinstance(value, Element):
         return title(side, value)
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
-        return ", ".join(shown(side, part) for part in value)
-    return "" if value is None else _single_line(str(value))
+        return ", ".join(format_value(side, item) for item in value)
+    return "" if value is None else _join_lines(str(value))
 
 
-def exactly(side: Side, value: object) -> str:
-    """A value as text that leaves nothing out: whole names, and which kind of value."""
+def format_value_exactly(side: Side, value: object) -> str:
+    """Return a value as a text that differs for different values: with types, names in full."""
     if isinstance(value, Element):
-        return whole(side, value)
+        return qualified_title(side, value)
     if isinstance(value, tuple):
-        return "(" + ", ".join(exactly(side, part) for part in value) + ")"
+        return "(" + ", ".join(format_value_exactly(side, item) for item in value) + ")"
     return repr(value)
 
 
-def stereotype(side: Side, application: Element) -> str:
-    """``«Machine»``."""
+def format_stereotype(side: Side, application: Element) -> str:
+    """Return the stereotype of an application as ``«Machine»``."""
     return f"«{application.attrs.get('stereotype') or title(side, application)}»"
 
 
-def told(side: Side, detail: Element) -> str:
-    """What a comment, a trigger, an import ... says, in a line."""
+def format_detail(side: Side, detail: Element) -> str:
+    """Return the content of a comment, a trigger, an import ... in one line."""
     if detail.kind is Kind.TRIGGER:
-        return _trigger(side, detail)
+        return _format_trigger(side, detail)
     body = detail.attrs.get("body")
     if isinstance(body, str):
-        return _single_line(body)
+        return _join_lines(body)
     is_import = detail.kind is Kind.IMPORT
-    led = side.out.get(detail.id, {}).get(Edge.REFERENCES, ()) if is_import else ()
-    said = [whole(side, one) for one in led] + [
-        f"{name.replace('_', ' ')}: {shown(side, value)}"
+    imported = side.edges.get(detail.id, {}).get(Edge.REFERENCES, ()) if is_import else ()
+    texts = [qualified_title(side, element) for element in imported] + [
+        f"{name.replace('_', ' ')}: {format_value(side, value)}"
         for name, value in sorted(detail.attrs.items())
         if name not in NOT_CONTENT
     ]
-    return "; ".join(said) or title(side, detail)
+    return "; ".join(texts) or title(side, detail)
 
 
-def _trigger(side: Side, trigger: Element) -> str:
-    said = [title(side, one) for one in side.out.get(trigger.id, {}).get(Edge.TYPED_BY, ())]
-    said += [shown(side, trigger.attrs.get(name)) for name in ("when", "condition")]
-    return " ".join(part for part in (trigger.subkind, *said) if part)
+def _format_trigger(side: Side, trigger: Element) -> str:
+    types = side.edges.get(trigger.id, {}).get(Edge.TYPED_BY, ())
+    texts = [trigger.subkind, *(title(side, type_) for type_ in types)]
+    texts += [format_value(side, trigger.attrs.get(name)) for name in ("when", "condition")]
+    return " ".join(text for text in texts if text)
 
 
-def _single_line(text: str) -> str:
+def _join_lines(text: str) -> str:
     return " ".join(text.split()) if "\n" in text else text
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     line = " ".join(text.split())
-    return line if len(line) <= _MOST else line[: _MOST - 3] + "..."
+    return line if len(line) <= _LONGEST_TITLE else line[: _LONGEST_TITLE - 3] + "..."
