@@ -85,8 +85,7 @@ def test_rules_of_a_pass_are_in_the_catalogue(folder, monkeypatch):
     monkeypatch.setattr(rules, "_names", set(rules._names))
     (folder / "strict_names.py").write_text(
         "from sysmlc.diagnostics import Severity, rule\n"
-        'LONG = rule("SM947", "long-name", Severity.INFO, "a long name", "Short names help.")\n'
-        + PASS
+        'LONG = rule("SM947", "long-name", Severity.INFO, "a long name")\n' + PASS
     )
     install(folder, "strictness", "sysmlc.passes", "census = strict_names:PASS")
     assert registry.load_full_catalogue()["SM947"].name == "long-name"
