@@ -1,14 +1,13 @@
-"""What CONTRIBUTING tells newcomers works: the back end is installed and run, the rule is tried."""
+"""What CONTRIBUTING shows works: the plug-in is installed; back end, pass and rule are tried."""
 
 import os
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
-
-from sysmlc.diagnostics import rule_page
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -22,12 +21,25 @@ def block(title: str) -> str:
     return found[2]
 
 
-def test_the_back_end_shown_is_the_one_that_is_tested():
-    for path in ("tests/plugin/sysmlc_outline/__init__.py", "tests/plugin/sysmlc_outline/SM949.md"):
-        assert block(path) == (ROOT / path).read_text(encoding="utf-8")
-    project = (ROOT / "tests/plugin/pyproject.toml").read_text(encoding="utf-8")
-    assert 'outline = "sysmlc_outline:BACKEND"' in project
-    assert 'outline = "sysmlc_outline:BACKEND"' in TEXT
+SHOWN = [
+    "tests/plugin/sysmlc_outline/__init__.py",
+    "tests/plugin/sysmlc_outline/SM949.md",
+    "tests/plugin/sysmlc_stateless/__init__.py",
+    "tests/plugin/sysmlc_stateless/SM948.md",
+]
+
+
+@pytest.mark.parametrize("path", SHOWN)
+def test_the_files_shown_are_those_that_are_tested(path):
+    assert block(path) == (ROOT / path).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "entry", ['outline = "sysmlc_outline:BACKEND"', 'statelessness = "sysmlc_stateless:PASS"']
+)
+def test_the_entry_points_shown_are_those_that_are_tested(entry):
+    assert entry in (ROOT / "tests/plugin/pyproject.toml").read_text(encoding="utf-8")
+    assert entry in TEXT
 
 
 @pytest.fixture(scope="module")
@@ -76,15 +88,34 @@ def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch, tmp_path):
-    (tmp_path / "SM948.md").write_text(block("rule page"), encoding="utf-8")
-    monkeypatch.setattr(rule_page, "FOLDER", tmp_path)
-    catalogue = sys.modules["sysmlc.diagnostics.rule"]
+@pytest.mark.slow
+def test_the_rule_is_reported_and_explained(plugin, tmp_path):
+    (tmp_path / "plant.ir").write_text('StateMachine gripper "Gripper"\n')
+    done = sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
+    assert "warning[SM948 stateless-machine]: state machine 'Gripper' has no states" in done.stderr
+    explained = sysmlc(plugin, tmp_path, "explain", "stateless-machine").stdout
+    assert explained.startswith("SM948 stateless-machine (warning)")
+    assert "Its contract would allow everything." in explained
+    assert "SM948" in sysmlc(plugin, tmp_path, "explain").stdout
+
+
+@pytest.mark.slow
+def test_the_rule_can_be_switched_off(plugin, tmp_path):
+    (tmp_path / "plant.ir").write_text('StateMachine gripper "Gripper"\n')
+    (tmp_path / "sysmlc.toml").write_text('[rules]\nstateless-machine = "off"\n')
+    done = sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
+    assert "SM948" not in done.stderr
+
+
+def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch):
+    catalogue = import_module("sysmlc.diagnostics.rule")
     monkeypatch.setattr(catalogue, "_rules", dict(catalogue._rules))
+    monkeypatch.setattr(catalogue, "_names", set(catalogue._names))
+    monkeypatch.syspath_prepend(ROOT / "tests/plugin")
     names: dict[str, object] = {"__name__": "contributing"}
-    exec(compile(block("rule"), "rule", "exec"), names)
     exec(compile(block("rule test"), "rule test", "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     assert len(tests) == 2
     for test in tests:
         test()
+    monkeypatch.delitem(sys.modules, "sysmlc_stateless")
